@@ -1,0 +1,272 @@
+//! Model → everything that is generated: the mechanics of each function, lowered.
+
+use crate::diag::Diagnostics;
+use crate::emit::frames::{FrameSteps, LinkSteps};
+use crate::emit::{Argument, Chart, Function, Output, Shape};
+use crate::expr::Expr;
+use crate::lower::{Program, lower};
+use crate::mechanics::{self, Joint, crba, energy, forces, frames, momentum, rnea};
+use crate::model::{Model, Motion, Quantity};
+
+/// Up to how many velocities both algorithms of forward dynamics are derived and compared.
+const COMPARE: usize = 18;
+
+/// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
+pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
+    let joints = mechanics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
+        let (name, place) = &model.velocities[k];
+        cx.error(
+            place.clone(),
+            format!("the coordinate `{name}` moves nothing that has inertia"),
+        )
+        .help("the mass matrix is singular: give mass or inertia to what the joint carries");
+        return None;
+    }
+    let mut functions = signatures(model.nv(), model.nq());
+    for f in &mut functions {
+        f.program = program(model, &joints, &mass, &f.name);
+    }
+    Some(Output {
+        functions,
+        links: model
+            .links
+            .iter()
+            .zip(&joints)
+            .map(|(_, joint)| link_steps(model, joint))
+            .collect(),
+        frames: model
+            .frames
+            .iter()
+            .map(|frame| frame_steps(model, frame))
+            .collect(),
+        charts: charts(model),
+        equations: equations(model),
+    })
+}
+
+/// The equations of motion in a line each; empty for mechanisms that are too large to be read.
+pub fn equations(_model: &Model<'_>) -> String {
+    String::new()
+}
+
+fn done(outputs: &[Expr<'_>]) -> Program {
+    lower(outputs).fused()
+}
+
+fn program<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>, name: &str) -> Program {
+    let v = mechanics::velocities(model);
+    let a = mechanics::accelerations(model);
+    match name {
+        "neutral" => done(&neutral(model)),
+        "mass_matrix" => done(&mass.iter().flatten().copied().collect::<Vec<_>>()),
+        "bias_forces" => done(&rnea::inverse_dynamics(model, joints, &v, None)),
+        "inverse_dynamics" => done(&rnea::inverse_dynamics(model, joints, &v, Some(&a))),
+        "forward_dynamics" => forward_dynamics(model, joints, mass),
+        "generalized_forces" => done(&forces::generalized_forces(model, joints)),
+        "kinetic_energy" => done(&[energy::kinetic_energy(model, joints, &v)]),
+        "potential_energy" => done(&[energy::potential_energy(model, joints)]),
+        "generalized_momentum" => done(&momentum::generalized_momentum(model, joints, &v)),
+        "momentum_rate" => done(&momentum::momentum_rate(model, joints, &v)),
+        "total_mass" => done(&[energy::mass_and_moment(model, joints).0]),
+        "center_of_mass" => done(&energy::center_of_mass(model, joints).0),
+        _ => done(&frames::flat(&momentum::centroidal_momentum(model, joints, &v))),
+    }
+}
+
+/// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
+/// divisions wait less for each other.
+fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Program {
+    let g = model.graph;
+    let v = mechanics::velocities(model);
+    let bias = rnea::inverse_dynamics(model, joints, &v, None);
+    let r: Vec<Expr<'g>> = bias
+        .iter()
+        .enumerate()
+        .map(|(k, h)| Quantity::Force(k).expr(g) - *h)
+        .collect();
+    let articulated = mechanics::aba::accelerations(model, joints, &r).map(|a| done(&a));
+    match articulated {
+        Some(program) if model.nv() > COMPARE => program,
+        Some(program) => {
+            let factorised = done(&mechanics::ldl::solve(mass.clone(), r, joints));
+            if factorised.instructions.len() * 20 <= program.instructions.len() * 21 {
+                factorised
+            } else {
+                program
+            }
+        }
+        None => done(&mechanics::ldl::solve(mass.clone(), r, joints)),
+    }
+}
+
+fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let mut q = vec![g.zero(); model.nq()];
+    for chart in charts(model) {
+        match chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(k, _) => q[k + 3] = g.one(),
+            Chart::Free(k, _) => q[k + 6] = g.one(),
+        }
+    }
+    q
+}
+
+fn charts(model: &Model<'_>) -> Vec<Chart> {
+    let mut charts = Vec::new();
+    for link in &model.links {
+        let chart = match &link.motion {
+            Motion::Turn { coordinate: c, .. }
+            | Motion::Slide { coordinate: c, .. }
+            | Motion::Helix { coordinate: c, .. } => Chart::Plain(c.q, c.v),
+            Motion::Ball { q, v } => Chart::Ball(*q, *v),
+            Motion::Free { q, v } => Chart::Free(*q, *v),
+        };
+        if !charts.contains(&chart) {
+            charts.push(chart);
+        }
+    }
+    charts
+}
+
+fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
+    let v = mechanics::velocities(model);
+    let a = mechanics::accelerations(model);
+    let columns: Vec<Expr<'g>> = frames::jacobian_columns(model, joint)
+        .iter()
+        .flat_map(frames::flat)
+        .collect();
+    LinkSteps {
+        parent: joint.parent.map(|p| p.0),
+        velocities: joint.dofs.iter().map(|d| d.index).collect(),
+        placement: done(&frames::link_placement(model, joint).flat()),
+        twist: done(&frames::flat(&frames::link_twist(model, joint, &v))),
+        acceleration: done(&frames::flat(&frames::link_acceleration(model, joint, &v, &a))),
+        columns: done(&columns),
+    }
+}
+
+fn frame_steps<'g>(model: &Model<'g>, frame: &crate::model::NamedFrame<'g>) -> FrameSteps {
+    FrameSteps {
+        name: frame.name.clone(),
+        link: frame.link.map(|l| l.0),
+        is_link: frame.pose.rotation.is_identity() && frame.pose.translation.is_zero(),
+        placement: done(&frames::frame_placement(model, frame).flat()),
+        twist: done(&frames::flat(&frames::frame_twist(model, frame))),
+        acceleration: done(&frames::flat(&frames::frame_acceleration(model, frame))),
+    }
+}
+
+/// The public functions without their programs: names, arguments, results, documentation.
+pub fn signatures(nv: usize, nq: usize) -> Vec<Function> {
+    use Argument::{A, Q, Tau, U, V};
+    let function = |name: &str, arguments: &[Argument], shape, docs: &[&str]| Function {
+        name: name.to_string(),
+        docs: docs.iter().map(ToString::to_string).collect(),
+        arguments: arguments.to_vec(),
+        shape,
+        program: Program::default(),
+    };
+    vec![
+        function(
+            "neutral",
+            &[],
+            Shape::Vector(nq),
+            &["The configuration with all coordinates zero and unit quaternions."],
+        ),
+        function(
+            "mass_matrix",
+            &[Q],
+            Shape::Square(nv),
+            &[
+                "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
+                "",
+                "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
+            ],
+        ),
+        function(
+            "bias_forces",
+            &[Q, V],
+            Shape::Vector(nv),
+            &[
+                "Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations, N·m for rotations.",
+                "",
+                "Recursive Newton–Euler algorithm without accelerations.",
+            ],
+        ),
+        function(
+            "inverse_dynamics",
+            &[Q, V, A],
+            Shape::Vector(nv),
+            &[
+                "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+                "",
+                "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
+            ],
+        ),
+        function(
+            "forward_dynamics",
+            &[Q, V, Tau],
+            Shape::Vector(nv),
+            &[
+                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
+                "",
+                "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
+            ],
+        ),
+        function(
+            "generalized_forces",
+            &[Q, U],
+            Shape::Vector(nv),
+            &["What the inputs `u` contribute to `τ`, by virtual work."],
+        ),
+        function(
+            "kinetic_energy",
+            &[Q, V],
+            Shape::Scalar,
+            &["Kinetic energy `T = ½ vᵀ M(q) v`, J."],
+        ),
+        function(
+            "potential_energy",
+            &[Q],
+            Shape::Scalar,
+            &["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
+        ),
+        function(
+            "generalized_momentum",
+            &[Q, V],
+            Shape::Vector(nv),
+            &["Generalized momentum `p = M(q) v`."],
+        ),
+        function(
+            "momentum_rate",
+            &[Q, V],
+            Shape::Vector(nv),
+            &[
+                "Rate of the generalized momentum without inputs: `ṗ = momentum_rate(q, v) + τ`.",
+                "",
+                "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
+            ],
+        ),
+        function(
+            "total_mass",
+            &[],
+            Shape::Scalar,
+            &["Mass of everything that moves, kg."],
+        ),
+        function(
+            "center_of_mass",
+            &[Q],
+            Shape::Vector(3),
+            &["Centre of mass of everything that moves, m, from the ground's origin in ground axes."],
+        ),
+        function(
+            "momentum",
+            &[Q, V],
+            Shape::Vector(6),
+            &["Momentum in ground axes: linear (kg·m/s), then angular about the centre of mass (kg·m²/s)."],
+        ),
+    ]
+}

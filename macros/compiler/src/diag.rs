@@ -1,0 +1,181 @@
+//! Diagnostics: every stage adds to one list, and the pipeline stops between stages when the list is
+//! not empty. Knows no stage.
+
+use proc_macro2::{Span, TokenStream};
+use std::rc::Rc;
+
+/// Where something was said: a token of the user's source and, for an imported file, the line and column there.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The token that an error is shown at; for an imported file, the token of its path.
+    pub span: Span,
+    /// The position in the imported file, if the thing comes from one.
+    pub file: Option<FilePosition>,
+}
+
+/// A position in an imported file, counted from one.
+#[derive(Clone, Debug)]
+pub struct FilePosition {
+    /// The file's path as the user wrote it.
+    pub file: Rc<str>,
+    /// Line, from one.
+    pub line: u32,
+    /// Column, from one.
+    pub column: u32,
+}
+
+impl From<Span> for Place {
+    fn from(span: Span) -> Place {
+        Place { span, file: None }
+    }
+}
+
+/// One mistake: what is wrong, where, and what to do about it.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    place: Place,
+    message: String,
+    help: Vec<String>,
+}
+
+impl Diagnostic {
+    /// Adds a line that says how to mend it.
+    pub fn help(&mut self, text: impl Into<String>) -> &mut Diagnostic {
+        self.help.push(text.into());
+        self
+    }
+
+    /// Adds "did you mean" for the candidate nearest to `name`, or else lists the candidates if they are few.
+    pub fn suggest<'a>(
+        &mut self,
+        name: &str,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> &mut Diagnostic {
+        let candidates: Vec<&str> = candidates.into_iter().collect();
+        if let Some(best) = nearest(name, &candidates) {
+            return self.help(format!("did you mean `{best}`?"));
+        }
+        if !candidates.is_empty() && candidates.len() <= 8 {
+            let list: Vec<String> = candidates.iter().map(|c| format!("`{c}`")).collect();
+            return self.help(format!("expected {}", one_of(&list)));
+        }
+        self
+    }
+
+    /// The message with the position in the imported file and all help lines, as the user reads it.
+    pub fn text(&self) -> String {
+        let mut text = match &self.place.file {
+            Some(at) => format!("{}:{}:{}: {}", at.file, at.line, at.column, self.message),
+            None => self.message.clone(),
+        };
+        for (k, line) in self.help.iter().enumerate() {
+            text.push_str(if k == 0 { "\n\n= help: " } else { "\n= help: " });
+            text.push_str(line);
+        }
+        text
+    }
+}
+
+/// The mistakes found so far.
+#[derive(Default, Debug)]
+pub struct Diagnostics {
+    errors: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// An empty list.
+    pub fn new() -> Diagnostics {
+        Diagnostics::default()
+    }
+
+    /// Reports a mistake. The message is lower case without a full stop, the user's words in backticks.
+    pub fn error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
+        self.errors.push(Diagnostic {
+            place: place.into(),
+            message: message.into(),
+            help: Vec::new(),
+        });
+        self.errors.last_mut().unwrap_or_else(|| unreachable!())
+    }
+
+    /// Reports a mistake that syn found.
+    pub fn syn(&mut self, error: syn::Error) {
+        for one in error {
+            self.error(one.span(), one.to_string());
+        }
+    }
+
+    /// True if nothing was reported.
+    pub fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    /// The messages in order, as the user reads them.
+    pub fn messages(&self) -> Vec<String> {
+        self.errors.iter().map(Diagnostic::text).collect()
+    }
+
+    /// One `compile_error!` for each mistake, at its token.
+    pub fn into_tokens(self) -> TokenStream {
+        self.errors
+            .iter()
+            .map(|e| syn::Error::new(e.place.span, e.text()).into_compile_error())
+            .collect()
+    }
+}
+
+/// `a`, `a or b`, `a, b or c`.
+pub fn one_of(list: &[String]) -> String {
+    match list {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand.
+pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let limit = (name.chars().count().max(3) / 3).min(3);
+    candidates
+        .iter()
+        .map(|c| (edit_distance(name, c), *c))
+        .filter(|(distance, c)| *distance <= limit || c.eq_ignore_ascii_case(name))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, c)| c)
+}
+
+/// Edit distance with transpositions of neighbours counted as one edit (optimal string alignment).
+fn edit_distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
+    let mut before = vec![0; b.len() + 1];
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i; b.len() + 1];
+        for j in 1..=b.len() {
+            let substitution = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            row[j] = substitution.min(last[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                row[j] = row[j].min(before[j - 2] + 1);
+            }
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_finds_its_name_and_a_stranger_does_not() {
+        assert_eq!(nearest("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
+        assert_eq!(
+            nearest("cart_mas", &["cart_mass", "pole_mass"]),
+            Some("cart_mass")
+        );
+        assert_eq!(nearest("abuot", &["about", "along"]), Some("about"));
+        assert_eq!(nearest("pin", &["Pin", "Sleeve"]), Some("Pin"));
+        assert_eq!(nearest("spaceship", &["Pin", "Sleeve"]), None);
+    }
+}

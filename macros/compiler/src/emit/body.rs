@@ -1,0 +1,313 @@
+//! The straight-line body of a generated function. Values with one use are written where they are used; the others are
+//! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
+
+use super::function::{Argument, Function, Shape, Signature};
+use super::scalar::ScalarSpelling;
+use crate::expr::{Function as Elementary, Symbol};
+use crate::lower::{Op, Operand, Program};
+use crate::model::Quantity;
+use std::fmt::Write;
+
+/// Most bindings of a block.
+const BLOCK: usize = 200;
+/// Longest expression that is not bound.
+const LINE: usize = 72;
+
+/// A binding, or an output without a name.
+struct Statement {
+    /// Left side.
+    names: Vec<usize>,
+    /// Right side.
+    text: String,
+    /// Values that the right side names.
+    needs: Vec<usize>,
+}
+
+/// Text of a value that is not bound.
+#[derive(Clone, Default)]
+struct Piece {
+    text: String,
+    needs: Vec<usize>,
+    /// 1 for a sum, 2 for a product, 3 for what needs no parentheses.
+    level: u8,
+}
+
+struct Writer<'a> {
+    program: &'a Program,
+    scalar: &'a ScalarSpelling,
+    arguments: &'a [Argument],
+    statements: Vec<Statement>,
+    /// By value: its text if it is not bound.
+    pieces: Vec<Option<Piece>>,
+    /// Functions of the runtime that are called.
+    helpers: Vec<&'static str>,
+}
+
+/// Writes everything between the braces.
+pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
+    let mut w = Writer {
+        program: &f.program,
+        scalar: s.scalar,
+        arguments: &f.arguments,
+        statements: Vec::new(),
+        pieces: vec![None; f.program.instructions.len()],
+        helpers: Vec::new(),
+    };
+    w.write_instructions();
+    let outputs: Vec<Piece> = f.program.outputs.iter().map(|o| w.operand(*o)).collect();
+    if s.scalar.is_generic() {
+        w.helper("constant");
+    }
+    write_prelude(out, f, s, &w);
+    write_statements(out, &w.statements, &outputs);
+    write_result(out, f.shape, &outputs);
+}
+
+impl Writer<'_> {
+    fn helper(&mut self, name: &'static str) -> &'static str {
+        if !self.helpers.contains(&name) {
+            self.helpers.push(name);
+        }
+        name
+    }
+
+    fn write_instructions(&mut self) {
+        for k in 0..self.program.instructions.len() {
+            if let Some(pair) = self.sine_and_cosine(k) {
+                // The pair is bound where the first of the two is met.
+                if pair.0.min(pair.1) == k {
+                    let Op::Call(_, angle) = self.program.instructions[k] else {
+                        continue;
+                    };
+                    let angle = self.operand(angle);
+                    let helper = self.helper("sin_cos");
+                    let text = format!("{helper}({})", angle.text);
+                    self.statements.push(Statement {
+                        names: vec![pair.0, pair.1],
+                        text,
+                        needs: angle.needs,
+                    });
+                }
+                continue;
+            }
+            let piece = self.instruction(self.program.instructions[k]);
+            if self.program.uses[k] == 1 && piece.text.len() <= LINE {
+                self.pieces[k] = Some(piece);
+            } else {
+                self.statements.push(Statement {
+                    names: vec![k],
+                    text: piece.text,
+                    needs: piece.needs,
+                });
+            }
+        }
+    }
+
+    /// The instructions that compute sine and cosine of the angle that instruction `k` computes one of, if both exist.
+    /// They follow each other closely, since an angle's two functions are made together.
+    fn sine_and_cosine(&self, k: usize) -> Option<(usize, usize)> {
+        let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = self.program.instructions[k] else {
+            return None;
+        };
+        let other = if f == Elementary::Sin {
+            Elementary::Cos
+        } else {
+            Elementary::Sin
+        };
+        let near = k.saturating_sub(8)..(k + 9).min(self.program.instructions.len());
+        let other = near
+            .into_iter()
+            .find(|j| self.program.instructions[*j] == Op::Call(other, angle))?;
+        Some(if f == Elementary::Sin {
+            (k, other)
+        } else {
+            (other, k)
+        })
+    }
+
+    fn operand(&mut self, o: Operand) -> Piece {
+        let plain = |text| Piece {
+            text,
+            needs: Vec::new(),
+            level: 3,
+        };
+        match o {
+            Operand::Const(c) => plain(self.constant(c)),
+            Operand::Symbol(s) => plain(self.symbol(s)),
+            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
+                text: format!("t{k}"),
+                needs: vec![k],
+                level: 3,
+            }),
+        }
+    }
+
+    fn constant(&mut self, c: f64) -> String {
+        let text = self.scalar.constant(c);
+        if c < 0.0 { format!("({text})") } else { text }
+    }
+
+    fn symbol(&self, s: Symbol) -> String {
+        let quantity = Quantity::of(s);
+        if let Quantity::Parameter(k) = quantity {
+            return format!("self.{}", self.scalar.parameter(k));
+        }
+        self.arguments
+            .iter()
+            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name())))
+            .unwrap_or_else(|| "missing".to_string())
+    }
+
+    fn instruction(&mut self, op: Op) -> Piece {
+        match op {
+            Op::Neg(a) => {
+                let a = self.operand(a);
+                let text = format!("-{}", wrap(&a, 3));
+                Piece {
+                    text,
+                    needs: a.needs,
+                    level: 2,
+                }
+            }
+            Op::Add(a, b) => self.infix(a, "+", b, 1, 1),
+            Op::Sub(a, b) => self.infix(a, "-", b, 1, 2),
+            Op::Mul(a, b) => self.infix(a, "*", b, 2, 3),
+            Op::Div(a, b) => self.infix(a, "/", b, 2, 3),
+            Op::MulAdd(a, b, c) => self.call("mul_add", &[a, b, c]),
+            Op::MulSub(a, b, c) => self.call("mul_sub", &[a, b, c]),
+            Op::NegMulAdd(a, b, c) => self.call("neg_mul_add", &[a, b, c]),
+            Op::Call(f, a) => self.call(f.name(), &[a]),
+            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
+            Op::Pow(a, b) => self.call("powf", &[a, b]),
+        }
+    }
+
+    fn infix(&mut self, a: Operand, op: &str, b: Operand, level: u8, right: u8) -> Piece {
+        let (a, b) = (self.operand(a), self.operand(b));
+        let text = format!("{} {op} {}", wrap(&a, level), wrap(&b, right));
+        let mut needs = a.needs;
+        needs.extend(b.needs);
+        Piece { text, needs, level }
+    }
+
+    fn call(&mut self, helper: &'static str, arguments: &[Operand]) -> Piece {
+        let helper = self.helper(helper);
+        let mut needs = Vec::new();
+        let mut list = Vec::new();
+        for argument in arguments {
+            let piece = self.operand(*argument);
+            needs.extend(piece.needs);
+            list.push(piece.text);
+        }
+        Piece {
+            text: format!("{helper}({})", list.join(", ")),
+            needs,
+            level: 3,
+        }
+    }
+}
+
+fn wrap(piece: &Piece, level: u8) -> String {
+    if piece.level < level {
+        format!("({})", piece.text)
+    } else {
+        piece.text.clone()
+    }
+}
+
+/// Imports and the numbers of the arguments.
+fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'_>) {
+    if !w.helpers.is_empty() {
+        let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", w.helpers.join(", "));
+    }
+    for argument in &f.arguments {
+        let (n, given) = match argument {
+            Argument::Q => (s.nq, false),
+            Argument::V | Argument::A | Argument::Tau => (s.nv, false),
+            Argument::U => (s.nu, false),
+            Argument::Given(_, _, n) => (*n, true),
+        };
+        if n == 0 {
+            continue;
+        }
+        let name = argument.name();
+        let list: Vec<String> = (0..n).map(|k| format!("{name}{k}")).collect();
+        let list = list.join(", ");
+        let _ = if given {
+            writeln!(out, "let [{list}] = *{name};")
+        } else {
+            writeln!(out, "let [[{list}]] = {name}.data.0;")
+        };
+    }
+}
+
+fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {
+    if statements.len() <= BLOCK {
+        for statement in statements {
+            write_let(out, statement);
+        }
+        return;
+    }
+    // The last block that needs each value decides whether it leaves its own.
+    let blocks: Vec<&[Statement]> = statements.chunks(BLOCK).collect();
+    let size = statements
+        .iter()
+        .flat_map(|s| &s.names)
+        .max()
+        .map_or(0, |m| m + 1);
+    let mut last_need = vec![0; size];
+    for (b, block) in blocks.iter().enumerate() {
+        for need in block.iter().flat_map(|s| &s.needs) {
+            last_need[*need] = b;
+        }
+    }
+    for need in outputs.iter().flat_map(|p| &p.needs) {
+        last_need[*need] = blocks.len();
+    }
+    for (b, block) in blocks.iter().enumerate() {
+        let leaving: Vec<String> = block
+            .iter()
+            .flat_map(|s| &s.names)
+            .filter(|k| last_need[**k] > b)
+            .map(|k| format!("t{k}"))
+            .collect();
+        let tuple = match leaving.as_slice() {
+            [one] => format!("({one},)"),
+            many => format!("({})", many.join(", ")),
+        };
+        let _ = writeln!(out, "let {tuple} = {{");
+        for statement in *block {
+            write_let(out, statement);
+        }
+        let _ = writeln!(out, "{tuple}\n}};");
+    }
+}
+
+fn write_let(out: &mut String, statement: &Statement) {
+    let _ = match statement.names.as_slice() {
+        [k] => writeln!(out, "let t{k} = {};", statement.text),
+        [s, c] => writeln!(out, "let (t{s}, t{c}) = {};", statement.text),
+        _ => Ok(()),
+    };
+}
+
+fn write_result(out: &mut String, shape: Shape, outputs: &[Piece]) {
+    let list = |pieces: &[Piece]| {
+        let texts: Vec<&str> = pieces.iter().map(|p| p.text.as_str()).collect();
+        format!("[{}]", texts.join(", "))
+    };
+    let storage = |columns: String, matrix: &str| {
+        format!(
+            "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))\n"
+        )
+    };
+    match shape {
+        Shape::Scalar => out.push_str(&outputs.first().map_or(String::new(), |p| p.text.clone())),
+        Shape::Array(_) => out.push_str(&list(outputs)),
+        Shape::Vector(_) => out.push_str(&storage(format!("[{}]", list(outputs)), "SVector")),
+        Shape::Square(n) => {
+            let columns: Vec<String> = outputs.chunks(n.max(1)).map(list).collect();
+            out.push_str(&storage(format!("[{}]", columns.join(", ")), "SMatrix"));
+        }
+    }
+}

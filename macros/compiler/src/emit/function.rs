@@ -1,0 +1,153 @@
+//! A generated function: its arguments, its result, and what it computes.
+
+use super::body::write_body;
+use super::scalar::ScalarSpelling;
+use crate::lower::Program;
+use crate::model::Quantity;
+use std::fmt::Write;
+
+/// An argument of a generated function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Configuration `q`.
+    Q,
+    /// Velocity `v`.
+    V,
+    /// Acceleration `a`.
+    A,
+    /// Generalized force `tau`.
+    Tau,
+    /// Inputs `u`.
+    U,
+    /// Given numbers: name of the argument, index of the first, how many.
+    Given(&'static str, usize, usize),
+}
+
+impl Argument {
+    /// The name in the signature.
+    pub fn name(self) -> &'static str {
+        match self {
+            Argument::Q => "q",
+            Argument::V => "v",
+            Argument::A => "a",
+            Argument::Tau => "tau",
+            Argument::U => "u",
+            Argument::Given(name, ..) => name,
+        }
+    }
+
+    /// The index in this argument of what a symbol stands for.
+    pub fn index(self, quantity: Quantity) -> Option<usize> {
+        match (self, quantity) {
+            (Argument::Q, Quantity::Configuration(k))
+            | (Argument::V, Quantity::Velocity(k))
+            | (Argument::A, Quantity::Acceleration(k))
+            | (Argument::Tau, Quantity::Force(k))
+            | (Argument::U, Quantity::Input(k)) => Some(k),
+            (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
+                Some(k - first)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The result of a generated function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A number.
+    Scalar,
+    /// A column vector.
+    Vector(usize),
+    /// A square matrix; the outputs are its columns one after another.
+    Square(usize),
+    /// A plain array.
+    Array(usize),
+}
+
+/// A generated function.
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// Documentation, a paragraph each; none for a hidden function.
+    pub docs: Vec<String>,
+    /// Arguments after `&self`.
+    pub arguments: Vec<Argument>,
+    /// Result.
+    pub shape: Shape,
+    /// What it computes.
+    pub program: Program,
+}
+
+/// Dimensions and names that signatures need.
+pub struct Signature<'a> {
+    /// Spelling of scalars.
+    pub scalar: &'a ScalarSpelling,
+    /// `NQ`.
+    pub nq: usize,
+    /// `NV`.
+    pub nv: usize,
+    /// `NU`.
+    pub nu: usize,
+}
+
+impl Signature<'_> {
+    /// The type of an argument.
+    pub fn argument(&self, a: Argument) -> String {
+        let n = match a {
+            Argument::Q => self.nq,
+            Argument::V | Argument::A | Argument::Tau => self.nv,
+            Argument::U => self.nu,
+            Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
+        };
+        format!("&{}", self.vector(n))
+    }
+
+    /// A column vector's type.
+    pub fn vector(&self, n: usize) -> String {
+        format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.name())
+    }
+
+    /// A result's type.
+    pub fn shape(&self, shape: Shape) -> String {
+        let s = self.scalar.name();
+        match shape {
+            Shape::Scalar => s.to_string(),
+            Shape::Vector(n) => self.vector(n),
+            Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
+            Shape::Array(n) => format!("[{s}; {n}]"),
+        }
+    }
+
+    /// `&self, q: …, v: …`.
+    pub fn parameters(&self, arguments: &[Argument]) -> String {
+        let mut text = "&self".to_string();
+        for a in arguments {
+            let _ = write!(text, ", {}: {}", a.name(), self.argument(*a));
+        }
+        text
+    }
+}
+
+/// Writes a function; without a program its body never returns, for a mechanism that failed to compile.
+pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
+    if f.docs.is_empty() {
+        out.push_str("#[doc(hidden)]\n");
+    }
+    for paragraph in &f.docs {
+        let _ = writeln!(out, "#[doc = {:?}]", format!(" {paragraph}"));
+    }
+    let _ = writeln!(
+        out,
+        "#[inline]\n#[must_use]\npub fn {}({}) -> {} {{",
+        f.name,
+        s.parameters(&f.arguments),
+        s.shape(f.shape)
+    );
+    if stub {
+        out.push_str("loop {}\n");
+    } else {
+        write_body(out, f, s);
+    }
+    out.push_str("}\n");
+}

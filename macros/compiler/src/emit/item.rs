@@ -1,0 +1,424 @@
+//! The whole output: struct, inherent functions, trait, frames.
+
+use super::docs::struct_docs;
+use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
+use super::function::{Argument, Function, Shape, Signature, write_function};
+use super::scalar::ScalarSpelling;
+use crate::syntax::{ScalarType, Shell};
+use proc_macro2::TokenStream;
+use quote::{ToTokens, quote};
+use std::fmt::Write;
+
+/// Names and types that the outside sees.
+pub struct Interface<'a> {
+    /// The struct.
+    pub shell: &'a Shell,
+    /// Its scalar type.
+    pub scalar: ScalarType,
+    /// Name of every entry of `q`.
+    pub configuration: Vec<String>,
+    /// Name of every entry of `v`.
+    pub velocities: Vec<String>,
+    /// Name of every entry of `u`.
+    pub inputs: Vec<String>,
+    /// Names of the frames.
+    pub frames: Vec<String>,
+    /// A file whose change asks for another expansion.
+    pub file: Option<String>,
+}
+
+/// What was derived.
+pub struct Output {
+    /// The generated functions.
+    pub functions: Vec<Function>,
+    /// Steps of the links.
+    pub links: Vec<LinkSteps>,
+    /// Steps of the frames.
+    pub frames: Vec<FrameSteps>,
+    /// First entries in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
+    pub charts: Vec<Chart>,
+    /// The equations of motion as text; empty for large mechanisms.
+    pub equations: String,
+}
+
+/// A part of the configuration space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chart {
+    /// A plain coordinate: entries of `q` and `v`.
+    Plain(usize, usize),
+    /// A ball's quaternion.
+    Ball(usize, usize),
+    /// A free joint's position and quaternion.
+    Free(usize, usize),
+}
+
+/// Methods of the trait that are inherent functions of the same name.
+const TRAIT_METHODS: [(&str, &[Argument]); 11] = [
+    ("neutral", &[]),
+    ("mass_matrix", &[Argument::Q]),
+    ("bias_forces", &[Argument::Q, Argument::V]),
+    ("inverse_dynamics", &[Argument::Q, Argument::V, Argument::A]),
+    ("forward_dynamics", &[Argument::Q, Argument::V, Argument::Tau]),
+    ("generalized_forces", &[Argument::Q, Argument::U]),
+    ("kinetic_energy", &[Argument::Q, Argument::V]),
+    ("potential_energy", &[Argument::Q]),
+    ("generalized_momentum", &[Argument::Q, Argument::V]),
+    ("momentum_rate", &[Argument::Q, Argument::V]),
+    ("difference", &[]),
+];
+
+const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
+
+/// Emits a mechanism that compiled.
+pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<TokenStream, String> {
+    let spelling = spelling(interface);
+    let s = signature(interface, &spelling);
+    let mut methods = String::new();
+    write_constants(&mut methods, interface);
+    for f in &output.functions {
+        write_function(&mut methods, f, &s, false);
+    }
+    write_manifold(&mut methods, &output.charts, &s);
+    write_frame_access(&mut methods, &s);
+    let placements = format!(
+        "[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]",
+        spelling.name(),
+        output.frames.len()
+    );
+    let _ = writeln!(
+        methods,
+        "/// Placements of all frames in the ground, in the order of `FRAMES`.\n#[inline]\n#[must_use]\npub fn frame_placements({}) -> {placements} {{",
+        s.parameters(&[Argument::Q])
+    );
+    write_all_placements(&mut methods, &output.links, &output.frames);
+    methods.push_str("}\n");
+    write_steps(&mut methods, &output.links, &output.frames, &s);
+    let mut frames = Vec::new();
+    for (k, frame) in output.frames.iter().enumerate() {
+        let mut text = String::new();
+        write_frame_impl(&mut text, k, frame, &output.links, &s);
+        frames.push(text);
+    }
+    assemble(interface, &s, &methods, &frames, &struct_docs(interface, output))
+}
+
+/// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
+pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> TokenStream {
+    let spelling = spelling(interface);
+    let s = signature(interface, &spelling);
+    let mut methods = String::new();
+    write_constants(&mut methods, interface);
+    for f in functions {
+        write_function(&mut methods, f, &s, true);
+    }
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(
+        methods,
+        "pub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ loop {{}} }}
+        pub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{ loop {{}} }}
+        pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}"
+    );
+    assemble(interface, &s, &methods, &[], "").unwrap_or_default()
+}
+
+fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
+    let fields = interface
+        .shell
+        .parameters
+        .iter()
+        .filter_map(|f| f.ident.as_ref().map(ToString::to_string));
+    ScalarSpelling::new(interface.scalar.clone(), fields.collect())
+}
+
+fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
+    Signature {
+        scalar,
+        nq: interface.configuration.len(),
+        nv: interface.velocities.len(),
+        nu: interface.inputs.len(),
+    }
+}
+
+fn write_constants(out: &mut String, i: &Interface<'_>) {
+    let numbers = [
+        ("NQ", i.configuration.len(), "configuration numbers"),
+        ("NV", i.velocities.len(), "velocities"),
+        ("NU", i.inputs.len(), "inputs"),
+    ];
+    for (name, value, what) in numbers {
+        let _ = writeln!(out, "/// Number of {what}.\npub const {name}: usize = {value};");
+    }
+    let lists = [
+        ("CONFIGURATION", &i.configuration, "every entry of `q`"),
+        ("VELOCITIES", &i.velocities, "every entry of `v`"),
+        ("INPUTS", &i.inputs, "every entry of `u`"),
+        ("FRAMES", &i.frames, "every frame"),
+    ];
+    for (name, names, what) in lists {
+        let _ = writeln!(
+            out,
+            "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};",
+            names.len()
+        );
+    }
+    out.push_str(
+        "/// Index in `FRAMES` of the frame with a name; `frame!` checks it at compile time.
+        #[must_use]
+        pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {
+            ::linkwork::__private::frame_index(&Self::FRAMES, name)
+        }\n",
+    );
+}
+
+/// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space.
+fn write_manifold(out: &mut String, charts: &[Chart], s: &Signature<'_>) {
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let range = |first: usize, n: usize, name: &str| {
+        let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
+        format!("[{}]", list.join(", "))
+    };
+    let bind = |name: &str, n: usize| match n {
+        0 => String::new(),
+        _ => format!("let [{}] = {name}.data.0;\n", range(0, n, name)),
+    };
+    let result = |name: &str, n: usize| {
+        format!(
+            "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))\n}}\n",
+            range(0, n, name)
+        )
+    };
+    let _ = writeln!(
+        out,
+        "/// `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.
+        #[inline]\n#[must_use]\npub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{"
+    );
+    out.push_str(&bind("q", s.nq));
+    out.push_str(&bind("dv", s.nv));
+    for chart in charts {
+        let _ = match *chart {
+            Chart::Plain(a, b) => writeln!(out, "let r{a} = q{a} + dv{b};"),
+            Chart::Ball(a, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::ball_integrate({}, {});",
+                range(a, 4, "r"),
+                range(a, 4, "q"),
+                range(b, 3, "dv")
+            ),
+            Chart::Free(a, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::free_integrate({}, {});",
+                range(a, 7, "r"),
+                range(a, 7, "q"),
+                range(b, 6, "dv")
+            ),
+        };
+    }
+    out.push_str(&result("r", s.nq));
+    let _ = writeln!(
+        out,
+        "/// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.
+        #[inline]\n#[must_use]\npub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{"
+    );
+    out.push_str(&bind("from", s.nq));
+    out.push_str(&bind("to", s.nq));
+    for chart in charts {
+        let _ = match *chart {
+            Chart::Plain(a, b) => writeln!(out, "let r{b} = to{a} - from{a};"),
+            Chart::Ball(a, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::ball_difference({}, {});",
+                range(b, 3, "r"),
+                range(a, 4, "from"),
+                range(a, 4, "to")
+            ),
+            Chart::Free(a, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::free_difference({}, {});",
+                range(b, 6, "r"),
+                range(a, 7, "from"),
+                range(a, 7, "to")
+            ),
+        };
+    }
+    out.push_str(&result("r", s.nv));
+    let _ = writeln!(
+        out,
+        "/// Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).
+        #[inline]\n#[must_use]\npub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{"
+    );
+    out.push_str(&bind("dv", s.nv));
+    out.push_str(&bind("v", s.nv));
+    for chart in charts {
+        let _ = match *chart {
+            Chart::Plain(_, b) => writeln!(out, "let r{b} = v{b};"),
+            Chart::Ball(_, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::ball_tangent_rate({}, {});",
+                range(b, 3, "r"),
+                range(b, 3, "dv"),
+                range(b, 3, "v")
+            ),
+            Chart::Free(_, b) => writeln!(
+                out,
+                "let {} = ::linkwork::__private::free_tangent_rate({}, {});",
+                range(b, 6, "r"),
+                range(b, 6, "dv"),
+                range(b, 6, "v")
+            ),
+        };
+    }
+    out.push_str(&result("r", s.nv));
+}
+
+/// Access to one frame: `frame!(Robot, "tool")` names it, and the compiler checks the name.
+fn write_frame_access(out: &mut String, s: &Signature<'_>) {
+    let scalar = s.scalar.name();
+    let bound = format!(
+        "where Self: ::linkwork::NamedFrame<I, {}, {}, Scalar = {scalar}>",
+        s.nq, s.nv
+    );
+    let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(
+        out,
+        "/// Placement of a frame in the ground: its axes and its origin.
+        #[inline]\n#[must_use]
+        pub fn frame_placement<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {bound} {{
+            ::linkwork::__private::placement(&::linkwork::NamedFrame::<I, {nq}, {nv}>::placement(self, q))
+        }}
+        /// Velocity of a frame: of its origin, then angular; relative to the ground, resolved in ground axes.
+        #[inline]\n#[must_use]
+        pub fn frame_velocity<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}, v: &{v}) -> {six} {bound} {{
+            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::twist(self, q, v))
+        }}
+        /// Acceleration of a frame: of its origin, then angular; relative to the ground, resolved in ground axes; without gravity.
+        #[inline]\n#[must_use]
+        pub fn frame_acceleration<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}, v: &{v}, a: &{v}) -> {six} {bound} {{
+            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::acceleration(self, q, v, a))
+        }}
+        /// Jacobian of a frame: `frame_velocity` is this times `v`.
+        #[inline]\n#[must_use]
+        pub fn frame_jacobian<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {bound} {{
+            ::linkwork::NamedFrame::<I, {nq}, {nv}>::jacobian(self, q)
+        }}",
+        nq = s.nq,
+        nv = s.nv,
+    );
+}
+
+fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
+    for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
+        let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
+    }
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    for (name, arguments) in TRAIT_METHODS.iter().filter(|(name, _)| *name != "difference") {
+        let result = match *name {
+            "neutral" => q.clone(),
+            "mass_matrix" => s.shape(Shape::Square(s.nv)),
+            "kinetic_energy" | "potential_energy" => s.scalar.name().to_string(),
+            _ => v.clone(),
+        };
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self{}{}) }}",
+            s.parameters(arguments),
+            if names.is_empty() { "" } else { ", " },
+            names.join(", ")
+        );
+    }
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
+        #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
+        #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
+    );
+    let _ = i;
+}
+
+/// Puts struct and implementations together.
+fn assemble(
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+    methods: &str,
+    frames: &[String],
+    docs: &str,
+) -> Result<TokenStream, String> {
+    let Shell {
+        attributes,
+        visibility,
+        ident,
+        parameters,
+        elements,
+        ..
+    } = i.shell;
+    let mut generics = i.shell.generics.clone();
+    let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();
+    let struct_generics = &i.shell.generics.params;
+    let struct_generics = if struct_generics.is_empty() {
+        quote!()
+    } else {
+        quote!(<#struct_generics>)
+    };
+    let fields = if parameters.is_empty() {
+        quote!(#struct_where;)
+    } else {
+        quote!(#struct_where { #(#parameters),* })
+    };
+    let docs = if docs.is_empty() {
+        quote!()
+    } else {
+        quote!(#[doc = #docs])
+    };
+    // The types of the elements, so that an editor explains them.
+    let words = elements.iter().map(|(_, kind)| kind);
+    let known = if frames.is_empty() {
+        quote!()
+    } else {
+        quote!(const _: () = { #(const _: ::core::option::Option<::linkwork::elements::#words> = ::core::option::Option::None;)* };)
+    };
+    let file = i.file.as_ref().map(|path| {
+        quote!(
+            const _: &[u8] = ::core::include_bytes!(#path);
+        )
+    });
+    let mut out = quote! {
+        #(#attributes)*
+        #docs
+        #visibility struct #ident #struct_generics #fields
+        #file
+        #known
+    };
+    if s.scalar.is_generic() {
+        let name: syn::Ident = syn::parse_str(s.scalar.name()).map_err(|e| e.to_string())?;
+        generics
+            .make_where_clause()
+            .predicates
+            .push(syn::parse_quote!(#name: ::linkwork::Real));
+    }
+    let (impl_generics, _, where_clause) = generics.split_for_impl();
+    let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
+    let target = format!("{}{}", ident, spell(&ty_generics));
+    let (impl_generics, where_clause) = (spell(&impl_generics), spell(&where_clause));
+    let mut text = format!("{ALLOW}impl{impl_generics} {target} {where_clause} {{\n{methods}}}\n");
+    let _ = writeln!(
+        text,
+        "{ALLOW}impl{impl_generics} ::linkwork::Mechanism<{}, {}, {}> for {target} {where_clause} {{",
+        s.nq, s.nv, s.nu
+    );
+    write_trait(&mut text, i, s);
+    text.push_str("}\n");
+    for (k, body) in frames.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{ALLOW}impl{impl_generics} ::linkwork::NamedFrame<{k}, {}, {}> for {target} {where_clause} {{\ntype Scalar = {};\n{body}}}",
+            s.nq,
+            s.nv,
+            s.scalar.name()
+        );
+    }
+    let tokens: TokenStream = text.parse().map_err(|e| format!("{e}"))?;
+    out.extend(tokens);
+    Ok(out)
+}

@@ -1,0 +1,12 @@
+//! Lowered programs → Rust: the struct without its elements, the generated functions with their documentation, and the
+//! implementation of the trait. Emission never simplifies.
+
+mod body;
+mod docs;
+pub mod frames;
+mod function;
+mod item;
+mod scalar;
+
+pub use function::{Argument, Function, Shape};
+pub use item::{Chart, Interface, Output, emit_failed, emit_mechanism};

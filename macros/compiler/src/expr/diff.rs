@@ -1,0 +1,102 @@
+//! Differentiation with respect to a symbol.
+
+use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
+
+/// Derivatives of expressions of one graph with respect to one symbol; what was computed once is kept.
+pub struct Derivative<'g> {
+    graph: &'g Graph,
+    symbol: Symbol,
+    /// By node; `None` where not yet known.
+    known: Vec<Option<Id>>,
+}
+
+impl<'g> Derivative<'g> {
+    /// Derivatives with respect to `symbol`.
+    pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
+        Derivative {
+            graph,
+            symbol,
+            known: Vec::new(),
+        }
+    }
+
+    /// The derivative of `e`.
+    pub fn of(&mut self, e: Expr<'g>) -> Expr<'g> {
+        self.known.resize(self.known.len().max(e.id() as usize + 1), None);
+        // Operands before operations, without recursion: a deep chain must not exhaust the stack.
+        let mut todo = vec![e.id()];
+        while let Some(&id) = todo.last() {
+            if self.known[id as usize].is_some() {
+                todo.pop();
+                continue;
+            }
+            let before = todo.len();
+            self.graph.node(id).operands(|a| {
+                if self.known[a as usize].is_none() {
+                    todo.push(a);
+                }
+            });
+            if todo.len() == before {
+                self.known[id as usize] = Some(self.rule(id).id());
+                todo.pop();
+            }
+        }
+        self.derived(e.id())
+    }
+
+    fn derived(&self, id: Id) -> Expr<'g> {
+        self.known[id as usize].map_or(self.graph.zero(), |d| self.graph.expr(d))
+    }
+
+    fn rule(&self, id: Id) -> Expr<'g> {
+        let at = |id: Id| self.graph.expr(id);
+        let d = |id: Id| self.derived(id);
+        match self.graph.node(id) {
+            Node::Const(_) => self.graph.zero(),
+            Node::Symbol(s) if s == self.symbol => self.graph.one(),
+            Node::Symbol(_) => self.graph.zero(),
+            Node::Neg(a) => -d(a),
+            Node::Add(a, b) => d(a) + d(b),
+            Node::Sub(a, b) => d(a) - d(b),
+            Node::Mul(a, b) => d(a) * at(b) + at(a) * d(b),
+            Node::Div(a, b) => (d(a) - at(id) * d(b)) / at(b),
+            Node::Call(f, a) if d(a).is_zero() => at(a).call(f).zero(),
+            Node::Call(f, a) => self.outer(f, at(a), at(id)) * d(a),
+            Node::Atan2(y, x) => (at(x) * d(y) - at(y) * d(x)) / (at(x).square() + at(y).square()),
+            Node::Pow(a, b) => {
+                let base = if d(a).is_zero() {
+                    self.graph.zero()
+                } else {
+                    at(b) * d(a) / at(a)
+                };
+                let exponent = if d(b).is_zero() {
+                    self.graph.zero()
+                } else {
+                    d(b) * at(a).call(Function::Ln)
+                };
+                at(id) * (base + exponent)
+            }
+        }
+    }
+
+    /// `f'(x)`, with `y = f(x)`.
+    fn outer(&self, f: Function, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
+        let one = self.graph.one();
+        match f {
+            Function::Sin => x.cos(),
+            Function::Cos => -x.sin(),
+            Function::Tan => one + y.square(),
+            Function::Asin => one / (one - x.square()).sqrt(),
+            Function::Acos => -(one / (one - x.square()).sqrt()),
+            Function::Atan => one / (one + x.square()),
+            Function::Sinh => x.call(Function::Cosh),
+            Function::Cosh => x.call(Function::Sinh),
+            Function::Tanh => one - y.square(),
+            Function::Exp => y,
+            Function::Ln => one / x,
+            Function::Sqrt => one / (y * 2.0),
+            Function::Abs => x.call(Function::Signum),
+            Function::Signum => self.graph.zero(),
+        }
+    }
+}

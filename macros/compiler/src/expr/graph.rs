@@ -1,0 +1,696 @@
+//! The graph: nodes are shared (structurally equal expressions have one id), and every constructor simplifies.
+//!
+//! Normal form, kept by the constructors: constants are folded; zero and one vanish; a minus sign is lifted out of
+//! products, quotients, differences and odd functions, and absorbed by sums, so that `a − b` and `b − a` share one
+//! node; the operands of commutative operations stand in order of their ids; a constant factor stands first and constants in a
+//! chain of factors are merged. Only rewrites that never cost an operation are made.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A node's index.
+pub type Id = u32;
+
+/// An input of an expression; what it stands for is known to whoever made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Symbol(pub u32);
+
+/// Elementary functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the names of the elementary functions say it all")]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Signum,
+}
+
+impl Function {
+    /// All of them, with the names they have in the language.
+    pub const ALL: [(&'static str, Function); 14] = [
+        ("sin", Function::Sin),
+        ("cos", Function::Cos),
+        ("tan", Function::Tan),
+        ("asin", Function::Asin),
+        ("acos", Function::Acos),
+        ("atan", Function::Atan),
+        ("sinh", Function::Sinh),
+        ("cosh", Function::Cosh),
+        ("tanh", Function::Tanh),
+        ("exp", Function::Exp),
+        ("ln", Function::Ln),
+        ("sqrt", Function::Sqrt),
+        ("abs", Function::Abs),
+        ("signum", Function::Signum),
+    ];
+
+    /// The name in the language and in generated code.
+    pub fn name(self) -> &'static str {
+        Function::ALL
+            .iter()
+            .find(|(_, f)| *f == self)
+            .map_or("?", |(name, _)| name)
+    }
+
+    /// The value at a number.
+    pub fn apply(self, x: f64) -> f64 {
+        match self {
+            Function::Sin => x.sin(),
+            Function::Cos => x.cos(),
+            Function::Tan => x.tan(),
+            Function::Asin => x.asin(),
+            Function::Acos => x.acos(),
+            Function::Atan => x.atan(),
+            Function::Sinh => x.sinh(),
+            Function::Cosh => x.cosh(),
+            Function::Tanh => x.tanh(),
+            Function::Exp => x.exp(),
+            Function::Ln => x.ln(),
+            Function::Sqrt => x.sqrt(),
+            Function::Abs => x.abs(),
+            Function::Signum => x.signum(),
+        }
+    }
+
+    fn is_odd(self) -> bool {
+        use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
+        matches!(self, Sin | Tan | Asin | Atan | Sinh | Tanh)
+    }
+
+    fn is_even(self) -> bool {
+        matches!(self, Function::Cos | Function::Cosh | Function::Abs)
+    }
+}
+
+/// A node of the graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Node {
+    /// A constant.
+    Const(f64),
+    /// An input.
+    Symbol(Symbol),
+    /// `-a`.
+    Neg(Id),
+    /// `a + b`.
+    Add(Id, Id),
+    /// `a - b`.
+    Sub(Id, Id),
+    /// `a * b`.
+    Mul(Id, Id),
+    /// `a / b`.
+    Div(Id, Id),
+    /// `f(a)`.
+    Call(Function, Id),
+    /// The angle of the point with ordinate `a` and abscissa `b`.
+    Atan2(Id, Id),
+    /// `a` to the power `b`.
+    Pow(Id, Id),
+}
+
+impl Node {
+    /// Calls `f` with every operand.
+    pub fn operands(self, mut f: impl FnMut(Id)) {
+        match self {
+            Node::Const(_) | Node::Symbol(_) => {}
+            Node::Neg(a) | Node::Call(_, a) => f(a),
+            Node::Add(a, b)
+            | Node::Sub(a, b)
+            | Node::Mul(a, b)
+            | Node::Div(a, b)
+            | Node::Atan2(a, b)
+            | Node::Pow(a, b) => {
+                f(a);
+                f(b);
+            }
+        }
+    }
+
+    fn hash(self) -> u64 {
+        let (tag, a, b): (u64, u64, u64) = match self {
+            Node::Const(c) => (1, c.to_bits(), 0),
+            Node::Symbol(s) => (2, s.0.into(), 0),
+            Node::Neg(a) => (3, a.into(), 0),
+            Node::Add(a, b) => (4, a.into(), b.into()),
+            Node::Sub(a, b) => (5, a.into(), b.into()),
+            Node::Mul(a, b) => (6, a.into(), b.into()),
+            Node::Div(a, b) => (7, a.into(), b.into()),
+            Node::Atan2(a, b) => (8, a.into(), b.into()),
+            Node::Pow(a, b) => (9, a.into(), b.into()),
+            Node::Call(f, a) => (10 + f as u64, a.into(), 0),
+        };
+        let mut h = (a ^ tag.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
+        h = (h ^ (h >> 32) ^ b.wrapping_mul(0xC4CE_B9FE_1A85_EC53)).wrapping_mul(0x9FB2_1C65_1E98_DF25);
+        h ^ (h >> 29)
+    }
+
+    fn same(self, other: Node) -> bool {
+        match (self, other) {
+            // Bits, so that a NaN is itself; the two zeros are one, see `constant`.
+            (Node::Const(a), Node::Const(b)) => a.to_bits() == b.to_bits(),
+            (a, b) => a == b,
+        }
+    }
+}
+
+struct Store {
+    nodes: Vec<Node>,
+    /// Open addressing, power of two, `EMPTY` where free.
+    table: Vec<Id>,
+}
+
+const EMPTY: Id = Id::MAX;
+
+impl Store {
+    fn intern(&mut self, node: Node) -> Id {
+        let mask = self.table.len() - 1;
+        let mut slot = node.hash() as usize & mask;
+        loop {
+            let id = self.table[slot];
+            if id == EMPTY {
+                break;
+            }
+            if self.nodes[id as usize].same(node) {
+                return id;
+            }
+            slot = (slot + 1) & mask;
+        }
+        let id = self.nodes.len() as Id;
+        self.nodes.push(node);
+        self.table[slot] = id;
+        if self.nodes.len() * 2 > self.table.len() {
+            self.grow();
+        }
+        id
+    }
+
+    fn grow(&mut self) {
+        let size = self.table.len() * 2;
+        self.table.clear();
+        self.table.resize(size, EMPTY);
+        for (id, node) in self.nodes.iter().enumerate() {
+            let mut slot = node.hash() as usize & (size - 1);
+            while self.table[slot] != EMPTY {
+                slot = (slot + 1) & (size - 1);
+            }
+            self.table[slot] = id as Id;
+        }
+    }
+}
+
+/// The owner of all expressions of a mechanism.
+pub struct Graph {
+    store: RefCell<Store>,
+}
+
+impl Default for Graph {
+    fn default() -> Graph {
+        Graph::new()
+    }
+}
+
+/// An expression: a node of a graph, with arithmetic.
+#[derive(Clone, Copy)]
+pub struct Expr<'g> {
+    graph: &'g Graph,
+    id: Id,
+}
+
+impl fmt::Debug for Graph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Graph of {} nodes", self.len())
+    }
+}
+
+impl PartialEq for Expr<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&super::print::plain(*self, &|s| format!("s{}", s.0)))
+    }
+}
+
+const ZERO: Id = 0;
+const ONE: Id = 1;
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Graph {
+        let mut store = Store {
+            nodes: Vec::new(),
+            table: vec![EMPTY; 1024],
+        };
+        store.intern(Node::Const(0.0));
+        store.intern(Node::Const(1.0));
+        Graph {
+            store: RefCell::new(store),
+        }
+    }
+
+    /// Number of nodes made so far.
+    pub fn len(&self) -> usize {
+        self.store.borrow().nodes.len()
+    }
+
+    /// Never true: zero and one are always there.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The node with an id.
+    pub fn node(&self, id: Id) -> Node {
+        self.store.borrow().nodes[id as usize]
+    }
+
+    /// A copy of all nodes, operands before operations.
+    pub fn nodes(&self) -> Vec<Node> {
+        self.store.borrow().nodes.clone()
+    }
+
+    /// The expression with an id.
+    pub fn expr(&self, id: Id) -> Expr<'_> {
+        Expr { graph: self, id }
+    }
+
+    /// A constant.
+    pub fn num(&self, value: f64) -> Expr<'_> {
+        self.expr(self.constant(value))
+    }
+
+    /// Zero.
+    pub fn zero(&self) -> Expr<'_> {
+        self.expr(ZERO)
+    }
+
+    /// One.
+    pub fn one(&self) -> Expr<'_> {
+        self.expr(ONE)
+    }
+
+    /// An input.
+    pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
+        self.expr(self.intern(Node::Symbol(symbol)))
+    }
+
+    fn intern(&self, node: Node) -> Id {
+        self.store.borrow_mut().intern(node)
+    }
+
+    fn constant(&self, value: f64) -> Id {
+        // Minus zero is zero: the sign of zero carries no meaning here.
+        self.intern(Node::Const(if value == 0.0 { 0.0 } else { value }))
+    }
+
+    fn value(&self, id: Id) -> Option<f64> {
+        match self.node(id) {
+            Node::Const(c) => Some(c),
+            _ => None,
+        }
+    }
+
+    /// `±a` without its sign: the sign is kept apart so that it can be lifted.
+    fn unsigned(&self, id: Id) -> (bool, Id) {
+        match self.node(id) {
+            Node::Neg(a) => (true, a),
+            Node::Const(c) if c < 0.0 => (true, self.constant(-c)),
+            _ => (false, id),
+        }
+    }
+
+    fn signed(&self, negative: bool, id: Id) -> Id {
+        if negative { self.neg(id) } else { id }
+    }
+
+    fn neg(&self, a: Id) -> Id {
+        match self.node(a) {
+            Node::Const(c) => self.constant(-c),
+            Node::Neg(a) => a,
+            _ => self.intern(Node::Neg(a)),
+        }
+    }
+
+    fn add(&self, a: Id, b: Id) -> Id {
+        if a == ZERO {
+            return b;
+        }
+        if b == ZERO {
+            return a;
+        }
+        if let (Some(x), Some(y)) = (self.value(a), self.value(b)) {
+            return self.constant(x + y);
+        }
+        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
+        match (na, nb) {
+            (false, false) => self.plain_sum(a, b),
+            (true, true) => self.neg(self.plain_sum(a, b)),
+            (false, true) => self.difference(a, b),
+            (true, false) => self.difference(b, a),
+        }
+    }
+
+    fn plain_sum(&self, a: Id, b: Id) -> Id {
+        if a == b {
+            return self.mul(self.constant(2.0), a);
+        }
+        // (x - b) + b = x
+        if let Node::Sub(x, y) = self.node(a)
+            && y == b
+        {
+            return x;
+        }
+        if let Node::Sub(x, y) = self.node(b)
+            && y == a
+        {
+            return x;
+        }
+        self.intern(Node::Add(a.min(b), a.max(b)))
+    }
+
+    fn difference(&self, a: Id, b: Id) -> Id {
+        if a == b {
+            return ZERO;
+        }
+        // (x + b) - b = x and (x - c) - x = -c, so that what was added can be taken away again.
+        match self.node(a) {
+            Node::Add(x, y) if y == b => return x,
+            Node::Add(x, y) if x == b => return y,
+            Node::Sub(x, y) if x == b => return self.neg(y),
+            _ => {}
+        }
+        match self.node(b) {
+            Node::Add(x, y) if y == a => return self.neg(x),
+            Node::Add(x, y) if x == a => return self.neg(y),
+            Node::Sub(x, y) if x == a => return y,
+            _ => {}
+        }
+        // One order for both signs, so that `a − b` and `b − a` share.
+        if a < b {
+            self.intern(Node::Sub(a, b))
+        } else {
+            self.neg(self.intern(Node::Sub(b, a)))
+        }
+    }
+
+    fn sub(&self, a: Id, b: Id) -> Id {
+        self.add(a, self.neg(b))
+    }
+
+    fn mul(&self, a: Id, b: Id) -> Id {
+        if a == ZERO || b == ZERO {
+            return ZERO;
+        }
+        if a == ONE {
+            return b;
+        }
+        if b == ONE {
+            return a;
+        }
+        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
+        self.signed(na != nb, self.plain_product(a, b))
+    }
+
+    /// The product of two operands without signs.
+    fn plain_product(&self, a: Id, b: Id) -> Id {
+        match (self.value(a), self.value(b)) {
+            (Some(x), Some(y)) => self.constant(x * y),
+            (Some(x), None) => self.scaled(x, a, b),
+            (None, Some(y)) => self.scaled(y, b, a),
+            (None, None) => self.variable_product(a, b),
+        }
+    }
+
+    /// A constant (its value and id, positive) times something that is not constant.
+    fn scaled(&self, c: f64, c_id: Id, b: Id) -> Id {
+        if c == 1.0 {
+            return b;
+        }
+        match self.node(b) {
+            Node::Mul(x, y) => {
+                if let Some(d) = self.value(x) {
+                    return self.mul(self.constant(c * d), y);
+                }
+            }
+            Node::Div(x, y) => {
+                if let Some(d) = self.value(x) {
+                    return self.intern(Node::Div(self.constant(c * d), y));
+                }
+                if let Some(d) = self.value(y) {
+                    return self.mul(self.constant(c / d), x);
+                }
+            }
+            _ => {}
+        }
+        self.intern(Node::Mul(c_id, b))
+    }
+
+    fn variable_product(&self, a: Id, b: Id) -> Id {
+        // Constants are carried to the front, where they meet others.
+        if let Node::Mul(x, y) = self.node(a)
+            && self.value(x).is_some()
+        {
+            return self.mul(x, self.mul(y, b));
+        }
+        if let Node::Mul(x, y) = self.node(b)
+            && self.value(x).is_some()
+        {
+            return self.mul(x, self.mul(a, y));
+        }
+        self.intern(Node::Mul(a.min(b), a.max(b)))
+    }
+
+    fn div(&self, a: Id, b: Id) -> Id {
+        if a == ZERO && b != ZERO {
+            return ZERO;
+        }
+        if b == ONE {
+            return a;
+        }
+        if a == b && b != ZERO {
+            return ONE;
+        }
+        if let (Some(x), Some(y)) = (self.value(a), self.value(b)) {
+            return self.constant(x / y);
+        }
+        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
+        let magnitude = match self.value(b) {
+            // A division by a constant is a product; exact for powers of two, else within half an ulp.
+            Some(y) if y != 0.0 && (1.0 / y).is_finite() => self.mul(self.constant(1.0 / y), a),
+            _ => self.intern(Node::Div(a, b)),
+        };
+        self.signed(na != nb, magnitude)
+    }
+
+    fn call(&self, f: Function, a: Id) -> Id {
+        if let Some(x) = self.value(a) {
+            let y = f.apply(x);
+            if y.is_finite() {
+                return self.constant(y);
+            }
+        }
+        if f.is_odd() || f.is_even() {
+            let (negative, a) = self.unsigned(a);
+            return self.signed(f.is_odd() && negative, self.intern(Node::Call(f, a)));
+        }
+        self.intern(Node::Call(f, a))
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// Its node's index.
+    pub fn id(self) -> Id {
+        self.id
+    }
+
+    /// The graph that owns it.
+    pub fn graph(self) -> &'g Graph {
+        self.graph
+    }
+
+    /// Its node.
+    pub fn node(self) -> Node {
+        self.graph.node(self.id)
+    }
+
+    /// Its value, if it is a constant.
+    pub fn value(self) -> Option<f64> {
+        self.graph.value(self.id)
+    }
+
+    /// True for the constant zero.
+    pub fn is_zero(self) -> bool {
+        self.id == ZERO
+    }
+
+    /// A number in the same graph.
+    pub fn num(self, value: f64) -> Expr<'g> {
+        self.graph.num(value)
+    }
+
+    /// Zero in the same graph.
+    pub fn zero(self) -> Expr<'g> {
+        self.graph.zero()
+    }
+
+    /// An elementary function of it.
+    pub fn call(self, f: Function) -> Expr<'g> {
+        self.graph.expr(self.graph.call(f, self.id))
+    }
+
+    /// Sine.
+    pub fn sin(self) -> Expr<'g> {
+        self.call(Function::Sin)
+    }
+
+    /// Cosine.
+    pub fn cos(self) -> Expr<'g> {
+        self.call(Function::Cos)
+    }
+
+    /// Square root.
+    pub fn sqrt(self) -> Expr<'g> {
+        self.call(Function::Sqrt)
+    }
+
+    /// The angle of the point (`abscissa`, `self`).
+    pub fn atan2(self, abscissa: Expr<'g>) -> Expr<'g> {
+        if let (Some(y), Some(x)) = (self.value(), abscissa.value()) {
+            return self.num(y.atan2(x));
+        }
+        self.graph
+            .expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
+    }
+
+    /// A power; small whole exponents become products.
+    pub fn pow(self, exponent: Expr<'g>) -> Expr<'g> {
+        match (self.value(), exponent.value()) {
+            (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
+            (_, Some(n)) if n == n.trunc() && n.abs() <= 8.0 => {
+                let product = (0..n.abs() as u32).fold(self.graph.one(), |p, _| p * self);
+                if n < 0.0 {
+                    self.graph.one() / product
+                } else {
+                    product
+                }
+            }
+            (_, Some(0.5)) => self.sqrt(),
+            _ => self
+                .graph
+                .expr(self.graph.intern(Node::Pow(self.id, exponent.id))),
+        }
+    }
+
+    /// Its square.
+    pub fn square(self) -> Expr<'g> {
+        self * self
+    }
+}
+
+impl<'g> Add for Expr<'g> {
+    type Output = Expr<'g>;
+    fn add(self, b: Expr<'g>) -> Expr<'g> {
+        self.graph.expr(self.graph.add(self.id, b.id))
+    }
+}
+
+impl<'g> Sub for Expr<'g> {
+    type Output = Expr<'g>;
+    fn sub(self, b: Expr<'g>) -> Expr<'g> {
+        self.graph.expr(self.graph.sub(self.id, b.id))
+    }
+}
+
+impl<'g> Mul for Expr<'g> {
+    type Output = Expr<'g>;
+    fn mul(self, b: Expr<'g>) -> Expr<'g> {
+        self.graph.expr(self.graph.mul(self.id, b.id))
+    }
+}
+
+impl<'g> Mul<f64> for Expr<'g> {
+    type Output = Expr<'g>;
+    fn mul(self, b: f64) -> Expr<'g> {
+        self * self.num(b)
+    }
+}
+
+impl<'g> Div for Expr<'g> {
+    type Output = Expr<'g>;
+    fn div(self, b: Expr<'g>) -> Expr<'g> {
+        self.graph.expr(self.graph.div(self.id, b.id))
+    }
+}
+
+impl<'g> Neg for Expr<'g> {
+    type Output = Expr<'g>;
+    fn neg(self) -> Expr<'g> {
+        self.graph.expr(self.graph.neg(self.id))
+    }
+}
+
+impl<'g> AddAssign for Expr<'g> {
+    fn add_assign(&mut self, b: Expr<'g>) {
+        *self = *self + b;
+    }
+}
+
+impl<'g> SubAssign for Expr<'g> {
+    fn sub_assign(&mut self, b: Expr<'g>) {
+        *self = *self - b;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_ones_and_constants_fold() {
+        let g = Graph::new();
+        let x = g.symbol(Symbol(0));
+        assert_eq!(x * g.zero(), g.zero());
+        assert_eq!(x * g.one(), x);
+        assert_eq!(x + g.zero(), x);
+        assert_eq!(x - x, g.zero());
+        assert_eq!(x / x, g.one());
+        assert_eq!((g.num(2.0) * x) * g.num(3.0), g.num(6.0) * x);
+        assert_eq!(x / g.num(4.0), g.num(0.25) * x);
+        assert_eq!(x + x, g.num(2.0) * x);
+        assert_eq!(g.num(0.0).sin(), g.zero());
+    }
+
+    #[test]
+    fn signs_are_lifted_so_that_opposite_expressions_share() {
+        let g = Graph::new();
+        let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
+        assert_eq!((-x) * y, -(x * y));
+        assert_eq!((-x) + (-y), -(x + y));
+        assert_eq!(x - y, -(y - x));
+        assert_eq!((x - y) * z, -((y - x) * z));
+        assert_eq!((-x).sin(), -x.sin());
+        assert_eq!((y - x).cos(), (x - y).cos());
+        assert_eq!(g.num(-3.0) * x, -(g.num(3.0) * x));
+    }
+
+    #[test]
+    fn what_was_added_can_be_taken_away() {
+        let g = Graph::new();
+        let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
+        assert_eq!((x + y) - y, x);
+        assert_eq!((x - y) + y, x);
+        assert_eq!(x - (x - y), y);
+    }
+}

@@ -1,0 +1,270 @@
+//! Vectors and matrices of three dimensions over expressions.
+
+use super::graph::{Expr, Graph};
+use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
+
+/// Three components.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vec3<'g>(pub [Expr<'g>; 3]);
+
+impl<'g> Vec3<'g> {
+    /// The zero vector.
+    pub fn zero(g: &'g Graph) -> Vec3<'g> {
+        Vec3([g.zero(); 3])
+    }
+
+    /// The unit vector along coordinate axis `k`.
+    pub fn axis(g: &'g Graph, k: usize) -> Vec3<'g> {
+        Vec3(std::array::from_fn(|i| if i == k { g.one() } else { g.zero() }))
+    }
+
+    /// A vector of numbers.
+    pub fn numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
+        Vec3(v.map(|c| g.num(c)))
+    }
+
+    /// All components with a function applied.
+    pub fn map(self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
+        Vec3(self.0.map(f))
+    }
+
+    /// True if every component is the constant zero.
+    pub fn is_zero(self) -> bool {
+        self.0.iter().all(|c| c.is_zero())
+    }
+
+    /// The numbers, if every component is one.
+    pub fn values(self) -> Option<[f64; 3]> {
+        Some([self.0[0].value()?, self.0[1].value()?, self.0[2].value()?])
+    }
+
+    /// Scalar product.
+    pub fn dot(self, b: Vec3<'g>) -> Expr<'g> {
+        self.0[0] * b.0[0] + self.0[1] * b.0[1] + self.0[2] * b.0[2]
+    }
+
+    /// Vector product.
+    pub fn cross(self, b: Vec3<'g>) -> Vec3<'g> {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, b.0);
+        Vec3([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    }
+
+    /// Length.
+    pub fn norm(self) -> Expr<'g> {
+        self.dot(self).sqrt()
+    }
+}
+
+impl<'g> Index<usize> for Vec3<'g> {
+    type Output = Expr<'g>;
+    fn index(&self, k: usize) -> &Expr<'g> {
+        &self.0[k]
+    }
+}
+
+impl<'g> Add for Vec3<'g> {
+    type Output = Vec3<'g>;
+    fn add(self, b: Vec3<'g>) -> Vec3<'g> {
+        Vec3([self[0] + b[0], self[1] + b[1], self[2] + b[2]])
+    }
+}
+
+impl<'g> Sub for Vec3<'g> {
+    type Output = Vec3<'g>;
+    fn sub(self, b: Vec3<'g>) -> Vec3<'g> {
+        Vec3([self[0] - b[0], self[1] - b[1], self[2] - b[2]])
+    }
+}
+
+impl<'g> Neg for Vec3<'g> {
+    type Output = Vec3<'g>;
+    fn neg(self) -> Vec3<'g> {
+        self.map(|c| -c)
+    }
+}
+
+impl<'g> Mul<Expr<'g>> for Vec3<'g> {
+    type Output = Vec3<'g>;
+    fn mul(self, s: Expr<'g>) -> Vec3<'g> {
+        self.map(|c| s * c)
+    }
+}
+
+impl<'g> AddAssign for Vec3<'g> {
+    fn add_assign(&mut self, b: Vec3<'g>) {
+        *self = *self + b;
+    }
+}
+
+impl<'g> SubAssign for Vec3<'g> {
+    fn sub_assign(&mut self, b: Vec3<'g>) {
+        *self = *self - b;
+    }
+}
+
+/// A 3×3 matrix by rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mat3<'g>(pub [[Expr<'g>; 3]; 3]);
+
+impl<'g> Mat3<'g> {
+    /// Zero.
+    pub fn zero(g: &'g Graph) -> Mat3<'g> {
+        Mat3([[g.zero(); 3]; 3])
+    }
+
+    /// The unit matrix.
+    pub fn identity(g: &'g Graph) -> Mat3<'g> {
+        Mat3(std::array::from_fn(|i| Vec3::axis(g, i).0))
+    }
+
+    /// A matrix from its entries.
+    pub fn from_fn(mut f: impl FnMut(usize, usize) -> Expr<'g>) -> Mat3<'g> {
+        Mat3(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
+    }
+
+    /// `[a]×`, so that `[a]× b = a × b`.
+    pub fn skew(a: Vec3<'g>) -> Mat3<'g> {
+        let ([x, y, z], o) = (a.0, a[0].zero());
+        Mat3([[o, -z, y], [z, o, -x], [-y, x, o]])
+    }
+
+    /// Row `i`.
+    pub fn row(&self, i: usize) -> Vec3<'g> {
+        Vec3(self.0[i])
+    }
+
+    /// Column `j`.
+    pub fn column(&self, j: usize) -> Vec3<'g> {
+        Vec3([self.0[0][j], self.0[1][j], self.0[2][j]])
+    }
+
+    /// The transpose.
+    pub fn transpose(self) -> Mat3<'g> {
+        Mat3::from_fn(|i, j| self.0[j][i])
+    }
+
+    /// The numbers, if every entry is one.
+    pub fn values(self) -> Option<[[f64; 3]; 3]> {
+        let mut out = [[0.0; 3]; 3];
+        for i in 0..3 {
+            out[i] = self.row(i).values()?;
+        }
+        Some(out)
+    }
+}
+
+impl<'g> Add for Mat3<'g> {
+    type Output = Mat3<'g>;
+    fn add(self, b: Mat3<'g>) -> Mat3<'g> {
+        Mat3::from_fn(|i, j| self.0[i][j] + b.0[i][j])
+    }
+}
+
+impl<'g> Sub for Mat3<'g> {
+    type Output = Mat3<'g>;
+    fn sub(self, b: Mat3<'g>) -> Mat3<'g> {
+        Mat3::from_fn(|i, j| self.0[i][j] - b.0[i][j])
+    }
+}
+
+impl<'g> Mul for Mat3<'g> {
+    type Output = Mat3<'g>;
+    fn mul(self, b: Mat3<'g>) -> Mat3<'g> {
+        Mat3::from_fn(|i, j| self.row(i).dot(b.column(j)))
+    }
+}
+
+impl<'g> Mul<Vec3<'g>> for Mat3<'g> {
+    type Output = Vec3<'g>;
+    fn mul(self, v: Vec3<'g>) -> Vec3<'g> {
+        Vec3([self.row(0).dot(v), self.row(1).dot(v), self.row(2).dot(v)])
+    }
+}
+
+/// A symmetric 3×3 matrix: xx, yy, zz, xy, xz, yz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sym3<'g> {
+    /// Diagonal entries.
+    pub diagonal: [Expr<'g>; 3],
+    /// Entries xy, xz, yz.
+    pub off: [Expr<'g>; 3],
+}
+
+impl<'g> Sym3<'g> {
+    /// Zero.
+    pub fn zero(g: &'g Graph) -> Sym3<'g> {
+        Sym3 {
+            diagonal: [g.zero(); 3],
+            off: [g.zero(); 3],
+        }
+    }
+
+    /// A multiple of the unit matrix.
+    pub fn scalar(s: Expr<'g>) -> Sym3<'g> {
+        Sym3 {
+            diagonal: [s; 3],
+            off: [s.zero(); 3],
+        }
+    }
+
+    /// The symmetric matrix with the upper triangle of `m`.
+    pub fn from_upper(m: &Mat3<'g>) -> Sym3<'g> {
+        let m = &m.0;
+        Sym3 {
+            diagonal: [m[0][0], m[1][1], m[2][2]],
+            off: [m[0][1], m[0][2], m[1][2]],
+        }
+    }
+
+    /// Entry (i, j).
+    pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
+        if i == j {
+            self.diagonal[i]
+        } else {
+            self.off[i + j - 1]
+        }
+    }
+
+    /// All nine entries.
+    pub fn full(&self) -> Mat3<'g> {
+        Mat3::from_fn(|i, j| self.at(i, j))
+    }
+
+    /// `s (|a|² 1 − a aᵀ)`: what a mass `s` at `a` adds to an inertia.
+    pub fn point(s: Expr<'g>, a: Vec3<'g>) -> Sym3<'g> {
+        let [x, y, z] = a.0;
+        let (sx, sy, sz) = (s * x, s * y, s * z);
+        let (xx, yy, zz) = (sx * x, sy * y, sz * z);
+        Sym3 {
+            diagonal: [yy + zz, xx + zz, xx + yy],
+            off: [-(sx * y), -(sx * z), -(sy * z)],
+        }
+    }
+}
+
+impl<'g> Add for Sym3<'g> {
+    type Output = Sym3<'g>;
+    fn add(self, b: Sym3<'g>) -> Sym3<'g> {
+        Sym3 {
+            diagonal: std::array::from_fn(|k| self.diagonal[k] + b.diagonal[k]),
+            off: std::array::from_fn(|k| self.off[k] + b.off[k]),
+        }
+    }
+}
+
+impl<'g> Sub for Sym3<'g> {
+    type Output = Sym3<'g>;
+    fn sub(self, b: Sym3<'g>) -> Sym3<'g> {
+        Sym3 {
+            diagonal: std::array::from_fn(|k| self.diagonal[k] - b.diagonal[k]),
+            off: std::array::from_fn(|k| self.off[k] - b.off[k]),
+        }
+    }
+}
+
+impl<'g> Mul<Vec3<'g>> for Sym3<'g> {
+    type Output = Vec3<'g>;
+    fn mul(self, v: Vec3<'g>) -> Vec3<'g> {
+        self.full() * v
+    }
+}

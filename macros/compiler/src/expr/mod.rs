@@ -1,0 +1,14 @@
+//! The symbolic kernel: a hash-consed graph of scalar expressions that simplifies at construction, with
+//! differentiation, evaluation and printing. Knows no mechanics.
+
+pub mod diff;
+pub mod eval;
+pub mod graph;
+pub mod matrix;
+pub mod polynomial;
+pub mod print;
+pub mod rotation;
+
+pub use graph::{Expr, Function, Graph, Id, Node, Symbol};
+pub use matrix::{Mat3, Sym3, Vec3};
+pub use rotation::Rotation;

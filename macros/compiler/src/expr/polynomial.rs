@@ -1,0 +1,1 @@
+//! Polynomial normal form over atoms, for reading.

@@ -1,0 +1,137 @@
+//! Byte offsets of an imported file → [`Place`]s, and the file's mistakes → [`Diagnostics`].
+//! Knows no file format.
+
+use crate::diag::{Diagnostic, Diagnostics, FilePosition, Place};
+use crate::syntax::Name;
+use proc_macro2::Span;
+use std::rc::Rc;
+
+/// Mistakes of one file that are reported; a file that is not what it claims to be has thousands.
+const MISTAKES_SHOWN: usize = 32;
+
+/// Bytes from one known position to the next.
+const BLOCK: usize = 256;
+
+/// One file's positions, and its mistakes so far.
+pub(super) struct Cx<'a> {
+    text: &'a str,
+    path: Rc<str>,
+    span: Span,
+    /// Line and column at the start of every block: without them, each place would cost a pass over the file.
+    blocks: Vec<(u32, u32)>,
+    diagnostics: &'a mut Diagnostics,
+    mistakes: usize,
+}
+
+impl<'a> Cx<'a> {
+    /// The context of the file `text`, named by `path`.
+    pub(super) fn new(text: &'a str, path: &Name, diagnostics: &'a mut Diagnostics) -> Cx<'a> {
+        let mut blocks = vec![(1, 1)];
+        let mut position = (1, 1);
+        for block in text.as_bytes().chunks(BLOCK) {
+            position = block.iter().fold(position, advance);
+            blocks.push(position);
+        }
+        let (path, span) = (Rc::from(path.text.as_str()), path.place.span);
+        Cx {
+            text,
+            path,
+            span,
+            blocks,
+            diagnostics,
+            mistakes: 0,
+        }
+    }
+
+    /// The place of the byte at `offset`.
+    pub(super) fn place(&self, offset: usize) -> Place {
+        let offset = offset.min(self.text.len());
+        let block = offset / BLOCK;
+        let start = self.blocks.get(block).copied().unwrap_or((1, 1));
+        let (line, column) = self.text.as_bytes()[block * BLOCK..offset]
+            .iter()
+            .fold(start, advance);
+        self.place_at(line, column)
+    }
+
+    /// The place at a line and a column, both from one.
+    pub(super) fn place_at(&self, line: u32, column: u32) -> Place {
+        let file = Some(FilePosition {
+            file: self.path.clone(),
+            line,
+            column,
+        });
+        Place {
+            span: self.span,
+            file,
+        }
+    }
+
+    /// The place of the end of the file.
+    pub(super) fn end(&self) -> Place {
+        self.place(self.text.len())
+    }
+
+    /// The bytes of a range, if they are whole characters.
+    pub(super) fn slice(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
+        self.text.get(range)
+    }
+
+    /// Reports a mistake; `mend` adds the help.
+    pub(super) fn error(
+        &mut self,
+        place: &Place,
+        message: impl Into<String>,
+        mend: impl FnOnce(&mut Diagnostic) -> &mut Diagnostic,
+    ) {
+        self.mistakes += 1;
+        if self.mistakes <= MISTAKES_SHOWN {
+            mend(self.diagnostics.error(place.clone(), message));
+        } else if self.mistakes == MISTAKES_SHOWN + 1 {
+            let message = format!(
+                "`{}` has more mistakes; these are the first {MISTAKES_SHOWN}",
+                self.path
+            );
+            self.diagnostics.error(self.span, message);
+        }
+    }
+
+    /// True if this file had a mistake.
+    pub(super) fn failed(&self) -> bool {
+        self.mistakes > 0
+    }
+}
+
+/// The position behind a byte: columns count characters, as editors do.
+fn advance((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
+    match byte {
+        b'\n' => (line + 1, 1),
+        0x80..=0xBF => (line, column),
+        _ => (line, column + 1),
+    }
+}
+
+/// The user's word in backticks, shortened if it is no word.
+pub(super) fn quote(word: &str) -> String {
+    match word.char_indices().nth(60) {
+        Some((end, _)) => format!("`{}…`", &word[..end]),
+        None => format!("`{word}`"),
+    }
+}
+
+/// The first of many words, each in backticks.
+pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
+    let mut list: Vec<String> = words.take(9).map(quote).collect();
+    if list.len() == 9 {
+        list[8] = "…".to_string();
+    }
+    list.join(", ")
+}
+
+/// `file:line:column` of a place, for the help of another one.
+pub(super) fn position(place: &Place) -> String {
+    match &place.file {
+        Some(at) => format!("{}:{}:{}", at.file, at.line, at.column),
+        None => "this attribute".to_string(),
+    }
+}

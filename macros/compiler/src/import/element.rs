@@ -1,0 +1,194 @@
+//! One XML element → its children, numbers and names, each checked and with its place.
+//! Knows no particular element.
+
+use super::Placed;
+use super::context::{Cx, position, quote, quote_all};
+use crate::diag::{Place, nearest};
+use crate::syntax::Name;
+
+/// An element of the file.
+pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
+
+/// The place of an element.
+pub(super) fn place(node: Node<'_>, cx: &Cx<'_>) -> Place {
+    cx.place(node.range().start)
+}
+
+/// `<name>` of an element, in backticks.
+pub(super) fn tag(node: Node<'_>) -> String {
+    quote(&format!("<{}>", node.tag_name().name()))
+}
+
+/// The child elements of the file's own vocabulary; those with another prefix are extensions.
+pub(super) fn elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+    let namespace = node.tag_name().namespace();
+    node.children()
+        .filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
+}
+
+/// The child elements named in `known`, at most one of each. Others are ignored, unless they look like
+/// a slip of the hand: ignoring `<inertal>` would silently take a body's mass away.
+pub(super) fn children<'a, const N: usize>(
+    node: Node<'a>,
+    known: [&str; N],
+    cx: &mut Cx<'_>,
+) -> [Option<Node<'a>>; N] {
+    let mut found = [None; N];
+    for child in elements(node) {
+        let name = child.tag_name().name();
+        match known.iter().position(|k| *k == name) {
+            Some(k) if found[k].is_none() => found[k] = Some(child),
+            Some(k) => report_second(child, found[k], cx),
+            None => check_element_name(child, &known, cx),
+        }
+    }
+    found
+}
+
+fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
+    let first = first.map(|node| position(&place(node, cx))).unwrap_or_default();
+    let message = format!("second {} of one element", tag(child));
+    cx.error(&place(child, cx), message, |d| {
+        d.help(format!("the first is at {first}"))
+    });
+}
+
+/// Reports an element whose name is nearly one of `known`.
+pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+    if let Some(best) = nearest(node.tag_name().name(), known) {
+        let help = format!("did you mean `<{best}>`?");
+        cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| {
+            d.help(help)
+        });
+    }
+}
+
+/// Reports the required attributes that are missing, and attributes that look like a misspelt one.
+/// One mistake for both: the misspelt attribute is the missing one.
+pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
+    let mut missing: Vec<&str> = required
+        .iter()
+        .copied()
+        .filter(|name| !node.has_attribute(*name))
+        .collect();
+    let known = |name: &str| required.contains(&name) || optional.contains(&name);
+    for attribute in node
+        .attributes()
+        .filter(|a| a.namespace().is_none() && !known(a.name()))
+    {
+        let absent = optional.iter().copied().filter(|name| !node.has_attribute(*name));
+        let candidates: Vec<&str> = missing.iter().copied().chain(absent).collect();
+        if let Some(best) = nearest(attribute.name(), &candidates) {
+            missing.retain(|name| *name != best);
+            let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
+            let place = cx.place(attribute.range().start);
+            cx.error(&place, message, |d| d.help(format!("did you mean `{best}`?")));
+        }
+    }
+    if !missing.is_empty() {
+        let message = format!("{} without {}", tag(node), quote_all(missing.into_iter()));
+        let help = expected(node.tag_name().name(), required);
+        cx.error(&place(node, cx), message, |d| d.help(help));
+    }
+}
+
+fn expected(element: &str, attributes: &[&str]) -> String {
+    let attributes: String = attributes.iter().map(|name| format!(" {name}=\"…\"")).collect();
+    format!("expected `<{element}{attributes}/>`")
+}
+
+/// The child `element` of `node`, which must be there; `attributes` are those of the child.
+pub(super) fn required<'a>(
+    child: Option<Node<'a>>,
+    node: Node<'_>,
+    element: &str,
+    attributes: &[&str],
+    cx: &mut Cx<'_>,
+) -> Option<Node<'a>> {
+    if child.is_none() {
+        let message = format!("{} without `<{element}>`", tag(node));
+        cx.error(&place(node, cx), message, |d| {
+            d.help(expected(element, attributes))
+        });
+    }
+    child
+}
+
+/// A name, if the attribute is there; an empty one is a mistake.
+pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
+    let found = node.attribute_node(attribute)?;
+    let (text, place) = (found.value().to_string(), cx.place(found.range_value().start));
+    if text.trim().is_empty() {
+        cx.error(&place, format!("empty `{attribute}` of {}", tag(node)), |d| d);
+        return None;
+    }
+    Some(Name { text, place })
+}
+
+/// A finite number, if the attribute is there and holds one.
+pub(super) fn number(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+    let Placed {
+        value: [value],
+        place,
+    } = numbers(node, attribute, cx)?;
+    Some(Placed { value, place })
+}
+
+/// Finite numbers with spaces between them, if the attribute is there and holds as many.
+pub(super) fn numbers<const N: usize>(
+    node: Node<'_>,
+    attribute: &str,
+    cx: &mut Cx<'_>,
+) -> Option<Placed<[f64; N]>> {
+    let found = node.attribute_node(attribute)?;
+    let (text, start) = (found.value(), found.range_value().start);
+    let place = cx.place(start);
+    let count = text.split_ascii_whitespace().count();
+    if count != N {
+        let expected = if N == 1 {
+            "a number".to_string()
+        } else {
+            format!("{N} numbers")
+        };
+        let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
+        cx.error(&place, message, |d| {
+            if text.contains(',') { d.help(SEPARATE) } else { d }
+        });
+        return None;
+    }
+    // References (`&#32;`) in the value move its words away from their places in the file.
+    let verbatim = cx.slice(found.range_value()) == Some(text);
+    let mut value = [0.0; N];
+    let mut good = true;
+    for (k, word) in text.split_ascii_whitespace().enumerate() {
+        let offset = if verbatim {
+            word.as_ptr() as usize - text.as_ptr() as usize
+        } else {
+            0
+        };
+        match word.parse::<f64>() {
+            // Adding zero turns −0 into 0.
+            Ok(number) if number.is_finite() => value[k] = number + 0.0,
+            Ok(_) => {
+                good = false;
+                cx.error(
+                    &cx.place(start + offset),
+                    format!("{} is not a finite number", quote(word)),
+                    |d| d,
+                );
+            }
+            Err(_) => {
+                good = false;
+                let message = format!("{} is not a number", quote(word));
+                let comma = word.contains(',');
+                cx.error(&cx.place(start + offset), message, |d| {
+                    if comma { d.help(COMMA) } else { d }
+                });
+            }
+        }
+    }
+    good.then_some(Placed { value, place })
+}
+
+const SEPARATE: &str = "write spaces between the numbers, and a decimal point";
+const COMMA: &str = "write a decimal point, and spaces between numbers";

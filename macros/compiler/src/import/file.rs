@@ -1,0 +1,121 @@
+//! A path → the text of the file. Knows no file format.
+
+use super::context::quote;
+use super::{LARGEST_FILE, UrdfOptions};
+use crate::diag::Diagnostics;
+use std::fs;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+/// Neighbours of a missing file that are looked at.
+const NEIGHBOURS: usize = 1000;
+
+/// Reads the file at `path`; `options` say what the user wrote, and where.
+pub fn read_file(path: &Path, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<String> {
+    let bytes = fs::metadata(path).and_then(|about| match refuse(&about) {
+        Some(reason) => Ok(Err(reason)),
+        None => read_bytes(path).map(Ok),
+    });
+    match bytes {
+        Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => report(&too_large(bytes.len() as u64), options, cx),
+        Ok(Ok(bytes)) => return decode(bytes, options, cx),
+        Ok(Err(reason)) => report(&reason, options, cx),
+        Err(error) => report_unreadable(path, &error, options, cx),
+    }
+    None
+}
+
+/// The reason not to open a file. A pipe or a device might never end.
+fn refuse(about: &fs::Metadata) -> Option<String> {
+    match () {
+        _ if about.is_dir() => Some("is a directory, expected a URDF file".to_string()),
+        _ if !about.is_file() => Some("is not a regular file".to_string()),
+        _ if about.len() > LARGEST_FILE as u64 => Some(too_large(about.len())),
+        _ => None,
+    }
+}
+
+/// What is wrong with a file that is larger than any robot's description.
+pub(super) fn too_large(bytes: u64) -> String {
+    format!(
+        "has {} MiB, expected at most {} MiB",
+        bytes.div_ceil(1 << 20),
+        LARGEST_FILE >> 20
+    )
+}
+
+/// Reports a mistake of the file as a whole.
+pub(super) fn report(reason: &str, options: &UrdfOptions, cx: &mut Diagnostics) {
+    cx.error(
+        options.path.place.clone(),
+        format!("{} {reason}", quote(&options.path.text)),
+    );
+}
+
+/// The bytes of the file, one more than is allowed if it grew meanwhile.
+fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    fs::File::open(path)?
+        .take(LARGEST_FILE as u64 + 1)
+        .read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn decode(bytes: Vec<u8>, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<String> {
+    match String::from_utf8(bytes) {
+        Ok(text) => Some(text),
+        Err(error) => {
+            let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let line = 1 + good.iter().filter(|b| **b == b'\n').count();
+            let message = format!("{} is not UTF-8 text: line {line}", quote(&options.path.text));
+            cx.error(options.path.place.clone(), message)
+                .help("save the file in UTF-8");
+            None
+        }
+    }
+}
+
+fn report_unreadable(path: &Path, error: &std::io::Error, options: &UrdfOptions, cx: &mut Diagnostics) {
+    let (place, written) = (options.path.place.clone(), &options.path.text);
+    if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) {
+        cx.error(place, format!("cannot read {}: {error}", quote(written)));
+        return;
+    }
+    let diagnostic = cx.error(place, format!("there is no file {}", quote(written)));
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            diagnostic.help(format!("there is no directory `{}` either", folder.display()));
+        }
+        _ => {
+            let neighbours = neighbours(path, written);
+            diagnostic.suggest(written, neighbours.iter().map(String::as_str));
+            diagnostic.help(format!("looked for `{}`", path.display()));
+        }
+    }
+}
+
+/// The URDF files beside a missing one, written as the user would write them.
+fn neighbours(path: &Path, written: &str) -> Vec<String> {
+    let Some(Ok(entries)) = path.parent().map(|folder| match folder.as_os_str().is_empty() {
+        true => fs::read_dir("."),
+        false => fs::read_dir(folder),
+    }) else {
+        return Vec::new();
+    };
+    let stem = &written[..written.rfind(['/', '\\']).map_or(0, |slash| slash + 1)];
+    let names = entries
+        .take(NEIGHBOURS)
+        .flatten()
+        .filter_map(|entry| entry.file_name().into_string().ok());
+    let is_description = |name: &String| {
+        let end = name.rsplit('.').next().unwrap_or_default();
+        end.eq_ignore_ascii_case("urdf") || end.eq_ignore_ascii_case("xml")
+    };
+    let mut list: Vec<String> = names
+        .filter(is_description)
+        .map(|name| format!("{stem}{name}"))
+        .collect();
+    // The order of a directory differs from machine to machine.
+    list.sort();
+    list
+}

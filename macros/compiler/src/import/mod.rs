@@ -1,0 +1,54 @@
+//! Files of other formats → the [`Body`] and [`Joint`] lists of a [`Description`](crate::syntax::Description),
+//! with line and column of every word and number. Only URDF for now.
+//!
+//! Knows XML and URDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
+//! limits, transmissions or the extensions of simulators.
+
+use crate::diag::{Diagnostics, Place};
+pub use crate::syntax::UrdfOptions;
+use crate::syntax::{Body, Joint};
+
+mod context;
+mod element;
+mod file;
+mod urdf;
+mod xml;
+
+#[cfg(test)]
+mod tests;
+
+pub use file::read_file;
+
+/// Largest file that is read, in bytes. The largest published robots take less than one mebibyte.
+const LARGEST_FILE: usize = 16 << 20;
+
+/// What a file describes.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The links, a parent before its children.
+    pub bodies: Vec<Body>,
+    /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
+    pub joints: Vec<Joint>,
+}
+
+/// Reads the text of a URDF file.
+///
+/// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
+/// `None` if there was any.
+pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<Imported> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.len() > LARGEST_FILE {
+        file::report(&file::too_large(text.len() as u64), options, cx);
+        return None;
+    }
+    let cx = &mut context::Cx::new(text, &options.path, cx);
+    let document = xml::parse(text, cx)?;
+    urdf::read(document.root_element(), options, cx)
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+struct Placed<T> {
+    value: T,
+    place: Place,
+}

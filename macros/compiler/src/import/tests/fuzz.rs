@@ -1,0 +1,73 @@
+//! Random damage to a small file: an answer or mistakes, never a panic.
+
+use super::*;
+
+const FILE: &str = r#"<?xml version="1.0"?>
+<robot name="r"> <!-- c -->
+  <link name="a"><inertial><origin xyz="1 2 3" rpy="0 0.1 0"/><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="b"/><link name="c"/>
+  <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+    <origin xyz="0 0 1" rpy="1 2 3"/><dynamics damping="1" friction="0"/></joint>
+  <joint name="k" type="prismatic"><parent link="b"/><child link="c"/>
+    <mimic joint="j" multiplier="2" offset="1"/></joint>
+</robot>"#;
+
+/// xorshift64.
+fn next(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 16) as usize
+}
+
+/// Changes, removes, copies or inserts bytes.
+fn damage(bytes: &mut Vec<u8>, state: &mut u64) {
+    const SPICE: &[u8] = b"<>/=\"' &;!-[]?:.0e9-abcjk\x00\xc3\xa4\n";
+    let at = next(state) % bytes.len();
+    let length = (next(state) % 40).min(bytes.len() - at);
+    match next(state) % 5 {
+        0 => bytes[at] = SPICE[next(state) % SPICE.len()],
+        1 => bytes.insert(at, SPICE[next(state) % SPICE.len()]),
+        2 if bytes.len() > 100 => drop(bytes.drain(at..at + length)),
+        3 => {
+            let piece = bytes[at..at + length].to_vec();
+            let to = next(state) % bytes.len();
+            bytes.splice(to..to, piece);
+        }
+        _ => {
+            let other = next(state) % bytes.len();
+            bytes.swap(at, other);
+        }
+    }
+}
+
+#[test]
+fn damage_never_panics() {
+    let options = UrdfOptions {
+        inputs: true,
+        ..locked(&["j"])
+    };
+    let mut state = 0x9E37_79B9_7F4A_7C15;
+    let mut good = 0;
+    for round in 0..4000 {
+        let mut bytes = FILE.as_bytes().to_vec();
+        for _ in 0..=round % 4 {
+            damage(&mut bytes, &mut state);
+        }
+        let answer = run(&options, &String::from_utf8_lossy(&bytes));
+        good += usize::from(answer.contains("root_joint"));
+    }
+    assert!(
+        (100..3900).contains(&good),
+        "damage should spare some files and not others: {good}"
+    );
+}
+
+#[test]
+fn every_beginning_of_a_file_gets_an_answer() {
+    for end in 0..FILE.len() {
+        assert!(!run(&defaults(), &FILE[..end]).contains("root_joint"));
+    }
+    assert!(run(&defaults(), FILE).contains("root_joint"));
+}

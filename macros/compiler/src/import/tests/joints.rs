@@ -1,0 +1,313 @@
+//! Joints: types, frames, axes, passive elements, followers, locks.
+
+use super::*;
+
+/// Checks the last joints of a chain.
+fn check_chain(options: &UrdfOptions, joints: &[(&str, &str)], expected: &str) {
+    check_with(options, &chain(joints), &(chain_bodies(joints.len()) + expected));
+}
+
+#[test]
+fn every_type_has_its_joint() {
+    let axis = "<axis xyz='0 0 2'/>";
+    let kinds = [
+        "revolute",
+        "continuous",
+        "prismatic",
+        "fixed",
+        "floating",
+        "planar",
+    ];
+    check_chain(
+        &UrdfOptions {
+            inputs: true,
+            ..defaults()
+        },
+        &kinds.map(|kind| (kind, axis)),
+        "Pin j1: l0 -> l1 about [0, 0, 2] driven
+         Pin j2: l1 -> l2 about [0, 0, 2] driven
+         Sleeve j3: l2 -> l3 along [0, 0, 2] driven
+         Weld j4: l3 -> l4
+         Free j5: l4 -> l5
+         Planar j6: l5 -> l6 about [0, 0, 2]",
+    );
+}
+
+#[test]
+fn the_axis_is_x_unless_given() {
+    check_chain(
+        &defaults(),
+        &[
+            ("revolute", ""),
+            ("prismatic", "<axis/>"),
+            ("fixed", "<axis xyz='0 0 0'/><dynamics damping='-1'/>"),
+        ],
+        "Pin j1: l0 -> l1 about [1, 0, 0]
+         Sleeve j2: l1 -> l2 along [1, 0, 0]
+         Weld j3: l2 -> l3",
+    );
+    check(
+        &chain(&[("revolute", "<axis xyz='0 0 0.0'/>")]),
+        "r.urdf:3:82: axis of zero length has no direction",
+    );
+}
+
+#[test]
+fn the_origin_is_a_place_and_carried_turns() {
+    check_chain(
+        &defaults(),
+        &[
+            ("revolute", "<origin xyz='1 2 3' rpy='0.1 0.2 0.3'/>"),
+            ("fixed", "<origin rpy='0.1 0 0.3'/>"),
+            ("floating", "<origin xyz='0 0 1'/>"),
+            ("fixed", "<origin/>"),
+        ],
+        "Pin j1: l0.at([1, 2, 3]).rotated(z(0.3), y(0.2), x(0.1)) -> l1 about [1, 0, 0]
+         Weld j2: l1.rotated(z(0.3), x(0.1)) -> l2
+         Free j3: l2.at([0, 0, 1]) -> l3
+         Weld j4: l3 -> l4",
+    );
+    check(
+        &chain(&[("revolute", "<origin xyz='0 0 0' quat_xyzw='0 0 0 1'/>")]),
+        r#"r.urdf:3:91: `quat_xyzw` is not supported
+           = help: expected `rpy="roll pitch yaw"`"#,
+    );
+}
+
+#[test]
+fn passive_elements_count_unless_ignored() {
+    let joints = [
+        ("revolute", "<dynamics damping='2' friction='3'/>"),
+        ("prismatic", "<dynamics friction='0'/>"),
+    ];
+    check_chain(
+        &defaults(),
+        &joints,
+        "Pin j1: l0 -> l1 about [1, 0, 0] damping=2 friction=3
+         Sleeve j2: l1 -> l2 along [1, 0, 0]",
+    );
+    let ignore = UrdfOptions {
+        honour_passive: false,
+        ..defaults()
+    };
+    check_chain(
+        &ignore,
+        &[("revolute", "<dynamics damping='-2' friction='x'/>")],
+        "Pin j1: l0 -> l1 about [1, 0, 0]",
+    );
+    check(
+        &chain(&[
+            ("revolute", "<dynamics damping='-2'/>"),
+            ("planar", "<dynamics friction='1'/>"),
+        ]),
+        "r.urdf:3:90: negative damping `-2`
+         = help: to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`
+         r.urdf:5:89: `friction` of a `planar` joint is not supported
+         = help: to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+    );
+}
+
+#[test]
+fn a_follower_follows_unless_independent() {
+    let joints = [
+        ("revolute", "<mimic joint='j3' multiplier='2' offset='1'/>"),
+        ("fixed", "<mimic joint='nobody'/>"),
+        ("prismatic", "<mimic joint='j4' multiplier='-3' offset='5'/>"),
+        ("revolute", ""),
+    ];
+    let inputs = UrdfOptions {
+        inputs: true,
+        ..defaults()
+    };
+    check_chain(
+        &inputs,
+        &joints,
+        "Pin j1: l0 -> l1 about [1, 0, 0] = -6 j4 + 11
+         Weld j2: l1 -> l2
+         Sleeve j3: l2 -> l3 along [1, 0, 0] = -3 j4 + 5
+         Pin j4: l3 -> l4 about [1, 0, 0] driven",
+    );
+    check_chain(
+        &UrdfOptions {
+            follow_mimic: false,
+            ..inputs
+        },
+        &joints,
+        "Pin j1: l0 -> l1 about [1, 0, 0] driven
+         Weld j2: l1 -> l2
+         Sleeve j3: l2 -> l3 along [1, 0, 0] driven
+         Pin j4: l3 -> l4 about [1, 0, 0] driven",
+    );
+}
+
+#[test]
+fn a_follower_needs_somebody_to_follow() {
+    let help = "= help: to leave `mimic` tags out, write `#[mechanism(…, mimic = independent)]`";
+    check(
+        &chain(&[
+            ("revolute", "<mimic joint='j22'/>"),
+            ("fixed", ""),
+            ("planar", "<mimic joint='j1'/>"),
+            ("prismatic", "<mimic joint='j2'/>"),
+            ("prismatic", "<mimic joint='j3'/>"),
+        ]),
+        &format!(
+            "r.urdf:3:85: unknown joint `j22`
+             = help: expected `j1`, `j4` or `j5`
+             r.urdf:7:83: joint `j3` is `planar` and cannot follow
+             {help}
+             r.urdf:9:86: joint `j2` is `fixed` and cannot be followed
+             {help}
+             r.urdf:11:86: joint `j3` is `planar` and cannot be followed
+             {help}"
+        ),
+    );
+    check(
+        &chain(&[
+            ("revolute", "<mimic joint='j1'/>"),
+            ("revolute", "<mimic joint='j4'/>"),
+            ("revolute", "<mimic joint='j2'/>"),
+            ("revolute", "<mimic joint='j3'/>"),
+            ("revolute", "<mimic joint='j4'/>"),
+        ]),
+        &format!(
+            "r.urdf:3:85: joint `j1` follows itself
+             {help}
+             r.urdf:5:85: joints `j2`, `j4`, `j3` follow one another
+             {help}"
+        ),
+    );
+    check(
+        &chain(&[
+            ("revolute", "<mimic joint='j2' multiplier='1e200'/>"),
+            ("revolute", "<mimic joint='j3' multiplier='1e200'/>"),
+            ("revolute", ""),
+        ]),
+        "r.urdf:3:85: joint `j1` follows with an infinite multiplier or offset",
+    );
+}
+
+#[test]
+fn a_locked_joint_is_a_weld() {
+    let options = UrdfOptions {
+        inputs: true,
+        ..locked(&["j1", "j3", "j4"])
+    };
+    check_chain(
+        &options,
+        &[
+            ("revolute", "<origin xyz='1 0 0'/><dynamics damping='1'/>"),
+            ("revolute", ""),
+            ("planar", ""),
+            ("prismatic", "<mimic joint='j2' offset='1'/>"),
+        ],
+        "Weld j1: l0.at([1, 0, 0]) -> l1
+         Pin j2: l1 -> l2 about [1, 0, 0] driven
+         Weld j3: l2 -> l3
+         Weld j4: l3 -> l4",
+    );
+    check_with(
+        &locked(&["j", "elbow"]),
+        &chain(&[("revolute", ""), ("revolute", "")]),
+        "unknown joint `j` in `lock`
+         = help: did you mean `j1`?
+         unknown joint `elbow` in `lock`
+         = help: expected `j1` or `j2`",
+    );
+}
+
+#[test]
+fn what_follows_a_locked_joint_stands_at_its_offset() {
+    let follow = "<mimic joint='j6' offset='0.5'/>";
+    check_chain(
+        &locked(&["j6"]),
+        &[
+            (
+                "revolute",
+                "<origin rpy='0 0 1'/><axis xyz='0 -2 0'/><mimic joint='j6' multiplier='3' offset='0.5'/>",
+            ),
+            ("revolute", "<axis xyz='3 0 4'/><mimic joint='j6' offset='0.5'/>"),
+            (
+                "prismatic",
+                "<origin xyz='1 0 0'/><axis xyz='0 0 1e-200'/><mimic joint='j1' multiplier='2'/>",
+            ),
+            ("revolute", "<mimic joint='j6' multiplier='3'/>"),
+            ("prismatic", follow),
+            ("revolute", ""),
+        ],
+        "Weld j1: l0.rotated(z(1), y(-0.5)) -> l1
+         Weld j2: l1.rotated(eigenaxis([0.6, 0, 0.8], 0.5)) -> l2
+         Weld j3: l2.at([1, 0, 1]) -> l3
+         Weld j4: l3 -> l4
+         Weld j5: l4.at([0.5, 0, 0]) -> l5
+         Weld j6: l5 -> l6",
+    );
+    check_chain(
+        &defaults(),
+        &[
+            ("revolute", "<mimic joint='j2' multiplier='0' offset='1'/>"),
+            ("revolute", ""),
+        ],
+        "Weld j1: l0.rotated(x(1)) -> l1
+         Pin j2: l1 -> l2 about [1, 0, 0]",
+    );
+}
+
+#[test]
+fn a_locked_slide_moves_along_the_turned_axis() {
+    // Yaw 1, then pitch 2, then roll 3, about carried axes: the third column of R_z(1) R_y(2) R_x(3).
+    let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
+    let text = chain(&[("prismatic", inside), ("revolute", "")]);
+    let imported = import_urdf(&text, &locked(&["j2"]), &mut Diagnostics::new());
+    let at = imported
+        .and_then(|imported| imported.joints[1].parent.at.clone())
+        .map(|at| at.kind);
+    let Some(ExprKind::Array(items)) = at else {
+        panic!("a moved end")
+    };
+    let ((s1, c1), (s2, c2), (s3, c3)) = (1f64.sin_cos(), 2f64.sin_cos(), 3f64.sin_cos());
+    let expected = [c1 * s2 * c3 + s1 * s3, s1 * s2 * c3 - c1 * s3, c2 * c3];
+    for (item, expected) in items.iter().zip(expected) {
+        assert!(matches!(item.kind, ExprKind::Number(x) if (x - expected).abs() < 1e-15));
+    }
+}
+
+#[test]
+fn a_slide_cannot_stand_infinitely_far_away() {
+    let inside = "<origin xyz='1.7e308 0 0'/><mimic joint='j2' offset='1.7e308'/>";
+    check_with(
+        &locked(&["j2"]),
+        &chain(&[("prismatic", inside), ("revolute", "")]),
+        "r.urdf:3:14: joint `j1` stands infinitely far away",
+    );
+}
+
+#[test]
+fn a_joint_says_what_it_joins_and_how() {
+    check_robot(
+        "<link name='a'/>\n<joint/>\n<joint name='j' type='revolut'><parent/><child link=''/></joint>",
+        r#"r.urdf:3:1: `<joint>` without `name`, `type`
+           = help: expected `<joint name="…" type="…"/>`
+           r.urdf:3:1: `<joint>` without `<parent>`
+           = help: expected `<parent link="…"/>`
+           r.urdf:3:1: `<joint>` without `<child>`
+           = help: expected `<child link="…"/>`
+           r.urdf:4:23: unknown joint type `revolut`
+           = help: did you mean `revolute`?
+           r.urdf:4:32: `<parent>` without `link`
+           = help: expected `<parent link="…"/>`
+           r.urdf:4:54: empty `link` of `<child>`"#,
+    );
+    check(
+        &chain(&[
+            ("ball", "<axes xyz='0 0 1'/>"),
+            ("revolute", "<mimic joint='j1' multipler='2'/>"),
+        ]),
+        "r.urdf:3:24: unknown joint type `ball`
+         = help: expected `revolute`, `continuous`, `prismatic`, `fixed`, `floating` or `planar`
+         r.urdf:3:67: unknown element `<axes>`
+         = help: did you mean `<axis>`?
+         r.urdf:5:89: unknown attribute `multipler` of `<mimic>`
+         = help: did you mean `multiplier`?",
+    );
+}

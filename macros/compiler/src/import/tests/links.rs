@@ -1,0 +1,193 @@
+//! Links: mass, centre of mass, inertia.
+
+use super::*;
+
+const INERTIA: &str = r#"<inertia ixx="1" ixy="2" ixz="3" iyy="4" iyz="5" izz="6"/>"#;
+
+fn check_inertial(inside: &str, expected: &str) {
+    check_robot(
+        &format!("<link name=\"a\"><inertial>{inside}</inertial></link>"),
+        expected,
+    );
+}
+
+#[test]
+fn a_link_has_mass_centre_and_inertia() {
+    check_inertial(
+        &format!(r#"<origin xyz="0 -0 .5"/><mass value=" 2.5e0 "/>{INERTIA}"#),
+        "body a mass=2.5 com=[0, 0, 0.5] inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]]
+         Weld root_joint: ground -> a",
+    );
+    check_inertial(
+        &format!(r#"<mass value="1"/>{INERTIA}"#),
+        "body a mass=1 inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]]
+         Weld root_joint: ground -> a",
+    );
+}
+
+#[test]
+fn an_inertial_frame_turns_the_inertia() {
+    check_inertial(
+        &format!(r#"<origin rpy="1 2 3"/><mass value="1"/>{INERTIA}"#),
+        "body a mass=1 inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]].rotated(z(3), y(2), x(1))
+         Weld root_joint: ground -> a",
+    );
+    check_inertial(
+        &format!(r#"<origin rpy="0 2 0"/><mass value="1"/>{INERTIA}"#),
+        "body a mass=1 inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]].rotated(y(2))
+         Weld root_joint: ground -> a",
+    );
+}
+
+#[test]
+fn zeros_are_as_good_as_nothing() {
+    let zeros = r#"<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>"#;
+    let inside = format!(r#"<origin xyz="1 0 0" rpy="1 0 0"/><mass value="0"/>{zeros}"#);
+    check_inertial(&inside, "body a\nWeld root_joint: ground -> a");
+    let inside = format!(r#"<origin xyz="1 0 0" rpy="1 0 0"/><mass value="1"/>{zeros}"#);
+    check_inertial(
+        &inside,
+        "body a mass=1 com=[1, 0, 0]\nWeld root_joint: ground -> a",
+    );
+}
+
+#[test]
+fn a_mass_that_the_model_refuses_comes_with_its_place() {
+    let text =
+        format!("<robot><link name='a'>\n <inertial><mass value='-1'/>{INERTIA}</inertial></link></robot>");
+    let imported = import_urdf(&text, &defaults(), &mut Diagnostics::new());
+    let at = imported
+        .and_then(|i| i.bodies[0].mass.clone())
+        .and_then(|mass| mass.place.file);
+    assert_eq!(
+        at.map(|at| (at.file.to_string(), at.line, at.column)),
+        Some(("r.urdf".to_string(), 2, 25))
+    );
+}
+
+#[test]
+fn an_inertia_may_be_trusted() {
+    let options = UrdfOptions {
+        trust_inertia: true,
+        ..defaults()
+    };
+    let expected = "body a trusted\nWeld root_joint: ground -> a";
+    check_with(&options, "<robot><link name='a'/></robot>", expected);
+}
+
+#[test]
+fn what_is_missing_is_shown() {
+    check_inertial(
+        "",
+        r#"r.urdf:2:16: `<inertial>` without `<mass>`
+           = help: expected `<mass value="…"/>`
+           r.urdf:2:16: `<inertial>` without `<inertia>`
+           = help: expected `<inertia ixx="…" ixy="…" ixz="…" iyy="…" iyz="…" izz="…"/>`"#,
+    );
+    check_inertial(
+        "<mass/>\n<inertia ixx='1' ixy='0' iyy='1' izz='1'/>",
+        r#"r.urdf:2:26: `<mass>` without `value`
+           = help: expected `<mass value="…"/>`
+           r.urdf:3:1: `<inertia>` without `ixz`, `iyz`
+           = help: expected `<inertia ixx="…" ixy="…" ixz="…" iyy="…" iyz="…" izz="…"/>`"#,
+    );
+}
+
+#[test]
+fn slips_of_the_hand_are_not_ignored() {
+    check_robot(
+        "<link name='a'><inertal/><visual/><anything/></link>",
+        "r.urdf:2:16: unknown element `<inertal>`
+         = help: did you mean `<inertial>`?",
+    );
+    check_inertial(
+        &format!("<orgin xyz='1 0 0'/><mass vlaue='1'/>{INERTIA}"),
+        "r.urdf:2:26: unknown element `<orgin>`
+         = help: did you mean `<origin>`?
+         r.urdf:2:52: unknown attribute `vlaue` of `<mass>`
+         = help: did you mean `value`?",
+    );
+    check_inertial(
+        &format!("<origin xzy='1 0 0' rpy='0 0 0' further='1'/><mass value='1'/>{INERTIA}"),
+        "r.urdf:2:34: unknown attribute `xzy` of `<origin>`
+         = help: did you mean `xyz`?",
+    );
+    check_robot(
+        "<Link name='a'/>",
+        "r.urdf:2:1: unknown element `<Link>`
+         = help: did you mean `<link>`?",
+    );
+}
+
+#[test]
+fn an_element_stands_once() {
+    check_inertial(
+        &format!("<mass value='1'/>{INERTIA}\n<mass value='2'/>"),
+        "r.urdf:3:1: second `<mass>` of one element
+         = help: the first is at r.urdf:2:26",
+    );
+    check_robot(
+        "<link name='a'><inertial/>\n<inertial/></link>",
+        r#"r.urdf:3:1: second `<inertial>` of one element
+           = help: the first is at r.urdf:2:16
+           r.urdf:2:16: `<inertial>` without `<mass>`
+           = help: expected `<mass value="…"/>`
+           r.urdf:2:16: `<inertial>` without `<inertia>`
+           = help: expected `<inertia ixx="…" ixy="…" ixz="…" iyy="…" iyz="…" izz="…"/>`"#,
+    );
+}
+
+#[test]
+fn a_number_is_a_finite_number() {
+    for (word, why) in [
+        ("NaN", "is not a finite number"),
+        ("-inf", "is not a finite number"),
+        ("1e999", "is not a finite number"),
+        ("0x10", "is not a number"),
+        ("1.0f", "is not a number"),
+        ("−1", "is not a number"),
+    ] {
+        let expected = format!("r.urdf:2:39: `{word}` {why}");
+        check_inertial(&format!("<mass value='{word}'/>{INERTIA}"), &expected);
+    }
+    check_inertial(
+        &format!("<mass value='1 2'/>{INERTIA}"),
+        "r.urdf:2:39: expected a number in `value`, found `1 2`",
+    );
+    check_inertial(
+        &format!("<origin xyz='0 0'/><mass value=''/>{INERTIA}"),
+        "r.urdf:2:39: expected 3 numbers in `xyz`, found `0 0`
+         r.urdf:2:58: expected a number in `value`, found ``",
+    );
+}
+
+#[test]
+fn every_bad_number_has_its_own_place() {
+    check_inertial(
+        &format!("<origin xyz='0\n  a  nan'/><mass value='1,5'/>{INERTIA}"),
+        "r.urdf:2:39: `a` is not a number
+         r.urdf:2:39: `nan` is not a finite number
+         r.urdf:3:25: `1,5` is not a number
+         = help: write a decimal point, and spaces between numbers",
+    );
+    check_inertial(
+        &format!("<origin xyz='ä  b nan'/><mass value='1'/><!-- ä -->{INERTIA}"),
+        "r.urdf:2:39: `ä` is not a number
+         r.urdf:2:42: `b` is not a number
+         r.urdf:2:44: `nan` is not a finite number",
+    );
+    check_inertial(
+        &format!("<origin xyz='1,2,3'/><mass value='1'/>{INERTIA}"),
+        "r.urdf:2:39: expected 3 numbers in `xyz`, found `1,2,3`
+         = help: write spaces between the numbers, and a decimal point",
+    );
+}
+
+#[test]
+fn long_nonsense_is_shortened() {
+    let expected = format!("r.urdf:2:39: `{}`… is not a number", "x".repeat(60));
+    check_inertial(
+        &format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)),
+        &expected.replace("`…", "…`"),
+    );
+}

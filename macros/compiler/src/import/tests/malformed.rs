@@ -1,0 +1,175 @@
+//! Files that are not XML, not URDF, or hostile.
+
+use super::*;
+
+#[test]
+fn malformed_xml_has_a_place() {
+    for (text, expected) in [
+        (
+            "<robot>\n<link></robot>",
+            "r.urdf:2:7: malformed XML: expected `</link>`, found `</robot>`",
+        ),
+        (
+            "<robot>\n <link name='a'>\n  <inertial/>",
+            "r.urdf:2:2: malformed XML: this element is never closed",
+        ),
+        (
+            "<robot>\n <link name='a",
+            "r.urdf:2:2: malformed XML: this element is never closed",
+        ),
+        (
+            "<robot>\n</robot",
+            "r.urdf:2:8: malformed XML: the file ends in the middle of a tag",
+        ),
+        (
+            "<robot>\n <link ",
+            "r.urdf:2:2: malformed XML: this element is never closed",
+        ),
+        (
+            "<robot a='1'\n a='2'/>",
+            "r.urdf:2:2: malformed XML: attribute `a` is given twice",
+        ),
+        (
+            "<robot a='&x;'/>",
+            "r.urdf:1:11: malformed XML: unknown entity `&x;`",
+        ),
+        (
+            "<robot a='& b'/>",
+            "r.urdf:1:11: malformed XML: this `&` begins no entity\n= help: write `&amp;` for `&`",
+        ),
+        (
+            "<robot a:b='1'/>",
+            "r.urdf:1:8: malformed XML: unknown namespace prefix `a`",
+        ),
+        (
+            "<robot a='<'/>",
+            "r.urdf:1:11: malformed XML: expected ``` not `<`",
+        ),
+        ("<robot/><robot/>", "r.urdf:1:9: malformed XML: unknown token"),
+        (
+            "<robot><!-- -- --></robot>",
+            "r.urdf:1:8: malformed XML: comment contains `--`",
+        ),
+    ] {
+        check(text, expected);
+    }
+}
+
+#[test]
+fn what_is_no_xml_is_shown_some() {
+    let help = "= help: a URDF file is XML: `<robot name=\"…\"> … </robot>`";
+    check(
+        "",
+        &format!("r.urdf:1:1: malformed XML: there is no element\n{help}"),
+    );
+    check(
+        "solid cube",
+        &format!("r.urdf:1:1: malformed XML: unknown token\n{help}"),
+    );
+}
+
+#[test]
+fn another_format_is_named() {
+    for (root, help) in [
+        ("sdf", "this is an SDF file; only URDF can be read"),
+        ("mujoco", "this is an MJCF file; only URDF can be read"),
+        ("Robot", "did you mean `robot`?"),
+        ("html", "expected `robot`"),
+    ] {
+        let expected = format!("r.urdf:1:1: expected `<robot>`, found `<{root}>`\n= help: {help}");
+        check(&format!("<{root}/>"), &expected);
+    }
+}
+
+#[test]
+fn a_template_is_refused_once() {
+    let help = "= help: expand the file first: `xacro robot.urdf.xacro > robot.urdf`";
+    check(
+        "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n <xacro:include/> <xacro:arm/></robot>",
+        &format!("r.urdf:2:2: `<xacro:include>` is an instruction to xacro\n{help}"),
+    );
+    check(
+        "<robot><xacro:arm/></robot>",
+        &format!("r.urdf:1:9: malformed XML: unknown namespace prefix `xacro`\n{help}"),
+    );
+    check_robot(
+        "<link name='${prefix}a'/><link name='${prefix}b'/>",
+        &format!("r.urdf:2:13: `${{prefix}}a` is an expression of xacro\n{help}"),
+    );
+    check(
+        "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/></robot>",
+        "body a\nWeld root_joint: ground -> a",
+    );
+}
+
+#[test]
+fn entities_are_refused() {
+    let bomb = "<!DOCTYPE robot [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]>\n<robot name='&b;'/>";
+    let expected = "a URDF file has no document type and no entities of its own";
+    check(bomb, &format!("r.urdf:1:1: {expected}"));
+    check(
+        "<?xml version='1.0'?>\n<!-- c -->\n<!DOCTYPE robot>\n<robot/>",
+        &format!("r.urdf:3:1: {expected}"),
+    );
+}
+
+#[test]
+fn deep_nesting_is_refused() {
+    let deep = "<a>".repeat(100_000);
+    let expected = "r.urdf:1:193: more than 64 elements inside one another";
+    check(&deep, expected);
+    check(&(deep + &"</a>".repeat(100_000)), expected);
+    // What looks like markup in comments, instructions, character data and attributes is none.
+    let quiet = [
+        ("<!-- ", "-->"),
+        ("<?p ", "?>"),
+        ("<![CDATA[", "]]>"),
+        ("<a b='", "'/>"),
+        ("<a b=\"", "\"/>"),
+    ];
+    let inside: String = quiet
+        .map(|(open, close)| open.to_string() + &"/><a>".replace('<', "") + close)
+        .concat();
+    let text = format!("<robot><link name='a'/>{}</robot>", inside.repeat(100));
+    check(&text, "body a\nWeld root_joint: ground -> a");
+    let markup = "<a>".repeat(100);
+    let text = format!("<robot><link name='a'/><!--{markup}--><![CDATA[{markup}]]><?p {markup}?></robot>");
+    check(&text, "body a\nWeld root_joint: ground -> a");
+    // What ends them too early hides nothing.
+    for hide in ["<!---->", "<?p ?>", "<![CDATA[]]>", "<a b='>'/>", "<a b='\">'/>"] {
+        check(
+            &format!("<r>{hide}{markup}"),
+            &expected.replace("193", &(1 + 3 + hide.len() + 63 * 3).to_string()),
+        );
+    }
+}
+
+#[test]
+fn crowds_of_markup_are_refused() {
+    let attributes: String = (0..100).map(|k| format!(" a{k}=''")).collect();
+    check(
+        &format!("<robot{attributes}/>"),
+        "r.urdf:1:1: element with more than 64 attributes",
+    );
+    let crowd = "r.urdf:1:1: the file has too many elements, attributes or namespaces for a robot";
+    check(
+        &format!("<robot>{}</robot>", "<a xmlns:a='b'/>".repeat(300)),
+        crowd,
+    );
+    check(&"<".repeat(2_000_000), crowd);
+}
+
+#[test]
+fn a_huge_file_is_refused() {
+    check(
+        &" ".repeat((16 << 20) + 1),
+        "`r.urdf` has 17 MiB, expected at most 16 MiB",
+    );
+}
+
+#[test]
+fn places_count_characters() {
+    let before = "<!-- änderung\r\n über -->".repeat(50);
+    let expected = "r.urdf:52:10: `<link>` without `name`\n= help: expected `<link name=\"…\"/>`";
+    check(&format!("\u{feff}<robot>\n{before}<link/></robot>"), expected);
+}

@@ -1,0 +1,185 @@
+//! Text of a file in, text of the description or of the mistakes out.
+
+use super::{Imported, UrdfOptions, import_urdf};
+use crate::diag::Diagnostics;
+use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Joint, Name};
+use proc_macro2::Span;
+
+mod files;
+mod fuzz;
+mod joints;
+mod links;
+mod malformed;
+mod names;
+
+fn name(text: &str) -> Name {
+    Name {
+        text: text.to_string(),
+        place: Span::call_site().into(),
+    }
+}
+
+/// The options that the attribute has when nothing is said.
+fn defaults() -> UrdfOptions {
+    UrdfOptions {
+        path: name("r.urdf"),
+        base: Base::Fixed,
+        honour_passive: true,
+        follow_mimic: true,
+        trust_inertia: false,
+        inputs: false,
+        lock: Vec::new(),
+    }
+}
+
+fn locked(joints: &[&str]) -> UrdfOptions {
+    UrdfOptions {
+        lock: joints.iter().map(|joint| name(joint)).collect(),
+        ..defaults()
+    }
+}
+
+/// Compares what `text` gives with `expected`, the indentation of lines and empty lines apart.
+fn check_with(options: &UrdfOptions, text: &str, expected: &str) {
+    let trim = |text: &str| -> String {
+        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        lines.map(|line| format!("{line}\n")).collect()
+    };
+    let actual = run(options, text);
+    assert!(
+        trim(&actual) == trim(expected),
+        "expected\n{expected}\nfound\n{actual}"
+    );
+}
+
+fn check(text: &str, expected: &str) {
+    check_with(&defaults(), text, expected);
+}
+
+/// Compares what the elements inside `<robot>` give, which begin on the second line.
+fn check_robot(inside: &str, expected: &str) {
+    check(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
+}
+
+/// The description, or the mistakes.
+fn run(options: &UrdfOptions, text: &str) -> String {
+    let mut cx = Diagnostics::new();
+    let imported = import_urdf(text, options, &mut cx);
+    assert_eq!(
+        imported.is_some(),
+        cx.is_empty(),
+        "nothing is given just when there is a mistake"
+    );
+    match imported {
+        Some(imported) => render(&imported),
+        None => cx.messages().join("\n"),
+    }
+}
+
+fn render(imported: &Imported) -> String {
+    let bodies = imported.bodies.iter().map(render_body);
+    let joints = imported.joints.iter().map(render_joint);
+    bodies.chain(joints).map(|line| line + "\n").collect()
+}
+
+fn render_body(body: &Body) -> String {
+    let mut line = format!("body {}", body.name.text);
+    for (word, value) in [
+        ("mass", &body.mass),
+        ("com", &body.com),
+        ("inertia", &body.inertia),
+    ] {
+        if let Some(value) = value {
+            line += &format!(" {word}={}", render_expr(value));
+        }
+    }
+    line + if body.trust_inertia { " trusted" } else { "" }
+}
+
+fn render_joint(joint: &Joint) -> String {
+    let (parent, child) = (render_end(&joint.parent), render_end(&joint.child));
+    let mut line = format!("{:?} {}: {parent} -> {child}", joint.kind, joint.name.text);
+    for (word, axes) in [("about", &joint.about), ("along", &joint.along)] {
+        for axis in axes {
+            line += &format!(" {word} {}", render_expr(axis));
+        }
+    }
+    assert_eq!(
+        joint.normalise_axis,
+        !(joint.about.is_empty() && joint.along.is_empty())
+    );
+    if let Some(mimic) = &joint.mimic {
+        line += &format!(" = {} {} + {}", mimic.multiplier, mimic.joint.text, mimic.offset);
+    }
+    for (word, value) in [("damping", &joint.damping), ("friction", &joint.friction)] {
+        if let Some(value) = value {
+            line += &format!(" {word}={}", render_expr(value));
+        }
+    }
+    line + if joint.driven { " driven" } else { "" }
+}
+
+fn render_end(end: &Endpoint) -> String {
+    let at = end.at.iter().map(|at| format!(".at({})", render_expr(at)));
+    let rotated = (!end.rotated.is_empty()).then(|| format!(".rotated({})", render_list(&end.rotated)));
+    let words = std::iter::once(end.body.text.clone()).chain(at).chain(rotated);
+    words.collect()
+}
+
+fn render_list(list: &[Expr]) -> String {
+    list.iter().map(render_expr).collect::<Vec<_>>().join(", ")
+}
+
+fn render_expr(expr: &Expr) -> String {
+    assert!(
+        expr.place.file.is_some(),
+        "every expression has its place in the file"
+    );
+    match &expr.kind {
+        ExprKind::Number(value) => value.to_string(),
+        ExprKind::Array(items) => format!("[{}]", render_list(items)),
+        ExprKind::Call(function, arguments) => format!("{}({})", function.text, render_list(arguments)),
+        ExprKind::Method(object, method, arguments) => {
+            format!(
+                "{}.{}({})",
+                render_expr(object),
+                method.text,
+                render_list(arguments)
+            )
+        }
+        other => unreachable!("{other:?}"),
+    }
+}
+
+/// A link without mass.
+fn link(name: &str) -> String {
+    format!("<link name=\"{name}\"/>")
+}
+
+/// A joint with further elements inside.
+fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
+    format!(
+        "<joint name=\"{name}\" type=\"{kind}\">\
+         <parent link=\"{parent}\"/><child link=\"{child}\"/>{inside}</joint>"
+    )
+}
+
+/// A chain of links `l0`, `l1`, … with the joints `j1`, … of the given types, and what is inside each.
+fn chain(joints: &[(&str, &str)]) -> String {
+    let mut text = link("l0");
+    for (k, (kind, inside)) in joints.iter().enumerate() {
+        let (parent, child) = (format!("l{k}"), format!("l{}", k + 1));
+        text += &format!(
+            "\n{}\n{}",
+            link(&child),
+            joint(&format!("j{}", k + 1), kind, &parent, &child, inside)
+        );
+    }
+    format!("<robot name=\"r\">{text}</robot>")
+}
+
+/// The lines that `chain` gives for the links and the root.
+fn chain_bodies(joints: usize) -> String {
+    let bodies: String = (0..=joints).map(|k| format!("body l{k}\n")).collect();
+    bodies + "Weld root_joint: ground -> l0\n"
+}

@@ -1,0 +1,186 @@
+//! Names, the tree of the links and the order of the coordinates.
+
+use super::*;
+
+#[test]
+fn joints_come_depth_first_in_alphabetical_order() {
+    let links: String = ["tip", "a", "b", "c", "base"].map(link).concat();
+    let joints = [
+        joint("second", "revolute", "base", "b", ""),
+        joint("zzz", "revolute", "a", "tip", ""),
+        joint("first", "revolute", "base", "a", ""),
+        joint("First", "revolute", "base", "c", ""),
+    ];
+    check_robot(
+        &(links + &joints.concat()),
+        "body base
+         body c
+         body a
+         body tip
+         body b
+         Weld root_joint: ground -> base
+         Pin First: base -> c about [1, 0, 0]
+         Pin first: base -> a about [1, 0, 0]
+         Pin zzz: a -> tip about [1, 0, 0]
+         Pin second: base -> b about [1, 0, 0]",
+    );
+}
+
+#[test]
+fn the_root_is_held_or_free() {
+    let free = UrdfOptions {
+        base: Base::Free,
+        inputs: true,
+        ..defaults()
+    };
+    check_with(
+        &free,
+        "<robot><link name='any &amp; name'/></robot>",
+        "body any & name\nFree root_joint: ground -> any & name",
+    );
+    let text = joint("root_joint", "fixed", "a", "root_joint2", "");
+    check_robot(
+        &(link("a") + &link("root_joint2") + &text),
+        "body a
+         body root_joint2
+         Weld root_joint3: ground -> a
+         Weld root_joint: a -> root_joint2",
+    );
+}
+
+#[test]
+fn what_is_not_mechanics_is_ignored() {
+    check(
+        r#"<?xml version="1.0"?> <!-- <robot> --> <robot name="r" xmlns:drake="d" version="1.0">
+           <material name="grey"><color rgba="0 0 0 1"/></material>
+           <link name="a"><visual><origin xyz="x"/></visual><collision/><drake:inertial/></link>
+           <drake:joint/> <gazebo reference="a"><link/><plugin file="$(find x)">${y}</plugin></gazebo>
+           <transmission><joint name="nobody"/></transmission> text <![CDATA[<link/>]]>
+           </robot>"#,
+        "body a
+         Weld root_joint: ground -> a",
+    );
+}
+
+#[test]
+fn names_are_given_once() {
+    let text = [link("a"), link("b"), link("a")].join("\n");
+    let joints = [
+        joint("j", "fixed", "a", "b", ""),
+        joint("j", "fixed", "b", "a", ""),
+    ]
+    .join("\n");
+    check_robot(
+        &format!("{text}\n{joints}"),
+        "r.urdf:4:13: second link with the name `a`
+         = help: the first is at r.urdf:2:13
+         r.urdf:6:14: second joint with the name `j`
+         = help: the first is at r.urdf:5:14",
+    );
+    check_robot(
+        &link("ground"),
+        "r.urdf:2:13: a link cannot be called `ground`: the fixed frame has this name
+         = help: give the link another name",
+    );
+    check_robot(
+        "<link name=' '/><link/><link nmae='a'/>",
+        r#"r.urdf:2:13: empty `name` of `<link>`
+           r.urdf:2:17: `<link>` without `name`
+           = help: expected `<link name="…"/>`
+           r.urdf:2:30: unknown attribute `nmae` of `<link>`
+           = help: did you mean `name`?"#,
+    );
+}
+
+#[test]
+fn joints_join_links_that_are_there() {
+    let joints = [
+        joint("j", "fixed", "base", "arms", ""),
+        joint("k", "fixed", "arm", "arm", ""),
+    ]
+    .join("\n");
+    check_robot(
+        &format!("{}{}\n{joints}", link("base"), link("arm")),
+        "r.urdf:3:64: unknown link `arms`
+         = help: did you mean `arm`?
+         r.urdf:4:63: joint `k` joins a link to itself",
+    );
+    check(
+        "<robot/>",
+        "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`",
+    );
+}
+
+#[test]
+fn a_link_hangs_from_one_joint() {
+    let links = ["a", "b", "c"].map(link).concat();
+    let joints = [
+        joint("ab", "fixed", "a", "b", ""),
+        joint("ac", "fixed", "a", "c", ""),
+        joint("bc", "fixed", "b", "c", ""),
+    ];
+    check_robot(
+        &format!("{links}\n{}", joints.join("\n")),
+        "r.urdf:5:62: link `c` is the child of two joints, `ac` and `bc`
+         = help: the first is at r.urdf:4:62
+         = help: the links of a URDF file form a tree; it has no closed loops",
+    );
+}
+
+#[test]
+fn there_is_one_root() {
+    let links = ["a", "b", "c", "d"].map(link).join("\n");
+    check_robot(
+        &(links.clone() + &joint("j", "fixed", "a", "b", "")),
+        "r.urdf:4:13: expected one link that is no joint's child, found `a`, `c`, `d`
+         = help: every link but one needs a joint that has it as its child",
+    );
+    let many: String = (0..20).map(|k| link(&format!("l{k}"))).collect();
+    check_robot(
+        &many,
+        "r.urdf:2:30: expected one link that is no joint's child, found `l0`, `l1`, \
+         `l2`, `l3`, `l4`, `l5`, `l6`, `l7`, …
+         = help: every link but one needs a joint that has it as its child",
+    );
+}
+
+#[test]
+fn links_do_not_hang_from_one_another() {
+    let links = ["a", "b", "c"].map(link).concat();
+    let joints = [
+        joint("ba", "fixed", "b", "a", ""),
+        joint("cb", "fixed", "c", "b", ""),
+        joint("ac", "fixed", "a", "c", ""),
+    ];
+    let circle = format!("{links}\n{}", joints.join("\n"));
+    let expected = "r.urdf:3:45: links `a`, `b`, `c` hang from one another
+                    = help: joint `ba` closes the circle; a tree has a root";
+    check_robot(&circle, expected);
+    let tail = link("root") + &link("tail") + &joint("at", "fixed", "a", "tail", "");
+    check_robot(&(circle + &tail), expected);
+}
+
+#[test]
+fn a_long_chain_needs_no_stack() {
+    let joints = vec![("revolute", "<mimic joint='j1000'/>"); 999];
+    let text = chain(&[joints, vec![("revolute", "")]].concat());
+    let imported = import_urdf(&text, &defaults(), &mut Diagnostics::new());
+    assert!(imported.is_some_and(|imported| imported.joints.len() == 1001 && imported.bodies.len() == 1001));
+}
+
+#[test]
+fn a_crowd_is_refused() {
+    let crowd: String = (0..2000).map(|k| link(&format!("l{k}"))).collect();
+    let column = 1 + (0..1024).map(|k| link(&format!("l{k}")).len()).sum::<usize>();
+    check_robot(
+        &crowd,
+        &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"),
+    );
+    let crowd = "<joint/>".repeat(2000);
+    let messages = run(&defaults(), &format!("<robot>{crowd}</robot>"));
+    assert_eq!(messages.matches("r.urdf:1:").count(), 32);
+    assert!(
+        messages.ends_with("`r.urdf` has more mistakes; these are the first 32"),
+        "{messages}"
+    );
+}

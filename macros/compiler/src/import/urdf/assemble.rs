@@ -1,0 +1,162 @@
+//! The file's links and joints, their order and what moves them → bodies and joints of the language.
+
+use super::Robot;
+use super::joint::FileJoint;
+use super::motion::Motion;
+use super::tree::Order;
+use crate::import::context::{Cx, quote};
+use crate::import::{Imported, UrdfOptions};
+use crate::syntax::{Base, Body, Endpoint, Expr, Joint, JointKind, Name};
+
+/// Puts the robot together. Bodies come in the order of the joints that carry them.
+pub(super) fn assemble(
+    robot: Robot,
+    order: &Order,
+    motions: Vec<Motion>,
+    options: &UrdfOptions,
+    cx: &mut Cx<'_>,
+) -> Imported {
+    let root = root_joint(&robot, order.root, options.base);
+    let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
+    let mut given: Vec<Option<(FileJoint, Motion)>> =
+        robot.joints.into_iter().zip(motions).map(Some).collect();
+    let mut bodies: Vec<Body> = links[order.root].take().into_iter().collect();
+    let mut joints = vec![root];
+    for (joint, child) in &order.joints {
+        bodies.extend(links[*child].take());
+        joints.extend(
+            given[*joint]
+                .take()
+                .map(|(joint, motion)| build_joint(joint, motion, options, cx)),
+        );
+    }
+    Imported { bodies, joints }
+}
+
+/// The joint that holds the root, which no URDF file names.
+fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
+    let link = &robot.links[root].name;
+    let names = || {
+        robot
+            .joints
+            .iter()
+            .map(|j| &j.name.text)
+            .chain(robot.links.iter().map(|l| &l.name.text))
+    };
+    let mut text = "root_joint".to_string();
+    for k in 2.. {
+        if names().all(|name| *name != text) {
+            break;
+        }
+        text = format!("root_joint{k}");
+    }
+    let name = |text: &str| Name {
+        text: text.to_string(),
+        place: link.place.clone(),
+    };
+    let kind = match base {
+        Base::Fixed => JointKind::Weld,
+        Base::Free => JointKind::Free,
+    };
+    bare_joint(name(&text), kind, end_at(name("ground")), end_at(link.clone()))
+}
+
+/// A body's own origin.
+fn end_at(body: Name) -> Endpoint {
+    Endpoint {
+        body,
+        at: None,
+        rotated: Vec::new(),
+    }
+}
+
+fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) -> Joint {
+    Joint {
+        name,
+        kind,
+        parent,
+        child,
+        about: Vec::new(),
+        along: Vec::new(),
+        pitch: None,
+        lead: None,
+        normalise_axis: false,
+        mimic: None,
+        damping: None,
+        friction: None,
+        driven: false,
+    }
+}
+
+fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut Cx<'_>) -> Joint {
+    let mut parent = Endpoint {
+        body: given.parent.clone(),
+        at: given.origin.at(),
+        rotated: given.origin.rotated(),
+    };
+    if let Motion::Frozen(coordinate) = motion {
+        move_end(&mut parent, &given, coordinate, cx);
+        return bare_joint(given.name, JointKind::Weld, parent, end_at(given.child));
+    }
+    let alone = given.has_coordinate();
+    let mut joint = bare_joint(given.name, given.kind, parent, end_at(given.child));
+    let axis = Expr::vector(given.axis.value, &given.axis.place);
+    match given.kind {
+        // A planar joint moves in the plane perpendicular to its axis.
+        JointKind::Pin | JointKind::Planar => joint.about.push(axis),
+        JointKind::Sleeve => joint.along.push(axis),
+        _ => {}
+    }
+    joint.normalise_axis = !matches!(given.kind, JointKind::Weld | JointKind::Free);
+    (joint.damping, joint.friction) = (given.damping, given.friction);
+    match motion {
+        Motion::Follows(mimic) => joint.mimic = Some(mimic),
+        _ => joint.driven = options.inputs && alone,
+    }
+    joint
+}
+
+/// Moves a joint's end to where the joint stands still.
+fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<'_>) {
+    if coordinate == 0.0 {
+        return;
+    }
+    let axis = unit(given.axis.value);
+    match given.kind {
+        JointKind::Pin => end.rotated.push(turn_about(axis, coordinate, given)),
+        JointKind::Sleeve => {
+            let shift = given.origin.rotate(axis);
+            let from = given.origin.xyz.value;
+            let at = [0, 1, 2].map(|k| from[k] + coordinate * shift[k]);
+            if !at.iter().all(|x| x.is_finite()) {
+                let message = format!("joint {} stands infinitely far away", quote(&given.name.text));
+                cx.error(&given.name.place, message, |d| d);
+            }
+            end.at = (at != [0.0; 3]).then(|| Expr::vector(at, &given.origin.xyz.place));
+        }
+        _ => {}
+    }
+}
+
+/// A turn about a unit axis; about a coordinate axis in the words that keep zeros and ones exact.
+fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
+    let place = &given.axis.place;
+    let (word, sign) = match axis {
+        [s, 0.0, 0.0] => ("x", s),
+        [0.0, s, 0.0] => ("y", s),
+        [0.0, 0.0, s] => ("z", s),
+        _ => {
+            let arguments = vec![Expr::vector(axis, place), Expr::number(angle, place)];
+            return Expr::call("eigenaxis", arguments, place);
+        }
+    };
+    Expr::call(word, vec![Expr::number(sign * angle, place)], place)
+}
+
+/// A vector of unit length; the detour by the largest entry keeps squares from overflow and underflow.
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let scaled = vector.map(|x| x / largest);
+    let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
+    scaled.map(|x| x / length)
+}

@@ -1,0 +1,157 @@
+//! `<joint>` → [`FileJoint`]: what the file says of one joint, before locks and followers are looked at.
+
+use super::origin::{Origin, read_origin};
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, children, name, number, numbers, place, required};
+use crate::import::{Placed, UrdfOptions};
+use crate::syntax::{Expr, JointKind, Mimic, Name};
+
+/// URDF's words for the joints.
+const TYPES: [(&str, JointKind); 6] = [
+    ("revolute", JointKind::Pin),
+    ("continuous", JointKind::Pin),
+    ("prismatic", JointKind::Sleeve),
+    ("fixed", JointKind::Weld),
+    ("floating", JointKind::Free),
+    ("planar", JointKind::Planar),
+];
+
+/// A joint as the file gives it.
+pub(super) struct FileJoint {
+    /// Its name.
+    pub(super) name: Name,
+    /// Which joint.
+    pub(super) kind: JointKind,
+    /// URDF's word for it.
+    pub(super) word: &'static str,
+    /// The link that carries it.
+    pub(super) parent: Name,
+    /// The link that it carries.
+    pub(super) child: Name,
+    /// Its frame on the parent, which is the child's own frame while the coordinate is zero.
+    pub(super) origin: Origin,
+    /// Its axis, of any length but zero; unused by welds and free joints.
+    pub(super) axis: Placed<[f64; 3]>,
+    /// Whom it follows, if the user wants to know.
+    pub(super) mimic: Option<Mimic>,
+    /// Viscous damping, not zero.
+    pub(super) damping: Option<Expr>,
+    /// Coulomb friction, not zero.
+    pub(super) friction: Option<Expr>,
+}
+
+impl FileJoint {
+    /// True if one number says where the joint stands.
+    pub(super) fn has_coordinate(&self) -> bool {
+        matches!(self.kind, JointKind::Pin | JointKind::Sleeve)
+    }
+}
+
+/// Reads a joint; `None` if it does not say what it joins.
+pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<FileJoint> {
+    check_attributes(node, &["name", "type"], &[], cx);
+    let joint = name(node, "name", cx);
+    let kind = read_type(node, cx);
+    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+    let [origin, parent, child, axis, dynamics, mimic] = children(node, known, cx);
+    let origin = read_origin(origin, node, cx);
+    let parent = read_end(parent, node, "parent", cx);
+    let child = read_end(child, node, "child", cx);
+    // Exporters write an axis of zeros and a damping into fixed joints.
+    let (word, kind) = kind.unwrap_or(("fixed", JointKind::Weld));
+    let moves = kind != JointKind::Weld;
+    let has_axis = moves && kind != JointKind::Free;
+    let axis = read_axis(axis.filter(|_| has_axis), node, cx);
+    let [damping, friction] = read_dynamics(
+        dynamics.filter(|_| moves && options.honour_passive),
+        word,
+        kind,
+        cx,
+    );
+    let mimic = mimic
+        .filter(|_| moves && options.follow_mimic)
+        .and_then(|mimic| read_mimic(mimic, cx));
+    let (name, parent, child) = (joint?, parent?, child?);
+    Some(FileJoint {
+        name,
+        kind,
+        word,
+        parent,
+        child,
+        origin,
+        axis,
+        mimic,
+        damping,
+        friction,
+    })
+}
+
+fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
+    let found = node.attribute_node("type")?;
+    let known = TYPES.iter().find(|(word, _)| *word == found.value());
+    if known.is_none() {
+        let place = cx.place(found.range_value().start);
+        let message = format!("unknown joint type {}", quote(found.value()));
+        cx.error(&place, message, |d| {
+            d.suggest(found.value(), TYPES.map(|(word, _)| word))
+        });
+    }
+    known.copied()
+}
+
+/// The link at one end of a joint.
+fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
+    let end = required(end, node, which, &["link"], cx)?;
+    check_attributes(end, &["link"], &[], cx);
+    name(end, "link", cx)
+}
+
+/// The axis; URDF's default is x.
+fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
+    let default = |place: Place| Placed {
+        value: [1.0, 0.0, 0.0],
+        place,
+    };
+    let Some(axis) = axis else {
+        return default(place(node, cx));
+    };
+    check_attributes(axis, &[], &["xyz"], cx);
+    let axis = numbers(axis, "xyz", cx).unwrap_or(default(place(axis, cx)));
+    if axis.value == [0.0; 3] {
+        cx.error(&axis.place, "axis of zero length has no direction", |d| d);
+    }
+    axis
+}
+
+/// Damping and friction, in this order.
+fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut Cx<'_>) -> [Option<Expr>; 2] {
+    let Some(node) = node else {
+        return [None, None];
+    };
+    check_attributes(node, &[], &["damping", "friction"], cx);
+    ["damping", "friction"].map(|which| {
+        let found = number(node, which, cx).filter(|found| found.value != 0.0)?;
+        if found.value < 0.0 {
+            let message = format!("negative {which} `{}`", found.value);
+            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        } else if !matches!(kind, JointKind::Pin | JointKind::Sleeve) {
+            let message = format!("`{which}` of a `{word}` joint is not supported");
+            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        }
+        Some(Expr::number(found.value, &found.place))
+    })
+}
+
+const IGNORE_PASSIVE: &str = "to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+
+fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
+    check_attributes(node, &["joint"], &["multiplier", "offset"], cx);
+    let multiplier = number(node, "multiplier", cx).map_or(1.0, |found| found.value);
+    let offset = number(node, "offset", cx).map_or(0.0, |found| found.value);
+    Some(Mimic {
+        joint: name(node, "joint", cx)?,
+        multiplier,
+        offset,
+    })
+}

@@ -1,0 +1,101 @@
+//! `<robot>` → bodies and joints in coordinate order.
+//!
+//! The file is read whole before anything is concluded from it: a joint may stand before its links, and
+//! all mistakes of one kind are reported together. What follows from the topology is looked at only when
+//! every element was read, because a joint that is missing makes roots and cycles that are not the user's.
+
+use super::context::Cx;
+use super::element::{Node, check_element_name, elements, place, tag};
+use super::{Imported, UrdfOptions};
+use crate::syntax::Body;
+use joint::FileJoint;
+
+mod assemble;
+mod joint;
+mod link;
+mod motion;
+mod names;
+mod origin;
+mod tree;
+
+/// Links or joints of one file.
+const MOST: usize = 1024;
+
+/// What the file says, in its own order.
+struct Robot {
+    links: Vec<Body>,
+    joints: Vec<FileJoint>,
+}
+
+/// Reads the root element.
+pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+    if !check_root(node, cx) {
+        return None;
+    }
+    let robot = read_robot(node, options, cx)?;
+    names::check_names(&robot, cx);
+    names::check_ends(&robot, cx);
+    names::check_locks(&robot.joints, &options.lock, cx);
+    if cx.failed() {
+        return None;
+    }
+    let order = tree::order_joints(&robot, cx);
+    let motions = motion::resolve_motions(&robot.joints, &options.lock, cx);
+    let (Some(order), Some(motions)) = (order, motions) else {
+        return None;
+    };
+    let imported = assemble::assemble(robot, &order, motions, options, cx);
+    (!cx.failed()).then_some(imported)
+}
+
+/// True if the file is a robot's.
+fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
+    let name = node.tag_name().name();
+    if name == "robot" {
+        return true;
+    }
+    let message = format!("expected `<robot>`, found {}", tag(node));
+    cx.error(&place(node, cx), message, |d| match name {
+        "sdf" => d.help("this is an SDF file; only URDF can be read"),
+        "mujoco" => d.help("this is an MJCF file; only URDF can be read"),
+        _ => d.suggest(name, ["robot"]),
+    });
+    false
+}
+
+fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
+    let mut counts = [0, 0];
+    let mut robot = Robot {
+        links: Vec::new(),
+        joints: Vec::new(),
+    };
+    for child in elements(node) {
+        let kind = match child.tag_name().name() {
+            "link" => 0,
+            "joint" => 1,
+            _ => {
+                check_element_name(child, &["link", "joint"], cx);
+                continue;
+            }
+        };
+        counts[kind] += 1;
+        if counts[kind] > MOST {
+            cx.error(
+                &place(child, cx),
+                format!("more than {MOST} elements {}", tag(child)),
+                |d| d,
+            );
+            return None;
+        }
+        match kind {
+            0 => robot.links.extend(link::read_link(child, options, cx)),
+            _ => robot.joints.extend(joint::read_joint(child, options, cx)),
+        }
+    }
+    if counts[0] == 0 && !cx.failed() {
+        cx.error(&place(node, cx), "robot without a link", |d| {
+            d.help("expected `<link name=\"…\"/>`")
+        });
+    }
+    Some(robot)
+}

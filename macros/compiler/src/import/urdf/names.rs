@@ -1,0 +1,86 @@
+//! Checks that names are there, and once only: links, joints, the ends of joints, locks.
+
+use super::Robot;
+use super::joint::FileJoint;
+use crate::import::context::{Cx, position, quote};
+use crate::syntax::Name;
+use std::collections::BTreeMap;
+
+/// Reports links and joints that share a name with another, or with the ground.
+pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
+    check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
+    check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
+    for link in robot.links.iter().filter(|link| link.name.text == "ground") {
+        let message = "a link cannot be called `ground`: the fixed frame has this name";
+        cx.error(&link.name.place, message, |d| {
+            d.help("give the link another name")
+        });
+    }
+}
+
+fn check_unique<'a>(names: impl Iterator<Item = &'a Name>, what: &str, cx: &mut Cx<'_>) {
+    let mut seen = BTreeMap::new();
+    for name in names {
+        if let Some(first) = seen.get(name.text.as_str()).copied() {
+            let message = format!("second {what} with the name {}", quote(&name.text));
+            cx.error(&name.place, message, |d| {
+                d.help(format!("the first is at {}", position(first)))
+            });
+        } else {
+            seen.insert(name.text.as_str(), &name.place);
+        }
+    }
+}
+
+/// Reports joints between links that are not there, or from a link to itself, and links with two parents.
+pub(super) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
+    let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
+    let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
+    let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
+    for joint in &robot.joints {
+        for end in [&joint.parent, &joint.child] {
+            if !known.contains_key(end.text.as_str()) {
+                let message = format!("unknown link {}", quote(&end.text));
+                cx.error(&end.place, message, |d| {
+                    d.suggest(&end.text, links.iter().copied())
+                });
+            }
+        }
+        if joint.parent.text == joint.child.text {
+            let message = format!("joint {} joins a link to itself", quote(&joint.name.text));
+            cx.error(&joint.child.place, message, |d| d);
+        } else if let Some(first) = parents.get(joint.child.text.as_str()) {
+            report_two_parents(first, joint, cx);
+        } else {
+            parents.insert(&joint.child.text, joint);
+        }
+    }
+}
+
+fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
+    let (link, a, b) = (
+        quote(&second.child.text),
+        quote(&first.name.text),
+        quote(&second.name.text),
+    );
+    cx.error(
+        &second.child.place,
+        format!("link {link} is the child of two joints, {a} and {b}"),
+        |d| {
+            d.help(format!("the first is at {}", position(&first.child.place)))
+                .help("the links of a URDF file form a tree; it has no closed loops")
+        },
+    );
+}
+
+/// Reports locked joints that are not there.
+pub(super) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
+    for lock in locks
+        .iter()
+        .filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text))
+    {
+        let names = joints.iter().map(|joint| joint.name.text.as_str());
+        let message = format!("unknown joint {} in `lock`", quote(&lock.text));
+        cx.error(&lock.place, message, |d| d.suggest(&lock.text, names));
+    }
+}

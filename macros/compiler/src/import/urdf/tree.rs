@@ -1,0 +1,115 @@
+//! Joints in the file's order → joints in coordinate order, by way of the tree that the links form.
+
+use super::Robot;
+use crate::import::context::{Cx, quote, quote_all};
+use std::collections::BTreeMap;
+
+/// The tree of the links.
+pub(super) struct Order {
+    /// The link that is no joint's child.
+    pub(super) root: usize,
+    /// Joints, each with its child link: depth first, those of one link in the order of their names.
+    pub(super) joints: Vec<(usize, usize)>,
+}
+
+/// Orders the joints; `None` if the links do not form one tree. Their names are known to be good.
+pub(super) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
+    let index = |(k, name): (usize, &str)| (name.to_string(), k);
+    let links: BTreeMap<String, usize> = robot
+        .links
+        .iter()
+        .map(|link| link.name.text.as_str())
+        .enumerate()
+        .map(index)
+        .collect();
+    let ends: Option<Vec<(usize, usize)>> = robot
+        .joints
+        .iter()
+        .map(|joint| Some((*links.get(&joint.parent.text)?, *links.get(&joint.child.text)?)))
+        .collect();
+    let ends = ends?;
+    let mut above = vec![None; robot.links.len()];
+    for (joint, (_, child)) in ends.iter().enumerate() {
+        above[*child] = Some(joint);
+    }
+    report_cycles(robot, &ends, &above, cx);
+    let root = find_root(robot, &above, cx)?;
+    Some(Order {
+        root,
+        joints: depth_first(robot, root, &ends),
+    })
+}
+
+/// The link without a parent. With none, a cycle has been reported.
+fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<usize> {
+    let mut roots = (0..above.len()).filter(|link| above[*link].is_none());
+    let root = roots.next()?;
+    if let Some(second) = roots.next() {
+        let all = [root, second].into_iter().chain(roots);
+        let names = quote_all(all.map(|link| robot.links[link].name.text.as_str()));
+        let message = format!("expected one link that is no joint's child, found {names}");
+        let help = "every link but one needs a joint that has it as its child";
+        cx.error(&robot.links[second].name.place, message, |d| d.help(help));
+        return None;
+    }
+    Some(root)
+}
+
+/// Reports every cycle of joints once.
+fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
+    // Each walk up marks its links with its own number: it ends at a root, at an earlier walk, or at itself.
+    let mut walks = vec![None; above.len()];
+    for start in 0..above.len() {
+        let mut link = start;
+        while let (None, Some(joint)) = (walks[link], above[link]) {
+            walks[link] = Some(start);
+            link = ends[joint].0;
+        }
+        if walks[link] == Some(start) {
+            report_cycle(robot, ends, above, link, cx);
+        }
+        walks[link].get_or_insert(start);
+    }
+}
+
+fn report_cycle(
+    robot: &Robot,
+    ends: &[(usize, usize)],
+    above: &[Option<usize>],
+    link: usize,
+    cx: &mut Cx<'_>,
+) {
+    let up = |from: &usize| above[*from].map(|joint| ends[joint].0);
+    let Some(joint) = above[link].map(|joint| &robot.joints[joint]) else {
+        return;
+    };
+    let rest = std::iter::successors(up(&link), up).take_while(|l| *l != link);
+    let links = std::iter::once(link)
+        .chain(rest)
+        .map(|l| robot.links[l].name.text.as_str());
+    let message = format!("links {} hang from one another", quote_all(links));
+    let help = format!(
+        "joint {} closes the circle; a tree has a root",
+        quote(&joint.name.text)
+    );
+    cx.error(&joint.parent.place, message, |d| d.help(help));
+}
+
+/// Walks the tree with a stack of its own: a chain may be as long as the file allows.
+fn depth_first(robot: &Robot, root: usize, ends: &[(usize, usize)]) -> Vec<(usize, usize)> {
+    let mut below: Vec<Vec<(usize, usize)>> = vec![Vec::new(); robot.links.len()];
+    for (joint, (parent, child)) in ends.iter().enumerate() {
+        below[*parent].push((joint, *child));
+    }
+    for joints in &mut below {
+        // Reversed, because the stack is left from its end.
+        joints.sort_by(|a, b| robot.joints[b.0].name.text.cmp(&robot.joints[a.0].name.text));
+    }
+    let mut order = Vec::with_capacity(ends.len());
+    let mut stack = std::mem::take(&mut below[root]);
+    while let Some((joint, child)) = stack.pop() {
+        order.push((joint, child));
+        stack.append(&mut below[child]);
+    }
+    order
+}

@@ -1,0 +1,198 @@
+//! Text → XML tree, with the limits that keep a hostile file from taking time or memory, and the parser's
+//! errors in our words. Knows of URDF only that it is sometimes made by xacro.
+
+use super::context::{Cx, quote};
+use crate::diag::Place;
+use roxmltree::{Document, Error, Node, ParsingOptions};
+
+/// Elements inside one another. URDF needs six.
+const DEEPEST: usize = 64;
+/// Attributes of one element: the parser compares each with each.
+const MOST_ATTRIBUTES: usize = 64;
+/// Namespace declarations of a file: the parser hands each down the tree.
+const MOST_NAMESPACES: usize = 256;
+/// `<` and `=` of a file: the parser reserves memory for each.
+const MOST_MARKS: usize = 1_000_000;
+
+/// The elements whose attributes are read; the text of others (a plug-in's, say) may hold anything.
+const READ: [&str; 12] = [
+    "robot", "link", "joint", "inertial", "mass", "inertia", "origin", "axis", "parent", "child", "dynamics",
+    "mimic",
+];
+
+/// Parses the file; `None` if it is not XML or is a template.
+pub(super) fn parse<'t>(text: &'t str, cx: &mut Cx<'_>) -> Option<Document<'t>> {
+    let unclosed = match scan(text) {
+        Ok(unclosed) => unclosed,
+        Err((offset, message)) => {
+            cx.error(&cx.place(offset), message, |d| d);
+            return None;
+        }
+    };
+    let options = ParsingOptions {
+        allow_dtd: false,
+        ..ParsingOptions::default()
+    };
+    match Document::parse_with_options(text, options) {
+        Ok(document) => refuse_template(&document, cx).then_some(document),
+        Err(error) => {
+            report(&error, text, unclosed, cx);
+            None
+        }
+    }
+}
+
+/// Checks the limits without building a tree. Returns the innermost element that is never closed.
+///
+/// It follows the parser's own reading of the text up to the first mistake of the text; behind that it may
+/// err, because the parser stops there.
+fn scan(text: &str) -> Result<Option<usize>, (usize, String)> {
+    let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
+    if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
+        return Err((
+            0,
+            "the file has too many elements, attributes or namespaces for a robot".to_string(),
+        ));
+    }
+    let mut open = Vec::new();
+    let mut at = 0;
+    while let Some(start) = text[at..].find('<').map(|k| at + k) {
+        let rest = &text[start..];
+        at = start
+            + if rest.starts_with("<!--") {
+                end_behind(rest, 4, "-->")
+            } else if rest.starts_with("<![CDATA[") {
+                end_behind(rest, 9, "]]>")
+            } else if rest.starts_with("<?") {
+                end_behind(rest, 2, "?>")
+            } else if rest.starts_with("<!DOCTYPE") {
+                return Err((
+                    start,
+                    "a URDF file has no document type and no entities of its own".to_string(),
+                ));
+            } else if rest.starts_with("</") {
+                open.pop();
+                end_behind(rest, 2, ">")
+            } else {
+                scan_tag(rest, start, &mut open)?
+            };
+    }
+    Ok(open.pop())
+}
+
+/// Length of a piece of markup that ends with `end`.
+fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
+    rest.get(skip..)
+        .and_then(|body| body.find(end))
+        .map_or(rest.len(), |k| skip + k + end.len())
+}
+
+/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty.
+fn scan_tag(rest: &str, start: usize, open: &mut Vec<usize>) -> Result<usize, (usize, String)> {
+    let bytes = rest.as_bytes();
+    let (mut k, mut attributes) = (1, 0);
+    while k < bytes.len() && bytes[k] != b'>' && bytes[k] != b'<' {
+        if matches!(bytes[k], b'"' | b'\'') {
+            attributes += 1;
+            k = bytes[k + 1..]
+                .iter()
+                .position(|b| *b == bytes[k])
+                .map_or(bytes.len(), |n| k + 1 + n);
+        }
+        k += 1;
+    }
+    if attributes > MOST_ATTRIBUTES {
+        return Err((
+            start,
+            format!("element with more than {MOST_ATTRIBUTES} attributes"),
+        ));
+    }
+    let k = k.min(bytes.len());
+    if bytes[k - 1] != b'/' {
+        open.push(start);
+        if open.len() > DEEPEST {
+            return Err((start, format!("more than {DEEPEST} elements inside one another")));
+        }
+    }
+    // The `<` of a tag without end belongs to the next one.
+    Ok(if bytes.get(k) == Some(&b'>') { k + 1 } else { k })
+}
+
+/// Reports a file that xacro has still to expand, once; true if it is none.
+fn refuse_template(document: &Document<'_>, cx: &mut Cx<'_>) -> bool {
+    for node in document.descendants().filter(Node::is_element) {
+        let name = node.tag_name();
+        if name.namespace().is_some_and(|uri| uri.contains("xacro")) {
+            let message = format!(
+                "{} is an instruction to xacro",
+                quote(&format!("<xacro:{}>", name.name()))
+            );
+            cx.error(&cx.place(node.range().start), message, |d| d.help(RUN_XACRO));
+            return false;
+        }
+        if !READ.contains(&name.name()) {
+            continue;
+        }
+        let is_expression = |value: &str| value.contains("${") || value.contains("$(");
+        if let Some(attribute) = node.attributes().find(|a| is_expression(a.value())) {
+            let message = format!("{} is an expression of xacro", quote(attribute.value()));
+            cx.error(&cx.place(attribute.range_value().start), message, |d| {
+                d.help(RUN_XACRO)
+            });
+            return false;
+        }
+    }
+    true
+}
+
+const RUN_XACRO: &str = "expand the file first: `xacro robot.urdf.xacro > robot.urdf`";
+
+/// Reports the parser's error.
+fn report(error: &Error, text: &str, unclosed: Option<usize>, cx: &mut Cx<'_>) {
+    let mut help = None;
+    let message = match error {
+        Error::UnexpectedCloseTag(expected, actual, _) => {
+            let (expected, actual) = (format!("</{expected}>"), format!("</{actual}>"));
+            format!("expected {}, found {}", quote(&expected), quote(&actual))
+        }
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => match unclosed {
+            Some(_) => "this element is never closed".to_string(),
+            None => "the file ends in the middle of a tag".to_string(),
+        },
+        Error::NoRootNode => "there is no element".to_string(),
+        Error::DuplicatedAttribute(name, _) => format!("attribute {} is given twice", quote(name)),
+        Error::UnknownEntityReference(name, _) => format!("unknown entity {}", quote(&format!("&{name};"))),
+        Error::MalformedEntityReference(_) => {
+            help = Some("write `&amp;` for `&`");
+            "this `&` begins no entity".to_string()
+        }
+        Error::UnknownNamespace(prefix, _) => {
+            help = (prefix == "xacro").then_some(RUN_XACRO);
+            format!("unknown namespace prefix {}", quote(prefix))
+        }
+        other => other
+            .to_string()
+            .replace(&format!(" at {}", other.pos()), "")
+            .replace('\'', "`"),
+    };
+    if !text.trim_start().starts_with('<') {
+        help = Some("a URDF file is XML: `<robot name=\"…\"> … </robot>`");
+    }
+    cx.error(
+        &place_of(error, unclosed, cx),
+        format!("malformed XML: {message}"),
+        |d| match help {
+            Some(help) => d.help(help),
+            None => d,
+        },
+    );
+}
+
+/// The parser knows no place for an early end.
+fn place_of(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
+    match (error, unclosed) {
+        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.place(offset),
+        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end(),
+        _ => cx.place_at(error.pos().row, error.pos().col),
+    }
+}

@@ -1,0 +1,159 @@
+#![doc = include_str!("../README.md")]
+
+pub mod diag;
+pub mod emit;
+pub mod expr;
+pub mod import;
+pub mod lower;
+pub mod mechanics;
+pub mod model;
+pub mod syntax;
+
+mod derive;
+
+use diag::Diagnostics;
+use emit::{Interface, emit_failed, emit_mechanism};
+use expr::Graph;
+use proc_macro2::TokenStream;
+use std::path::{Path, PathBuf};
+use syntax::{Description, Mechanism};
+
+pub use derive::{derive, equations};
+
+/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, or one `compile_error!` for each mistake.
+/// Files are looked up in `folder`.
+pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> TokenStream {
+    let mut cx = Diagnostics::new();
+    let Some(source) = read(arguments, item, folder, &mut cx) else {
+        return cx.into_tokens();
+    };
+    let graph = Graph::new();
+    let output = compile(&source, &graph, &mut cx);
+    let interface = source.interface(output.as_ref().map(|(model, _)| model));
+    let tokens = output
+        .as_ref()
+        .map(|(_, output)| emit_mechanism(&interface, output));
+    match tokens {
+        Some(Ok(tokens)) => tokens,
+        Some(Err(message)) => {
+            cx.error(
+                source.mechanism.description.name.place.clone(),
+                format!("a mistake of Linkwork's: {message}"),
+            );
+            cx.into_tokens()
+        }
+        None => {
+            let mut tokens = cx.into_tokens();
+            tokens.extend(emit_failed(
+                &interface,
+                &derive::signatures(interface.velocities.len(), interface.configuration.len()),
+            ));
+            tokens
+        }
+    }
+}
+
+/// The messages of the mistakes in a mechanism; empty if there is none.
+pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
+    let mut cx = Diagnostics::new();
+    if let Some(source) = read(arguments, item, folder, &mut cx) {
+        compile(&source, &Graph::new(), &mut cx);
+    }
+    cx.messages()
+}
+
+/// A mechanism as read, with its file.
+pub struct Source {
+    /// What the struct and the file say.
+    pub mechanism: Mechanism,
+    /// Where the file is.
+    file: Option<PathBuf>,
+}
+
+/// Syntax and import: what the user wrote, from tokens and file. `None` if there is nothing to go on.
+pub fn read(
+    arguments: TokenStream,
+    item: TokenStream,
+    folder: &Path,
+    cx: &mut Diagnostics,
+) -> Option<Source> {
+    let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
+    let mut file = None;
+    if let Some(options) = &mechanism.urdf {
+        let path = folder.join(&options.path.text);
+        let text = import::read_file(&path, options, cx);
+        file = text.is_some().then_some(path);
+        if let Some(imported) = text.and_then(|text| import::import_urdf(&text, options, cx)) {
+            merge(&mut mechanism.description, imported, cx);
+        }
+    }
+    Some(Source { mechanism, file })
+}
+
+/// Puts the contents of a file before those of the struct.
+fn merge(description: &mut Description, imported: import::Imported, cx: &mut Diagnostics) {
+    let own_bodies = std::mem::replace(&mut description.bodies, imported.bodies);
+    let own_joints = std::mem::replace(&mut description.joints, imported.joints);
+    for own in &own_bodies {
+        if description.bodies.iter().any(|b| b.name.text == own.name.text) {
+            cx.error(
+                own.name.place.clone(),
+                format!("the file has a link `{}` already", own.name.text),
+            );
+        }
+    }
+    for own in &own_joints {
+        if description.joints.iter().any(|b| b.name.text == own.name.text) {
+            cx.error(
+                own.name.place.clone(),
+                format!("the file has a joint `{}` already", own.name.text),
+            );
+        }
+    }
+    description.bodies.extend(own_bodies);
+    description.joints.extend(own_joints);
+    if description.gravity.is_none() {
+        let place = description.name.place.clone();
+        description.gravity = Some(syntax::Expr::vector([0.0, 0.0, -9.81], &place));
+    }
+}
+
+/// Model and mechanics: the checked mechanism and everything that is generated from it.
+pub fn compile<'g>(
+    source: &Source,
+    graph: &'g Graph,
+    cx: &mut Diagnostics,
+) -> Option<(model::Model<'g>, emit::Output)> {
+    // What failed to parse would only lead to further complaints.
+    if !cx.is_empty() {
+        return None;
+    }
+    let model = model::build_model(&source.mechanism.description, graph, cx)?;
+    let output = derive(&model, cx)?;
+    Some((model, output))
+}
+
+impl Source {
+    /// What the outside sees of the mechanism; the best guess if it failed to compile.
+    fn interface(&self, model: Option<&model::Model<'_>>) -> Interface<'_> {
+        let d = &self.mechanism.description;
+        let (configuration, velocities, inputs, frames) = match model {
+            Some(m) => (
+                m.configuration.clone(),
+                m.velocities.iter().map(|(name, _)| name.clone()).collect(),
+                m.inputs.iter().map(|(name, _)| name.clone()).collect(),
+                m.frames.iter().map(|f| f.name.clone()).collect(),
+            ),
+            None => model::outline(d),
+        };
+        Interface {
+            shell: &self.mechanism.shell,
+            scalar: d.scalar.clone(),
+            configuration,
+            velocities,
+            inputs,
+            frames,
+            file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
+        }
+    }
+}

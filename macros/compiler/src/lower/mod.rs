@@ -1,0 +1,295 @@
+//! Expressions → a straight-line program: only what the outputs need, in an order in which every value is computed
+//! before it is used, with operations counted. Knows no mechanics.
+
+use crate::expr::{Expr, Function, Id, Node, Symbol};
+
+mod fuse;
+
+/// Where an operand comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    /// A constant.
+    Const(f64),
+    /// An input.
+    Symbol(Symbol),
+    /// The result of an earlier instruction.
+    Value(usize),
+}
+
+/// What an instruction computes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Op {
+    /// `-a`
+    Neg(Operand),
+    /// `a + b`
+    Add(Operand, Operand),
+    /// `a - b`
+    Sub(Operand, Operand),
+    /// `a * b`
+    Mul(Operand, Operand),
+    /// `a / b`
+    Div(Operand, Operand),
+    /// `a * b + c`
+    MulAdd(Operand, Operand, Operand),
+    /// `a * b - c`
+    MulSub(Operand, Operand, Operand),
+    /// `c - a * b`
+    NegMulAdd(Operand, Operand, Operand),
+    /// `f(a)`
+    Call(Function, Operand),
+    /// `atan2(a, b)`
+    Atan2(Operand, Operand),
+    /// `a` to the power `b`
+    Pow(Operand, Operand),
+}
+
+impl Op {
+    /// Calls `f` with every operand.
+    pub fn operands(&self, mut f: impl FnMut(Operand)) {
+        match *self {
+            Op::Neg(a) | Op::Call(_, a) => f(a),
+            Op::Add(a, b)
+            | Op::Sub(a, b)
+            | Op::Mul(a, b)
+            | Op::Div(a, b)
+            | Op::Atan2(a, b)
+            | Op::Pow(a, b) => {
+                f(a);
+                f(b);
+            }
+            Op::MulAdd(a, b, c) | Op::MulSub(a, b, c) | Op::NegMulAdd(a, b, c) => {
+                f(a);
+                f(b);
+                f(c);
+            }
+        }
+    }
+}
+
+/// A straight-line program.
+#[derive(Clone, Debug, Default)]
+pub struct Program {
+    /// Instructions; instruction `k` computes value `k`.
+    pub instructions: Vec<Op>,
+    /// How often each value is used, as an operand or an output.
+    pub uses: Vec<u32>,
+    /// The results.
+    pub outputs: Vec<Operand>,
+    /// Operations before fusing.
+    pub counts: Counts,
+}
+
+/// Operations of a program: one for every arithmetic instruction, a negation counted as an addition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions, subtractions and negations.
+    pub add: usize,
+    /// Divisions.
+    pub div: usize,
+    /// Elementary functions (a sine and a cosine of one angle are two).
+    pub calls: usize,
+}
+
+impl Counts {
+    /// Multiplications, additions and divisions together.
+    pub fn total(&self) -> usize {
+        self.mul + self.add + self.div
+    }
+}
+
+/// Lowers the outputs.
+pub fn lower(outputs: &[Expr<'_>]) -> Program {
+    let Some(first) = outputs.first() else {
+        return Program::default();
+    };
+    let graph = first.graph();
+    let order = needed(outputs);
+    let mut program = Program::default();
+    // Values of nodes, in a dense table that is as long as the graph.
+    let mut value: Vec<Operand> = vec![Operand::Const(0.0); graph.len()];
+    let mut uses = vec![0_u32; graph.len()];
+    let nodes: Vec<Node> = order.iter().map(|id| graph.node(*id)).collect();
+    for node in &nodes {
+        node.operands(|a| uses[a as usize] += 1);
+    }
+    for output in outputs {
+        uses[output.id() as usize] += 1;
+    }
+    for (id, node) in order.iter().zip(&nodes) {
+        let at = |a: Id| value[a as usize];
+        let op = match *node {
+            Node::Const(c) => {
+                value[*id as usize] = Operand::Const(c);
+                continue;
+            }
+            Node::Symbol(s) => {
+                value[*id as usize] = Operand::Symbol(s);
+                continue;
+            }
+            Node::Neg(a) => match graph.node(a) {
+                // −(a − b) is b − a where nothing else wants a − b.
+                Node::Sub(x, y) if uses[a as usize] == 1 => Op::Sub(at(y), at(x)),
+                _ => Op::Neg(at(a)),
+            },
+            Node::Add(a, b) => Op::Add(at(a), at(b)),
+            Node::Sub(a, b) => Op::Sub(at(a), at(b)),
+            Node::Mul(a, b) => Op::Mul(at(a), at(b)),
+            Node::Div(a, b) => Op::Div(at(a), at(b)),
+            Node::Call(f, a) => Op::Call(f, at(a)),
+            Node::Atan2(a, b) => Op::Atan2(at(a), at(b)),
+            Node::Pow(a, b) => Op::Pow(at(a), at(b)),
+        };
+        value[*id as usize] = Operand::Value(program.instructions.len());
+        program.instructions.push(op);
+    }
+    program.outputs = outputs.iter().map(|o| value[o.id() as usize]).collect();
+    program.sweep();
+    program.counts = program.count();
+    program
+}
+
+/// Ids of all nodes that the outputs need, operands first.
+fn needed(outputs: &[Expr<'_>]) -> Vec<Id> {
+    let Some(first) = outputs.first() else {
+        return Vec::new();
+    };
+    let graph = first.graph();
+    let mut seen = vec![false; graph.len()];
+    let mut todo: Vec<Id> = Vec::new();
+    let mut order: Vec<Id> = Vec::new();
+    for output in outputs {
+        if !std::mem::replace(&mut seen[output.id() as usize], true) {
+            todo.push(output.id());
+        }
+    }
+    while let Some(id) = todo.pop() {
+        order.push(id);
+        graph.node(id).operands(|a| {
+            if !std::mem::replace(&mut seen[a as usize], true) {
+                todo.push(a);
+            }
+        });
+    }
+    // Creation order is the algorithm's order, and operands are made before operations.
+    order.sort_unstable();
+    order
+}
+
+impl Program {
+    /// Drops instructions without use, renumbers the others and counts the uses.
+    fn sweep(&mut self) {
+        let n = self.instructions.len();
+        let mut live = vec![false; n];
+        for output in &self.outputs {
+            if let Operand::Value(k) = output {
+                live[*k] = true;
+            }
+        }
+        for k in (0..n).rev() {
+            if live[k] {
+                self.instructions[k].operands(|o| {
+                    if let Operand::Value(a) = o {
+                        live[a] = true;
+                    }
+                });
+            }
+        }
+        let mut number = vec![0; n];
+        let mut kept = Vec::with_capacity(n);
+        for k in 0..n {
+            if live[k] {
+                number[k] = kept.len();
+                kept.push(self.instructions[k].renumbered(&number));
+            }
+        }
+        self.instructions = kept;
+        for output in &mut self.outputs {
+            *output = renumber(*output, &number);
+        }
+        self.uses = vec![0; self.instructions.len()];
+        let mut count = |o: Operand| {
+            if let Operand::Value(k) = o {
+                self.uses[k] += 1;
+            }
+        };
+        for op in &self.instructions {
+            op.operands(&mut count);
+        }
+        for output in &self.outputs {
+            count(*output);
+        }
+    }
+
+    fn count(&self) -> Counts {
+        let mut counts = Counts::default();
+        for op in &self.instructions {
+            match op {
+                Op::Neg(_) | Op::Add(..) | Op::Sub(..) => counts.add += 1,
+                Op::Mul(..) => counts.mul += 1,
+                Op::Div(..) => counts.div += 1,
+                Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => {
+                    counts.mul += 1;
+                    counts.add += 1;
+                }
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => counts.calls += 1,
+            }
+        }
+        counts
+    }
+
+    /// The values of the outputs.
+    pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.instructions.len());
+        let at = |values: &[f64], o: Operand| match o {
+            Operand::Const(c) => c,
+            Operand::Symbol(s) => symbol(s),
+            Operand::Value(k) => values[k],
+        };
+        for op in &self.instructions {
+            let get = |o| at(&values, o);
+            let result = match *op {
+                Op::Neg(a) => -get(a),
+                Op::Add(a, b) => get(a) + get(b),
+                Op::Sub(a, b) => get(a) - get(b),
+                Op::Mul(a, b) => get(a) * get(b),
+                Op::Div(a, b) => get(a) / get(b),
+                Op::MulAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
+                Op::MulSub(a, b, c) => get(a).mul_add(get(b), -get(c)),
+                Op::NegMulAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
+                Op::Call(f, a) => f.apply(get(a)),
+                Op::Atan2(a, b) => get(a).atan2(get(b)),
+                Op::Pow(a, b) => get(a).powf(get(b)),
+            };
+            values.push(result);
+        }
+        self.outputs.iter().map(|o| at(&values, *o)).collect()
+    }
+}
+
+impl Op {
+    fn renumbered(self, number: &[usize]) -> Op {
+        let n = |o| renumber(o, number);
+        match self {
+            Op::Neg(a) => Op::Neg(n(a)),
+            Op::Add(a, b) => Op::Add(n(a), n(b)),
+            Op::Sub(a, b) => Op::Sub(n(a), n(b)),
+            Op::Mul(a, b) => Op::Mul(n(a), n(b)),
+            Op::Div(a, b) => Op::Div(n(a), n(b)),
+            Op::MulAdd(a, b, c) => Op::MulAdd(n(a), n(b), n(c)),
+            Op::MulSub(a, b, c) => Op::MulSub(n(a), n(b), n(c)),
+            Op::NegMulAdd(a, b, c) => Op::NegMulAdd(n(a), n(b), n(c)),
+            Op::Call(f, a) => Op::Call(f, n(a)),
+            Op::Atan2(a, b) => Op::Atan2(n(a), n(b)),
+            Op::Pow(a, b) => Op::Pow(n(a), n(b)),
+        }
+    }
+}
+
+fn renumber(o: Operand, number: &[usize]) -> Operand {
+    match o {
+        Operand::Value(k) => Operand::Value(number[k]),
+        other => other,
+    }
+}

@@ -1,0 +1,56 @@
+//! Energies, mass and centre of mass.
+
+use super::crba::{composites, momentum, to_parent};
+use super::kinematics::{Joint, twists};
+use super::position;
+use crate::expr::{Expr, Vec3};
+use crate::model::Model;
+
+/// Kinetic energy: half of twist times momentum, summed over the links.
+pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Expr<'g> {
+    let twists = twists(model, joints, v);
+    let twice = model
+        .links
+        .iter()
+        .zip(&twists)
+        .fold(model.graph.zero(), |sum, (link, twist)| {
+            sum + twist.dot(&momentum(&link.inertia, twist))
+        });
+    twice * 0.5
+}
+
+/// Total mass of what moves, and its first moment about the ground's origin in ground axes.
+pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
+    let composites = composites(model, joints);
+    let mut sum = (model.graph.zero(), Vec3::zero(model.graph));
+    for (joint, composite) in joints
+        .iter()
+        .zip(&composites)
+        .filter(|(joint, _)| joint.parent.is_none())
+    {
+        let moved = to_parent(joint, composite);
+        sum = (sum.0 + moved.mass, sum.1 + moved.moment);
+    }
+    sum
+}
+
+/// Centre of mass in ground axes.
+pub fn center_of_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec3<'g> {
+    let (mass, moment) = mass_and_moment(model, joints);
+    if mass.is_zero() {
+        return moment;
+    }
+    let inverse = mass.num(1.0) / mass;
+    moment * inverse
+}
+
+/// Potential energy of gravity and springs.
+pub fn potential_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
+    let (_, moment) = mass_and_moment(model, joints);
+    let mut energy = -model.gravity.dot(moment);
+    for spring in &model.springs {
+        let stretch = position(model, &spring.on) - spring.free;
+        energy += spring.stiffness * 0.5 * stretch.square();
+    }
+    energy
+}

@@ -1,0 +1,178 @@
+//! Placements and motions of links and named frames, each link from its parent: generated code calls one step after
+//! another along the path to a frame, so nothing is computed that a frame does not need.
+//!
+//! The parent's figures come in as given numbers: placements as nine entries of the rotation by rows and three of the
+//! position, twists and accelerations as linear and angular part in link axes.
+
+use super::Spatial;
+use super::kinematics::Joint;
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::model::{Model, NamedFrame, Pose, Quantity};
+
+/// Placement of a frame in the ground: rotation matrix and position.
+#[derive(Clone, Copy)]
+pub struct Placement<'g> {
+    /// Columns are the frame's axes in ground axes.
+    pub rotation: Mat3<'g>,
+    /// The frame's origin in ground axes.
+    pub position: Vec3<'g>,
+}
+
+impl<'g> Placement<'g> {
+    /// Twelve numbers: the rotation by rows, then the position.
+    pub fn flat(&self) -> Vec<Expr<'g>> {
+        self.rotation
+            .0
+            .iter()
+            .flatten()
+            .chain(&self.position.0)
+            .copied()
+            .collect()
+    }
+
+    fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
+        // R_parent R: rows are turned, so that the steps of the child's rotation apply to them one by one.
+        let rows: [Vec3<'g>; 3] = std::array::from_fn(|i| pose.rotation.to_child(self.rotation.row(i)));
+        Placement {
+            rotation: Mat3(rows.map(|r| r.0)),
+            position: self.position + self.rotation * pose.translation,
+        }
+    }
+}
+
+fn given<'g>(model: &Model<'g>, first: usize) -> Vec3<'g> {
+    Vec3(std::array::from_fn(|k| {
+        Quantity::Given(first + k).expr(model.graph)
+    }))
+}
+
+fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
+    Placement {
+        rotation: Mat3([given(model, 0).0, given(model, 3).0, given(model, 6).0]),
+        position: given(model, 9),
+    }
+}
+
+fn ground<'g>(model: &Model<'g>) -> Placement<'g> {
+    Placement {
+        rotation: Mat3::identity(model.graph),
+        position: Vec3::zero(model.graph),
+    }
+}
+
+fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
+    Spatial {
+        linear: given(model, first),
+        angular: given(model, first + 3),
+    }
+}
+
+/// Six numbers of a spatial vector.
+pub fn flat<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
+    s.linear.0.iter().chain(&s.angular.0).copied().collect()
+}
+
+/// Placement of a link from its parent's (12 given numbers, none for a root).
+pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
+    let parent = if joint.parent.is_some() {
+        given_placement(model)
+    } else {
+        ground(model)
+    };
+    parent.then(&Pose {
+        rotation: joint.rotation.clone(),
+        translation: joint.translation,
+    })
+}
+
+/// Placement of a named frame from its link's (12 given numbers, none if it is fixed to the ground).
+pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
+    let link = if frame.link.is_some() {
+        given_placement(model)
+    } else {
+        ground(model)
+    };
+    link.then(&frame.pose)
+}
+
+/// Twist of a link from its parent's (6 given numbers, none for a root).
+pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+    let own = joint.relative(model, v);
+    match joint.parent {
+        None => own,
+        Some(_) => joint.twist_to_child(&given_spatial(model, 0)).plus(&own),
+    }
+}
+
+/// Acceleration of a link (of its origin, angular; classical, without gravity; link axes) from its parent's twist and
+/// acceleration (12 given numbers, none for a root).
+pub fn link_acceleration<'g>(
+    model: &Model<'g>,
+    joint: &Joint<'g>,
+    v: &[Expr<'g>],
+    a: &[Expr<'g>],
+) -> Spatial<'g> {
+    let (rate, own) = (joint.relative(model, v), joint.relative(model, a));
+    let turning = rate.angular.cross(rate.linear);
+    if joint.parent.is_none() {
+        return Spatial {
+            linear: own.linear + turning,
+            angular: own.angular,
+        };
+    }
+    let (twist, parent) = (given_spatial(model, 0), given_spatial(model, 6));
+    let w = joint.rotation.to_child(twist.angular);
+    let p = joint.translation;
+    let carried = parent.linear + parent.angular.cross(p) + twist.angular.cross(twist.angular.cross(p));
+    Spatial {
+        linear: joint.rotation.to_child(carried) + (w + w).cross(rate.linear) + turning + own.linear,
+        angular: joint.rotation.to_child(parent.angular) + w.cross(rate.angular) + own.angular,
+    }
+}
+
+/// Twist of a named frame in ground axes, from its link's placement and twist (18 given numbers).
+pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
+    if frame.link.is_none() {
+        return Spatial::zero(model);
+    }
+    let (placement, twist) = (given_placement(model), given_spatial(model, 12));
+    let p = frame.pose.translation;
+    Spatial {
+        linear: placement.rotation * (twist.linear + twist.angular.cross(p)),
+        angular: placement.rotation * twist.angular,
+    }
+}
+
+/// Acceleration of a named frame in ground axes, from its link's placement, twist and acceleration (24 given numbers).
+pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
+    if frame.link.is_none() {
+        return Spatial::zero(model);
+    }
+    let placement = given_placement(model);
+    let (twist, acceleration) = (given_spatial(model, 12), given_spatial(model, 18));
+    let (p, w) = (frame.pose.translation, twist.angular);
+    let point = acceleration.linear + acceleration.angular.cross(p) + w.cross(w.cross(p));
+    Spatial {
+        linear: placement.rotation * point,
+        angular: placement.rotation * acceleration.angular,
+    }
+}
+
+/// Columns of a frame's Jacobian for the degrees of freedom of one link: twist of the frame per unit of velocity, in
+/// ground axes, from the link's placement and the frame's position (15 given numbers).
+pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
+    let placement = given_placement(model);
+    let arm = given(model, 12) - placement.position;
+    joint
+        .dofs
+        .iter()
+        .map(|dof| {
+            let s = dof.subspace.times(model.graph.num(dof.ratio));
+            let angular = placement.rotation * s.angular;
+            Spatial {
+                linear: placement.rotation * s.linear + angular.cross(arm),
+                angular,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,193 @@
+//! Lagrange's equations from the energies by differentiation: an independent derivation that proves the recursive one
+//! right, and the source of the printed equations of small mechanisms. Positions and orientations of all bodies are
+//! written out in the ground frame; velocities are their time derivatives. Not for large mechanisms: it does not share.
+//!
+//! For ball and free joints the velocities are quasi-velocities, and Lagrange's equations take the form of Boltzmann
+//! and Hamel (Whittaker, *Analytical Dynamics*, § 30): the momenta of a free joint `(P, L)` gain `w × P` and
+//! `w × L + v × P`.
+
+use super::crba::Matrix;
+use super::kinematics::{Joint, resistance};
+use super::{position, velocities};
+use crate::expr::diff::Derivative;
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::model::{Model, Motion, Quantity};
+
+/// The Lagrangian and what follows from it.
+pub struct Lagrange<'g> {
+    /// Kinetic energy.
+    pub kinetic: Expr<'g>,
+    /// Potential energy.
+    pub potential: Expr<'g>,
+    /// Mass matrix `∂²T/∂v²`.
+    pub mass_matrix: Matrix<'g>,
+    /// Bias forces.
+    pub bias: Vec<Expr<'g>>,
+}
+
+/// Rate of every entry of `q`, as an expression of `q` and `v`.
+pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let mut rates = vec![g.zero(); model.nq()];
+    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let v = |k: usize| Quantity::Velocity(k).expr(g);
+    for link in &model.links {
+        match &link.motion {
+            Motion::Turn { coordinate: c, .. }
+            | Motion::Slide { coordinate: c, .. }
+            | Motion::Helix { coordinate: c, .. } => rates[c.q] = v(c.v),
+            Motion::Ball { q: first, v: w } => {
+                quaternion_rates(&mut rates, *first, q, [v(*w), v(w + 1), v(w + 2)])
+            }
+            Motion::Free { q: first, v: w } => {
+                quaternion_rates(&mut rates, first + 3, q, [v(w + 3), v(w + 4), v(w + 5)]);
+                let quaternion = [q(first + 3), q(first + 4), q(first + 5), q(first + 6)];
+                let rotation = crate::expr::Rotation::quaternion(quaternion).matrix();
+                let linear = rotation * Vec3([v(*w), v(w + 1), v(w + 2)]);
+                rates[*first..first + 3].copy_from_slice(&linear.0);
+            }
+        }
+    }
+    rates
+}
+
+/// Rate of a quaternion x y z w with body-frame angular velocity: half of the product of both.
+fn quaternion_rates<'g>(
+    rates: &mut [Expr<'g>],
+    first: usize,
+    q: impl Fn(usize) -> Expr<'g>,
+    w: [Expr<'g>; 3],
+) {
+    let [x, y, z, s] = [q(first), q(first + 1), q(first + 2), q(first + 3)];
+    let [a, b, c] = w.map(|w| w * 0.5);
+    rates[first] = s * a + y * c - z * b;
+    rates[first + 1] = s * b + z * a - x * c;
+    rates[first + 2] = s * c + x * b - y * a;
+    rates[first + 3] = -(x * a + y * b + z * c);
+}
+
+/// Derives Lagrange's equations.
+pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
+    let g = model.graph;
+    let v = velocities(model);
+    let rates = configuration_rates(model);
+    let mut by_q: Vec<Derivative<'g>> = (0..model.nq())
+        .map(|k| Derivative::with_respect_to(Quantity::Configuration(k).symbol(), g))
+        .collect();
+    let mut by_v: Vec<Derivative<'g>> = (0..model.nv())
+        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g))
+        .collect();
+    let (kinetic, potential) = energies(model, joints, &rates, &mut by_q);
+    let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.of(kinetic)).collect();
+    let mass_matrix: Matrix<'g> = momenta
+        .iter()
+        .map(|p| by_v.iter_mut().map(|d| d.of(*p)).collect())
+        .collect();
+    let lagrangian = kinetic - potential;
+    let dl_dq: Vec<Expr<'g>> = by_q.iter_mut().map(|d| d.of(lagrangian)).collect();
+    // d/dt ∂T/∂v at constant v: the derivative along the motion.
+    let mut bias: Vec<Expr<'g>> = momenta.iter().map(|p| along(&rates, &mut by_q, *p)).collect();
+    subtract_tangent_gradient(&rates, &dl_dq, &mut by_v, &mut bias);
+    add_commutators(model, &momenta, &v, &mut bias);
+    for (bias, passive) in bias.iter_mut().zip(dissipation(model)) {
+        *bias += passive;
+    }
+    Lagrange {
+        kinetic,
+        potential,
+        mass_matrix,
+        bias,
+    }
+}
+
+/// `Σ ∂e/∂q q̇`.
+fn along<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
+    let mut sum = e.zero();
+    for (rate, d) in rates.iter().zip(by_q) {
+        sum += d.of(e) * *rate;
+    }
+    sum
+}
+
+/// The generalized coordinate forces `∂L/∂q`, taken along the directions `∂q̇/∂v` of the velocities.
+fn subtract_tangent_gradient<'g>(
+    rates: &[Expr<'g>],
+    dl_dq: &[Expr<'g>],
+    by_v: &mut [Derivative<'g>],
+    bias: &mut [Expr<'g>],
+) {
+    for (k, d) in by_v.iter_mut().enumerate() {
+        for (rate, dl) in rates.iter().zip(dl_dq) {
+            bias[k] -= d.of(*rate) * *dl;
+        }
+    }
+}
+
+fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: &mut [Expr<'g>]) {
+    let three = |e: &[Expr<'g>], k: usize| Vec3([e[k], e[k + 1], e[k + 2]]);
+    let mut add = |k: usize, term: Vec3<'g>| {
+        for i in 0..3 {
+            bias[k + i] += term[i];
+        }
+    };
+    for link in &model.links {
+        match link.motion {
+            Motion::Ball { v: k, .. } => add(k, three(v, k).cross(three(p, k))),
+            Motion::Free { v: k, .. } => {
+                let (linear, w) = (three(v, k), three(v, k + 3));
+                add(k, w.cross(three(p, k)));
+                add(k + 3, w.cross(three(p, k + 3)) + linear.cross(three(p, k)));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Dashpots and friction; springs are in the potential energy.
+fn dissipation<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let all = resistance(model, true);
+    let springs = resistance(model, false);
+    all.into_iter()
+        .zip(springs)
+        .map(|(all, springs)| all - springs)
+        .collect()
+}
+
+/// Kinetic and potential energy from positions and orientations in the ground frame.
+fn energies<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    rates: &[Expr<'g>],
+    by_q: &mut [Derivative<'g>],
+) -> (Expr<'g>, Expr<'g>) {
+    let g = model.graph;
+    let mut frames: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
+    let (mut kinetic, mut potential) = (g.zero(), g.zero());
+    for (joint, link) in joints.iter().zip(&model.links) {
+        let (r_parent, p_parent) = joint
+            .parent
+            .map_or((Mat3::identity(g), Vec3::zero(g)), |p| frames[p.0]);
+        let r = r_parent * joint.rotation.matrix();
+        let p = p_parent + r_parent * joint.translation;
+        frames.push((r, p));
+        let inertia = &link.inertia;
+        // Columns of the rotation's rate give the angular velocity in link axes: [w]× = Rᵀ Ṙ.
+        let r_rate = Mat3::from_fn(|i, j| along(rates, by_q, r.0[i][j]));
+        let p_rate = p.map(|c| along(rates, by_q, c));
+        let w = Vec3([
+            r.column(2).dot(r_rate.column(1)),
+            r.column(0).dot(r_rate.column(2)),
+            r.column(1).dot(r_rate.column(0)),
+        ]);
+        let moment_rate = r_rate * inertia.moment;
+        kinetic += inertia.mass * 0.5 * p_rate.dot(p_rate)
+            + p_rate.dot(moment_rate)
+            + w.dot(inertia.tensor * w) * 0.5;
+        potential -= model.gravity.dot(p * inertia.mass + r * inertia.moment);
+    }
+    for spring in &model.springs {
+        let stretch = position(model, &spring.on) - spring.free;
+        potential += spring.stiffness * 0.5 * stretch.square();
+    }
+    (kinetic, potential)
+}

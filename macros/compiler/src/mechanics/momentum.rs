@@ -1,0 +1,108 @@
+//! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the momentum of the whole.
+
+use super::Spatial;
+use super::crba::momentum;
+use super::energy::center_of_mass;
+use super::kinematics::{Joint, resistance, twists};
+use crate::expr::{Expr, Vec3};
+use crate::model::Model;
+
+/// Momentum of each link with everything that it carries, about its origin in its axes.
+fn composite_momenta<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    twists: &[Spatial<'g>],
+) -> Vec<Spatial<'g>> {
+    let own = model
+        .links
+        .iter()
+        .zip(twists)
+        .map(|(link, twist)| momentum(&link.inertia, twist))
+        .collect();
+    accumulate(joints, own)
+}
+
+/// Wrenches summed from the leaves to the roots.
+fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<Spatial<'g>> {
+    for (k, joint) in joints.iter().enumerate().rev() {
+        if let Some(parent) = joint.parent {
+            wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrenches[k]));
+        }
+    }
+    wrenches
+}
+
+fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
+    let mut out = vec![model.graph.zero(); model.nv()];
+    for (joint, wrench) in joints.iter().zip(wrenches) {
+        for dof in &joint.dofs {
+            out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
+        }
+    }
+    out
+}
+
+/// `p = M v`, without forming `M`.
+pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let momenta = composite_momenta(model, joints, &twists(model, joints, v));
+    project(model, joints, &momenta)
+}
+
+/// `ṗ − τ`. For a joint with subspace `S`, constant in link axes, `p = Sᵀ F` with `F` the momentum of all that the
+/// link carries; the components of `F` change by the forces and by the rotation and motion of the link:
+/// `ṗ = τ + Sᵀ (gravity − V ×* F)`.
+pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let twists = twists(model, joints, v);
+    let momenta = composite_momenta(model, joints, &twists);
+    let weights = accumulate(joints, weights(model, joints));
+    let wrenches: Vec<Spatial<'g>> = (0..joints.len())
+        .map(|k| {
+            let (t, f) = (&twists[k], &momenta[k]);
+            Spatial {
+                linear: weights[k].linear - t.angular.cross(f.linear),
+                angular: weights[k].angular - (t.angular.cross(f.angular) + t.linear.cross(f.linear)),
+            }
+        })
+        .collect();
+    let mut rate = project(model, joints, &wrenches);
+    for (rate, resistance) in rate.iter_mut().zip(resistance(model, true)) {
+        *rate -= resistance;
+    }
+    rate
+}
+
+/// Weight of each link, about its origin in its axes.
+fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
+    let mut gravity: Vec<Vec3<'g>> = Vec::new();
+    for joint in joints {
+        let parent = joint.parent.map_or(model.gravity, |p| gravity[p.0]);
+        gravity.push(joint.rotation.to_child(parent));
+    }
+    model
+        .links
+        .iter()
+        .zip(gravity)
+        .map(|(link, g)| Spatial {
+            linear: g * link.inertia.mass,
+            angular: link.inertia.moment.cross(g),
+        })
+        .collect()
+}
+
+/// Momentum of the whole in ground axes: linear, and angular about the centre of mass.
+pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
+    let momenta = composite_momenta(model, joints, &twists(model, joints, v));
+    let mut sum = Spatial::zero(model);
+    for (joint, wrench) in joints
+        .iter()
+        .zip(&momenta)
+        .filter(|(joint, _)| joint.parent.is_none())
+    {
+        sum = sum.plus(&joint.wrench_to_parent(wrench));
+    }
+    let center = center_of_mass(model, joints);
+    Spatial {
+        linear: sum.linear,
+        angular: sum.angular - center.cross(sum.linear),
+    }
+}

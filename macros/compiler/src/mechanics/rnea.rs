@@ -1,0 +1,116 @@
+//! Inverse dynamics by the recursive Newton–Euler algorithm (Luh, Walker and Paul 1980; Featherstone 2008, ch. 5), with
+//! the acceleration of the points of a link given by one matrix, `U = [ẇ]× + [w]×[w]×`
+//! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
+
+use super::Spatial;
+use super::kinematics::{Joint, resistance};
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::model::{Inertia, Model};
+
+/// `τ = M a + h`. Without accelerations it is the bias `h` alone.
+pub fn inverse_dynamics<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    a: Option<&[Expr<'g>]>,
+) -> Vec<Expr<'g>> {
+    let states = motion(model, joints, v, a);
+    let mut wrenches: Vec<Spatial<'g>> = model
+        .links
+        .iter()
+        .zip(&states)
+        .map(|(link, state)| newton_euler(&link.inertia, state))
+        .collect();
+    let mut tau = resistance(model, true);
+    for (k, joint) in joints.iter().enumerate().rev() {
+        let wrench = wrenches[k];
+        for dof in &joint.dofs {
+            tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
+        }
+        if let Some(parent) = joint.parent {
+            wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrench));
+        }
+    }
+    tau
+}
+
+/// Motion of a link: angular velocity, its products, angular acceleration, `U`, acceleration of the origin.
+#[derive(Clone, Copy)]
+struct State<'g> {
+    w: Vec3<'g>,
+    /// `wy wz`, `wz wx`, `wx wy`.
+    products: Vec3<'g>,
+    dw: Vec3<'g>,
+    u: Mat3<'g>,
+    a: Vec3<'g>,
+}
+
+impl<'g> State<'g> {
+    fn new(w: Vec3<'g>, dw: Vec3<'g>, a: Vec3<'g>) -> State<'g> {
+        let [x, y, z] = w.0;
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let products = Vec3([y * z, z * x, x * y]);
+        let [yz, zx, xy] = products.0;
+        let u = Mat3([
+            [-(yy + zz), xy - dw[2], zx + dw[1]],
+            [xy + dw[2], -(xx + zz), yz - dw[0]],
+            [zx - dw[1], yz + dw[0], -(xx + yy)],
+        ]);
+        State {
+            w,
+            products,
+            dw,
+            u,
+            a,
+        }
+    }
+}
+
+/// Outward recursion. Gravity is an acceleration of the ground upwards.
+fn motion<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    a: Option<&[Expr<'g>]>,
+) -> Vec<State<'g>> {
+    let zero = Vec3::zero(model.graph);
+    let ground = State::new(zero, zero, -model.gravity);
+    let mut states: Vec<State<'g>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let parent = joint.parent.map_or(ground, |p| states[p.0]);
+        let rate = joint.relative(model, v);
+        let w_parent = joint.rotation.to_child(parent.w);
+        let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
+        // The joint's translation: Coriolis acceleration, and the rotation of a velocity given in link axes.
+        let mut origin = joint.rotation.to_child(parent.a + parent.u * joint.translation)
+            + (w_parent + w_parent + rate.angular).cross(rate.linear);
+        if let Some(a) = a {
+            let own = joint.relative(model, a);
+            dw += own.angular;
+            origin += own.linear;
+        }
+        states.push(State::new(w_parent + rate.angular, dw, origin));
+    }
+    states
+}
+
+/// The wrench that gives a body its acceleration, about the link's origin.
+fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
+    let (i, u) = (&inertia.tensor, &s.u.0);
+    let mut moment = inertia.moment.cross(s.a);
+    // Component k of I ẇ + w × I w, gathered by the entries of I; (k, l, m) cyclic.
+    let mut components = moment.0;
+    for k in 0..3 {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        components[k] += i.at(k, k) * s.dw[k]
+            + (i.at(m, m) - i.at(l, l)) * s.products[k]
+            + i.at(l, m) * (u[l][l] - u[m][m])
+            - i.at(k, l) * u[m][k]
+            + i.at(k, m) * u[l][k];
+    }
+    moment = Vec3(components);
+    Spatial {
+        linear: s.a * inertia.mass + s.u * inertia.moment,
+        angular: moment,
+    }
+}

@@ -1,0 +1,587 @@
+//! Puts the model together: scope, tree, links, bodies, force elements.
+
+use super::inertia::check_inertia;
+use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
+use super::resolve::Scope;
+use super::tree::{GROUND, Held, Order, find_tree};
+use super::{
+    Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame, Pose,
+};
+use crate::diag::Diagnostics;
+use crate::expr::{Graph, Rotation, Sym3, Vec3};
+use crate::syntax::{ActionKind, Body, Description, Endpoint, ExprKind, Joint, JointKind, Name, Particle};
+
+/// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
+const MAX_VELOCITIES: usize = 128;
+/// Most bodies of a mechanism.
+const MAX_BODIES: usize = 1024;
+
+/// Speed at which dry friction is regularised, unless given.
+const FRICTION_SPEED: f64 = 0.01;
+
+/// What is known of a joint once its coordinates are numbered.
+struct JointCoordinates {
+    /// First index in `q` and in `v`.
+    q: usize,
+    v: usize,
+    /// The coordinates that force elements can act on: name, coordinate, whether an angle.
+    plain: Vec<(String, Coordinate, bool)>,
+}
+
+/// The model under construction.
+pub struct Builder<'a, 'g> {
+    /// Where names are looked up.
+    pub scope: Scope<'a, 'g>,
+    /// What is built.
+    pub model: Model<'g>,
+    description: &'a Description,
+    /// Bodies and jointed particles.
+    held: Vec<Held<'a>>,
+    /// Their placement, once known.
+    places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
+    /// By joint.
+    coordinates: Vec<JointCoordinates>,
+}
+
+/// Checks a description and builds its model. `None` after a mistake; every mistake is in `cx`.
+pub fn build_model<'g>(
+    description: &Description,
+    graph: &'g Graph,
+    cx: &mut Diagnostics,
+) -> Option<Model<'g>> {
+    if description.bodies.len() + description.particles.len() > MAX_BODIES {
+        cx.error(
+            description.name.place.clone(),
+            format!("more than {MAX_BODIES} bodies"),
+        );
+        return None;
+    }
+    let mut builder = Builder::new(description, graph, cx);
+    builder.number_coordinates(cx);
+    if builder.model.nv() > MAX_VELOCITIES {
+        let n = builder.model.nv();
+        cx.error(
+            description.name.place.clone(),
+            format!("{n} degrees of freedom, more than {MAX_VELOCITIES}"),
+        );
+        return None;
+    }
+    let order = find_tree(description, &builder.held, &builder.scope, cx);
+    match &order {
+        Some(order) => builder.build_links(order, cx),
+        None => builder.check_joints(cx),
+    }
+    builder.add_masses(cx);
+    if order.is_some() {
+        builder.add_actions(cx);
+        builder.add_frames(cx);
+    }
+    builder.check_unused(cx);
+    cx.is_empty().then_some(builder.model)
+}
+
+impl<'a, 'g> Builder<'a, 'g> {
+    fn new(description: &'a Description, graph: &'g Graph, cx: &mut Diagnostics) -> Builder<'a, 'g> {
+        let held: Vec<Held<'a>> = description
+            .bodies
+            .iter()
+            .map(|b| Held { name: &b.name })
+            .chain(
+                description
+                    .particles
+                    .iter()
+                    .filter(|p| p.at.is_none())
+                    .map(|p| Held { name: &p.name }),
+            )
+            .collect();
+        let all = description
+            .bodies
+            .iter()
+            .map(|b| &b.name)
+            .chain(description.particles.iter().map(|p| &p.name));
+        let others = description
+            .joints
+            .iter()
+            .map(|j| &j.name)
+            .chain(description.actions.iter().map(|a| &a.name));
+        let scope = Scope {
+            graph,
+            parameters: &description.parameters,
+            used: vec![false; description.parameters.len()].into(),
+            bodies: all.clone().map(|n| n.text.clone()).collect(),
+            others: others.map(|n| n.text.clone()).collect(),
+        };
+        for name in all.filter(|n| n.text == GROUND) {
+            cx.error(
+                name.place.clone(),
+                "the name `ground` is taken: it is what does not move",
+            );
+        }
+        check_parameter_names(&description.parameters, cx);
+        let gravity = description.gravity.as_ref().and_then(|e| scope.own_vector(e, cx));
+        let friction_speed = match &description.friction_speed {
+            Some(e) => scope.scalar(e, cx).unwrap_or(graph.one()),
+            None => graph.num(FRICTION_SPEED),
+        };
+        if let (Some(e), Some(s)) = (&description.friction_speed, friction_speed.value())
+            && s <= 0.0
+        {
+            cx.error(
+                e.place.clone(),
+                format!("this speed must be positive, but it is {s}"),
+            );
+        }
+        let model = Model {
+            graph,
+            name: description.name.text.clone(),
+            scalar: description.scalar.clone(),
+            parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
+            gravity: gravity.unwrap_or(Vec3::zero(graph)),
+            friction_speed,
+            links: Vec::new(),
+            configuration: Vec::new(),
+            velocities: Vec::new(),
+            inputs: Vec::new(),
+            frames: Vec::new(),
+            springs: Vec::new(),
+            dashpots: Vec::new(),
+            frictions: Vec::new(),
+        };
+        let places = vec![None; held.len()];
+        Builder {
+            scope,
+            model,
+            description,
+            held,
+            places,
+            coordinates: Vec::new(),
+        }
+    }
+
+    /// Numbers `q` and `v` in the order of declaration. Joints that follow another one come after, since their
+    /// masters may be declared later.
+    fn number_coordinates(&mut self, cx: &mut Diagnostics) {
+        for joint in &self.description.joints {
+            let (q, v) = (self.model.nq(), self.model.nv());
+            let mut plain = Vec::new();
+            if joint.mimic.is_none() {
+                let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
+                for name in names_q {
+                    self.model.configuration.push(full_name(&joint.name.text, name));
+                }
+                for (k, name) in names_v.iter().enumerate() {
+                    let full = full_name(&joint.name.text, name);
+                    if names_q == names_v {
+                        plain.push((
+                            full.clone(),
+                            own_coordinate(q + k, v + k),
+                            is_angle(joint.kind, name),
+                        ));
+                    }
+                    self.model.velocities.push((full, joint.name.place.clone()));
+                }
+            }
+            self.coordinates.push(JointCoordinates { q, v, plain });
+        }
+        for (k, joint) in self.description.joints.iter().enumerate() {
+            let Some(mimic) = &joint.mimic else { continue };
+            let master = self
+                .description
+                .joints
+                .iter()
+                .position(|j| j.name.text == mimic.joint.text);
+            match master.map(|m| self.coordinates[m].plain.as_slice()) {
+                Some([(_, c, _)]) => {
+                    let coordinate = Coordinate {
+                        ratio: mimic.multiplier * c.ratio,
+                        offset: mimic.multiplier * c.offset + mimic.offset,
+                        ..*c
+                    };
+                    let angle = is_angle(joint.kind, "");
+                    self.coordinates[k]
+                        .plain
+                        .push((joint.name.text.clone(), coordinate, angle));
+                }
+                _ => {
+                    cx.error(
+                        mimic.joint.place.clone(),
+                        format!("`{}` cannot be followed", mimic.joint.text),
+                    )
+                    .help("a joint that is followed has one coordinate of its own");
+                }
+            }
+        }
+    }
+
+    /// Resolves what the joints say although the tree is broken, so that all mistakes are reported at once.
+    fn check_joints(&self, cx: &mut Diagnostics) {
+        for joint in &self.description.joints {
+            let _ = self.scope.motions(joint, cx);
+            let _ = self.endpoint(&joint.parent, cx);
+            let _ = self.endpoint(&joint.child, cx);
+        }
+    }
+
+    fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
+        let translation = match &end.at {
+            Some(at) => self.scope.own_vector(at, cx),
+            None => Some(Vec3::zero(self.scope.graph)),
+        };
+        let rotation = self.scope.rotation(&end.rotated, cx);
+        Some(Pose {
+            rotation: rotation?,
+            translation: translation?,
+        })
+    }
+
+    fn build_links(&mut self, order: &Order, cx: &mut Diagnostics) {
+        for (j, parent, child) in &order.joints {
+            let joint = &self.description.joints[*j];
+            let motions = self.scope.motions(joint, cx);
+            let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
+            let start = match parent {
+                None => Some((None, Pose::identity(self.scope.graph))),
+                Some(body) => self.places[*body].clone(),
+            };
+            if let (Some(motions), Some(on_parent), Some(on_child), Some((link, pose))) =
+                (motions, on_parent, on_child, start)
+            {
+                let (link, pose) = self.add_chain(*j, &motions, link, pose.then(&on_parent));
+                self.places[*child] = Some((link, pose.then(&on_child.inverse())));
+            }
+            self.add_passive(*j, joint, cx);
+        }
+    }
+
+    /// Adds one link for each motion; returns the last link and the joint's child frame on it.
+    fn add_chain(
+        &mut self,
+        j: usize,
+        motions: &[Elementary<'g>],
+        mut link: Option<LinkId>,
+        mut pose: Pose<'g>,
+    ) -> (Option<LinkId>, Pose<'g>) {
+        let graph = self.scope.graph;
+        for (k, motion) in motions.iter().enumerate() {
+            let own = &self.coordinates[j];
+            let coordinate = own
+                .plain
+                .get(k)
+                .map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
+            let mut aligned = Rotation::identity(graph);
+            let mut align = |axis| {
+                let (axis, rotation) = super::axis::align(graph, axis);
+                aligned = rotation;
+                axis
+            };
+            let motion = match motion {
+                Elementary::Turn(axis) => Motion::Turn {
+                    axis: align(*axis),
+                    coordinate,
+                },
+                Elementary::Helix(axis, pitch) => Motion::Helix {
+                    axis: align(*axis),
+                    pitch: *pitch,
+                    coordinate,
+                },
+                Elementary::Slide(axis) => Motion::Slide {
+                    axis: *axis,
+                    coordinate,
+                },
+                Elementary::Ball => Motion::Ball { q: own.q, v: own.v },
+                Elementary::Free => Motion::Free { q: own.q, v: own.v },
+            };
+            let placement = Pose {
+                rotation: pose.rotation.then(&aligned),
+                translation: pose.translation,
+            };
+            self.model.links.push(Link {
+                parent: link,
+                placement,
+                motion,
+                inertia: Inertia::zero(graph),
+            });
+            link = Some(LinkId(self.model.links.len() - 1));
+            pose = Pose {
+                rotation: aligned.inverse(),
+                translation: Vec3::zero(graph),
+            };
+        }
+        (link, pose)
+    }
+
+    /// Damping, friction and motor of a joint itself.
+    fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
+        let [(name, on, _)] = self.coordinates[j].plain.as_slice() else {
+            return;
+        };
+        let (name, on) = (name.clone(), *on);
+        let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        self.model
+            .dashpots
+            .extend(damping.map(|damping| Dashpot { on, damping }));
+        self.model
+            .frictions
+            .extend(friction.map(|friction| CoulombFriction { on, friction }));
+        if joint.driven && joint.mimic.is_none() {
+            self.model.inputs.push((name, Input::Coordinate(on)));
+        }
+    }
+
+    fn add_masses(&mut self, cx: &mut Diagnostics) {
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            if let Some(inertia) = self.body_inertia(body, cx)
+                && let Some((Some(link), pose)) = self.places[k].clone()
+            {
+                self.attach(link, &pose, inertia);
+            }
+        }
+        for particle in &self.description.particles {
+            self.add_particle(particle, cx);
+        }
+    }
+
+    /// Mass, centre of mass and central inertia of a body.
+    fn body_inertia(
+        &self,
+        body: &Body,
+        cx: &mut Diagnostics,
+    ) -> Option<(crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>)> {
+        let graph = self.scope.graph;
+        let name = &body.name.text;
+        let mass = body
+            .mass
+            .as_ref()
+            .map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
+        let com = body
+            .com
+            .as_ref()
+            .map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
+        let inertia = body
+            .inertia
+            .as_ref()
+            .map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
+        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
+            && m < 0.0
+        {
+            cx.error(
+                e.place.clone(),
+                format!("the mass of `{name}` is not positive: it is {m}"),
+            );
+        }
+        if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
+            && !body.trust_inertia
+        {
+            let hint = e.place.file.as_ref().map(|_| {
+                "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+            });
+            check_inertia(name, inertia, &e.place, hint, cx);
+        }
+        Some((mass?, com?, inertia?))
+    }
+
+    fn attach(
+        &mut self,
+        link: LinkId,
+        pose: &Pose<'g>,
+        (mass, com, central): (crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>),
+    ) {
+        let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
+        let sum = &mut self.model.links[link.0].inertia;
+        sum.mass += added.mass;
+        sum.moment += added.moment;
+        sum.tensor = sum.tensor + added.tensor;
+    }
+
+    fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
+        let graph = self.scope.graph;
+        let mass = self.scope.scalar(&particle.mass, cx);
+        if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
+            cx.error(
+                particle.mass.place.clone(),
+                format!("the mass of `{}` is not positive: it is {m}", particle.name.text),
+            );
+        }
+        let Some(placed) = self.particle_place(particle, cx) else {
+            return;
+        };
+        if let (Some(mass), (Some(link), pose)) = (mass, &placed) {
+            self.attach(*link, pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
+        }
+    }
+
+    /// Where a particle sits: its own joint's frame, or a point of a body.
+    fn particle_place(
+        &self,
+        particle: &Particle,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let Some(at) = &particle.at else {
+            return self.held_index(&particle.name.text).and_then(|k| self.placed(k));
+        };
+        if let ExprKind::Method(body, method, arguments) = &at.kind
+            && let (ExprKind::Name(name), "at", [vector]) =
+                (&body.kind, method.text.as_str(), arguments.as_slice())
+        {
+            let vector = self.scope.own_vector(vector, cx);
+            if name == GROUND {
+                return Some((
+                    None,
+                    Pose {
+                        rotation: Rotation::identity(self.scope.graph),
+                        translation: vector?,
+                    },
+                ));
+            }
+            let Some(k) = self.held_index(name) else {
+                let known = self.held_names();
+                cx.error(body.place.clone(), format!("unknown body `{name}`"))
+                    .suggest(name, known.iter().map(String::as_str));
+                return None;
+            };
+            let (link, pose) = self.placed(k)?;
+            return Some((
+                link,
+                Pose {
+                    translation: pose.point(vector?),
+                    rotation: pose.rotation,
+                },
+            ));
+        }
+        cx.error(at.place.clone(), "a particle sits at a point of a body")
+            .help("write `at = body.at(length * x)`");
+        None
+    }
+
+    fn add_actions(&mut self, cx: &mut Diagnostics) {
+        for action in &self.description.actions {
+            self.add_action(action, cx);
+        }
+    }
+
+    fn add_frames(&mut self, cx: &mut Diagnostics) {
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            if let Some((link, pose)) = self.places[k].clone() {
+                self.model.frames.push(NamedFrame {
+                    name: body.name.text.clone(),
+                    link,
+                    pose,
+                });
+            }
+        }
+        let mut silent = Diagnostics::new();
+        for particle in &self.description.particles {
+            if let Some((link, pose)) = self.particle_place(particle, &mut silent) {
+                self.model.frames.push(NamedFrame {
+                    name: particle.name.text.clone(),
+                    link,
+                    pose,
+                });
+            }
+        }
+        if self.model.frames.len() < self.description.bodies.len() && cx.is_empty() {
+            cx.error(
+                self.description.name.place.clone(),
+                "a body has no place (this is a mistake of Linkwork's)",
+            );
+        }
+    }
+
+    /// A parameter that nothing uses is most likely a slip; a leading underscore says that it is meant.
+    fn check_unused(&self, cx: &mut Diagnostics) {
+        if !cx.is_empty() {
+            return;
+        }
+        for (parameter, used) in self
+            .description
+            .parameters
+            .iter()
+            .zip(self.scope.used.borrow().iter())
+        {
+            if !used && !parameter.text.starts_with('_') {
+                cx.error(
+                    parameter.place.clone(),
+                    format!("nothing uses the parameter `{}`", parameter.text),
+                )
+                .help(format!(
+                    "remove it, or name it `_{}` to keep it for your own use",
+                    parameter.text
+                ));
+            }
+        }
+    }
+
+    /// Index of a body or jointed particle.
+    pub fn held_index(&self, name: &str) -> Option<usize> {
+        self.held.iter().position(|h| h.name.text == name)
+    }
+
+    /// Names of bodies and jointed particles.
+    pub fn held_names(&self) -> Vec<String> {
+        self.held.iter().map(|h| h.name.text.clone()).collect()
+    }
+
+    /// The placement of a body; `None` after a mistake.
+    pub fn placed(&self, body: usize) -> Option<(Option<LinkId>, Pose<'g>)> {
+        self.places[body].clone()
+    }
+
+    /// The coordinates of a joint that force elements can act on; `None` if there is no such joint.
+    pub fn joint_coordinates(&self, name: &str) -> Option<Vec<(String, Coordinate, bool)>> {
+        let j = self.description.joints.iter().position(|j| j.name.text == name)?;
+        Some(self.coordinates[j].plain.clone())
+    }
+
+    /// Names of all joints.
+    pub fn joint_names(&self) -> Vec<String> {
+        self.description
+            .joints
+            .iter()
+            .map(|j| j.name.text.clone())
+            .collect()
+    }
+}
+
+fn is_angle(kind: JointKind, coordinate: &str) -> bool {
+    match kind {
+        JointKind::Pin | JointKind::Screw | JointKind::Universal => true,
+        JointKind::Collar | JointKind::Slot | JointKind::Planar => matches!(coordinate, "turn" | "angle"),
+        _ => false,
+    }
+}
+
+fn check_parameter_names(parameters: &[Name], cx: &mut Diagnostics) {
+    for parameter in parameters {
+        if ["x", "y", "z", "t", "pi"].contains(&parameter.text.as_str()) {
+            cx.error(
+                parameter.place.clone(),
+                format!("the name `{}` is taken", parameter.text),
+            )
+            .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
+        }
+    }
+}
+
+/// Names of the entries of `q`, `v` and `u` and of the frames of a description that may be wrong: enough for the
+/// signatures of what would have been generated.
+pub fn outline(description: &Description) -> (Vec<String>, Vec<String>, Vec<String>, Vec<String>) {
+    let (mut q, mut v, mut u) = (Vec::new(), Vec::new(), Vec::new());
+    for joint in description.joints.iter().filter(|j| j.mimic.is_none()) {
+        let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
+        q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
+        v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
+        u.extend(joint.driven.then(|| joint.name.text.clone()));
+    }
+    for action in &description.actions {
+        if matches!(action.kind, ActionKind::Force { .. } | ActionKind::Torque { .. }) {
+            u.push(action.name.text.clone());
+        }
+    }
+    (
+        q,
+        v,
+        u,
+        description.bodies.iter().map(|b| b.name.text.clone()).collect(),
+    )
+}

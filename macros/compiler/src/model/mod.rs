@@ -1,0 +1,333 @@
+//! What the user wrote → a checked mechanism: names resolved, the tree of links found, joints reduced to elementary
+//! motions, bodies lumped into the links that carry them. Values are expressions of the parameters. All mistakes of
+//! the user are found here or before; knows neither algorithms nor generated code.
+
+use crate::diag::Place;
+use crate::expr::{Expr, Graph, Rotation, Sym3, Symbol, Vec3};
+use crate::syntax::ScalarType;
+
+mod action;
+mod axis;
+mod build;
+mod inertia;
+mod joint;
+mod resolve;
+mod tree;
+
+pub use axis::sample;
+pub use build::{build_model, outline};
+
+/// What a symbol of the expressions stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A parameter of the struct.
+    Parameter(usize),
+    /// An entry of `q`.
+    Configuration(usize),
+    /// An entry of `v`.
+    Velocity(usize),
+    /// An entry of `a`.
+    Acceleration(usize),
+    /// An entry of `tau`.
+    Force(usize),
+    /// An entry of `u`.
+    Input(usize),
+    /// An entry of an intermediate result that is handed to a generated function.
+    Given(usize),
+}
+
+impl Quantity {
+    const SHIFT: u32 = 20;
+
+    /// The symbol that stands for it.
+    pub fn symbol(self) -> Symbol {
+        let (kind, index) = match self {
+            Quantity::Parameter(k) => (0, k),
+            Quantity::Configuration(k) => (1, k),
+            Quantity::Velocity(k) => (2, k),
+            Quantity::Acceleration(k) => (3, k),
+            Quantity::Force(k) => (4, k),
+            Quantity::Input(k) => (5, k),
+            Quantity::Given(k) => (6, k),
+        };
+        Symbol((kind << Quantity::SHIFT) | index as u32)
+    }
+
+    /// What a symbol stands for.
+    pub fn of(symbol: Symbol) -> Quantity {
+        let index = (symbol.0 & ((1 << Quantity::SHIFT) - 1)) as usize;
+        match symbol.0 >> Quantity::SHIFT {
+            0 => Quantity::Parameter(index),
+            1 => Quantity::Configuration(index),
+            2 => Quantity::Velocity(index),
+            3 => Quantity::Acceleration(index),
+            4 => Quantity::Force(index),
+            5 => Quantity::Input(index),
+            _ => Quantity::Given(index),
+        }
+    }
+
+    /// It as an expression.
+    pub fn expr(self, graph: &Graph) -> Expr<'_> {
+        graph.symbol(self.symbol())
+    }
+}
+
+/// Index of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LinkId(pub usize);
+
+/// The placement of a child frame in a parent frame.
+#[derive(Clone, Debug)]
+pub struct Pose<'g> {
+    /// Orientation of the child's axes in the parent's.
+    pub rotation: Rotation<'g>,
+    /// The child's origin, in parent axes.
+    pub translation: Vec3<'g>,
+}
+
+impl<'g> Pose<'g> {
+    /// The child frame is the parent frame.
+    pub fn identity(graph: &'g Graph) -> Pose<'g> {
+        Pose {
+            rotation: Rotation::identity(graph),
+            translation: Vec3::zero(graph),
+        }
+    }
+
+    /// This placement, then `next` in the child frame.
+    pub fn then(&self, next: &Pose<'g>) -> Pose<'g> {
+        Pose {
+            rotation: self.rotation.clone().then(&next.rotation),
+            translation: self.point(next.translation),
+        }
+    }
+
+    /// The placement of the parent frame in the child frame.
+    pub fn inverse(&self) -> Pose<'g> {
+        let rotation = self.rotation.inverse();
+        Pose {
+            translation: -rotation.to_parent(self.translation),
+            rotation,
+        }
+    }
+
+    /// A point of the child frame, from the parent's origin in parent axes.
+    pub fn point(&self, p: Vec3<'g>) -> Vec3<'g> {
+        self.translation + self.rotation.to_parent(p)
+    }
+}
+
+/// Mass properties of a link about its frame's origin, in its axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertia<'g> {
+    /// Mass.
+    pub mass: Expr<'g>,
+    /// Mass times centre of mass.
+    pub moment: Vec3<'g>,
+    /// Inertia about the origin.
+    pub tensor: Sym3<'g>,
+}
+
+impl<'g> Inertia<'g> {
+    /// Nothing.
+    pub fn zero(graph: &'g Graph) -> Inertia<'g> {
+        Inertia {
+            mass: graph.zero(),
+            moment: Vec3::zero(graph),
+            tensor: Sym3::zero(graph),
+        }
+    }
+
+    /// A body with its centre of mass at `c` and an inertia about it.
+    pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
+        Inertia {
+            mass,
+            moment: c * mass,
+            tensor: central + Sym3::point(mass, c),
+        }
+    }
+}
+
+/// A joint coordinate: `ratio × q[index] + offset`, with velocity `ratio × v[index]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Index in `q`.
+    pub q: usize,
+    /// Index in `v`.
+    pub v: usize,
+    /// Factor.
+    pub ratio: f64,
+    /// Offset.
+    pub offset: f64,
+}
+
+/// The motion of a link in its parent's joint frame.
+#[derive(Clone, Debug)]
+pub enum Motion<'g> {
+    /// Rotation about a unit axis.
+    Turn {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Angle.
+        coordinate: Coordinate,
+    },
+    /// Translation along a unit axis.
+    Slide {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Length.
+        coordinate: Coordinate,
+    },
+    /// Rotation about an axis with a proportional translation along it.
+    Helix {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Advance per radian.
+        pitch: Expr<'g>,
+        /// Angle.
+        coordinate: Coordinate,
+    },
+    /// All rotations: a quaternion from `q`, three angular velocities in link axes from `v`.
+    Ball {
+        /// First of four entries of `q`.
+        q: usize,
+        /// First of three entries of `v`.
+        v: usize,
+    },
+    /// All motions: position and quaternion from `q`, linear and angular velocity in link axes from `v`.
+    Free {
+        /// First of seven entries of `q`.
+        q: usize,
+        /// First of six entries of `v`.
+        v: usize,
+    },
+}
+
+/// A moving frame of the tree, with everything that is fixed in it.
+#[derive(Clone, Debug)]
+pub struct Link<'g> {
+    /// The link that carries it; the ground if none. Its index is smaller.
+    pub parent: Option<LinkId>,
+    /// The joint's frame on the parent link.
+    pub placement: Pose<'g>,
+    /// How the link moves in the joint's frame.
+    pub motion: Motion<'g>,
+    /// Mass properties of all bodies fixed in it.
+    pub inertia: Inertia<'g>,
+}
+
+/// A named frame: a body's or a particle's.
+#[derive(Clone, Debug)]
+pub struct NamedFrame<'g> {
+    /// Name.
+    pub name: String,
+    /// The link it is fixed in; the ground if none.
+    pub link: Option<LinkId>,
+    /// Its placement in the link's frame.
+    pub pose: Pose<'g>,
+}
+
+/// A linear spring on a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Spring<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Stiffness.
+    pub stiffness: Expr<'g>,
+    /// Coordinate without force.
+    pub free: Expr<'g>,
+}
+
+/// A dashpot on a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Dashpot<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Damping coefficient.
+    pub damping: Expr<'g>,
+}
+
+/// Coulomb friction on a coordinate, regularised as `friction × tanh(rate / friction_speed)`.
+#[derive(Clone, Copy, Debug)]
+pub struct CoulombFriction<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Force or torque of full friction.
+    pub friction: Expr<'g>,
+}
+
+/// What an entry of `u` does.
+#[derive(Clone, Debug)]
+pub enum Input<'g> {
+    /// A force or torque on a coordinate.
+    Coordinate(Coordinate),
+    /// A force on a link.
+    Force {
+        /// The link.
+        link: LinkId,
+        /// Point of application, in link axes.
+        point: Vec3<'g>,
+        /// Direction.
+        along: Direction<'g>,
+    },
+    /// A torque on a link.
+    Torque {
+        /// The link.
+        link: LinkId,
+        /// Direction.
+        about: Direction<'g>,
+    },
+}
+
+/// A sum of vectors, each in the axes of a link (of the ground if none).
+pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
+
+/// A checked mechanism.
+pub struct Model<'g> {
+    /// Owner of all expressions.
+    pub graph: &'g Graph,
+    /// The struct's name.
+    pub name: String,
+    /// Scalar type of the generated functions.
+    pub scalar: ScalarType,
+    /// Names of the parameters.
+    pub parameters: Vec<String>,
+    /// Uniform gravity, in ground axes.
+    pub gravity: Vec3<'g>,
+    /// Speed at which friction is regularised.
+    pub friction_speed: Expr<'g>,
+    /// Links, parents before children.
+    pub links: Vec<Link<'g>>,
+    /// Name of every entry of `q`.
+    pub configuration: Vec<String>,
+    /// Name of every entry of `v`, and where the joint stands.
+    pub velocities: Vec<(String, Place)>,
+    /// Name of every entry of `u`.
+    pub inputs: Vec<(String, Input<'g>)>,
+    /// Named frames.
+    pub frames: Vec<NamedFrame<'g>>,
+    /// Springs.
+    pub springs: Vec<Spring<'g>>,
+    /// Dashpots.
+    pub dashpots: Vec<Dashpot<'g>>,
+    /// Dry friction.
+    pub frictions: Vec<CoulombFriction<'g>>,
+}
+
+impl Model<'_> {
+    /// Number of entries of `q`.
+    pub fn nq(&self) -> usize {
+        self.configuration.len()
+    }
+
+    /// Number of entries of `v`.
+    pub fn nv(&self) -> usize {
+        self.velocities.len()
+    }
+
+    /// Number of entries of `u`.
+    pub fn nu(&self) -> usize {
+        self.inputs.len()
+    }
+}

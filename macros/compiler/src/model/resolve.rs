@@ -1,0 +1,405 @@
+//! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
+
+use super::axis::check_rotation_matrix;
+use super::{Quantity, Rotation};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
+use crate::syntax::{self, BinaryOp, ExprKind, Name};
+
+/// What names mean where an expression stands.
+pub struct Scope<'a, 'g> {
+    /// Owner of the expressions.
+    pub graph: &'g Graph,
+    /// Parameters of the struct.
+    pub parameters: &'a [Name],
+    /// Whether each parameter was used.
+    pub used: std::cell::RefCell<Vec<bool>>,
+    /// Names of bodies and particles.
+    pub bodies: Vec<String>,
+    /// Names of everything else, which are known but have no value here.
+    pub others: Vec<String>,
+}
+
+/// The axes that a vector is given in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the frame that the attribute belongs to.
+    Own,
+    /// Those of a named body (or `ground`).
+    Of(String),
+}
+
+/// A value: a scalar, or a vector as a sum over axes.
+#[derive(Clone, Debug)]
+pub enum Value<'g> {
+    /// A number.
+    Scalar(Expr<'g>),
+    /// A physical vector.
+    Vector(Vec<(Axes, Vec3<'g>)>),
+}
+
+impl Value<'_> {
+    fn word(&self) -> &'static str {
+        match self {
+            Value::Scalar(_) => "a scalar",
+            Value::Vector(_) => "a vector",
+        }
+    }
+}
+
+/// Names with a value in every expression.
+const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
+
+/// Functions of the language beside the elementary ones.
+const FUNCTIONS: [&str; 8] = ["atan2", "pow", "min", "max", "dot", "cross", "norm", "unit"];
+
+/// Functions that come with frames and points.
+const LATER: [&str; 7] = ["r", "v", "a", "omega", "alpha", "rate", "angle"];
+
+impl<'a, 'g> Scope<'a, 'g> {
+    /// A scalar.
+    pub fn scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        match self.value(e, cx)? {
+            Value::Scalar(s) => Some(s),
+            Value::Vector(_) => {
+                cx.error(e.place.clone(), "expected a scalar, found a vector");
+                None
+            }
+        }
+    }
+
+    /// A vector in the attribute's own axes.
+    pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
+        let terms = self.vector(e, cx)?;
+        let mut sum = Vec3::zero(self.graph);
+        for (axes, v) in terms {
+            if let Axes::Of(body) = axes {
+                cx.error(
+                    e.place.clone(),
+                    format!("this vector is given in the axes of `{body}`"),
+                )
+                .help("here only the frame's own axes `x`, `y` and `z` can stand");
+                return None;
+            }
+            sum += v;
+        }
+        Some(sum)
+    }
+
+    /// A vector as a sum over axes.
+    pub fn vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
+        match self.value(e, cx)? {
+            Value::Vector(v) => Some(v),
+            // The number zero is the zero vector too.
+            Value::Scalar(s) if s.is_zero() => Some(vec![(Axes::Own, Vec3::zero(self.graph))]),
+            Value::Scalar(_) => {
+                cx.error(e.place.clone(), "expected a vector, found a scalar")
+                    .help("multiply it by a direction, as in `length * y`");
+                None
+            }
+        }
+    }
+
+    /// Successive rotations about carried axes.
+    pub fn rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+        let mut whole = Some(Rotation::identity(self.graph));
+        for step in steps {
+            let next = self.rotation_step(step, cx);
+            whole = whole.zip(next).map(|(whole, next)| whole.then(&next));
+        }
+        whole
+    }
+
+    fn rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+        match &step.kind {
+            ExprKind::Call(axis, arguments) => {
+                let k = ["x", "y", "z"].iter().position(|a| *a == axis.text);
+                match (k, axis.text.as_str(), arguments.as_slice()) {
+                    (Some(k), _, [angle]) => return Some(Rotation::about_axis(k, self.scalar(angle, cx)?)),
+                    (_, "eigenaxis", [n, angle]) => {
+                        let n = self.unit_vector(n, false, cx);
+                        let angle = self.scalar(angle, cx);
+                        return Some(Rotation::eigenaxis(n?, angle?));
+                    }
+                    _ => {}
+                }
+            }
+            ExprKind::Array(_) => {
+                let matrix = self.matrix(step, cx)?;
+                return check_rotation_matrix(&matrix, &step.place, cx)
+                    .then(|| Rotation::from_matrix(matrix));
+            }
+            _ => {}
+        }
+        cx.error(step.place.clone(), "expected a rotation")
+            .help("write `x(angle)`, `y(angle)`, `z(angle)` or `eigenaxis(direction, angle)`");
+        None
+    }
+
+    /// A 3×3 matrix written as an array of rows.
+    pub fn matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
+        let mut m = Mat3::zero(self.graph);
+        let rows = match &e.kind {
+            ExprKind::Array(rows) if rows.len() == 3 => rows,
+            _ => {
+                cx.error(
+                    e.place.clone(),
+                    "expected a 3×3 matrix `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`",
+                );
+                return None;
+            }
+        };
+        for (i, row) in rows.iter().enumerate() {
+            match &row.kind {
+                ExprKind::Array(entries) if entries.len() == 3 => {
+                    for (j, entry) in entries.iter().enumerate() {
+                        m.0[i][j] = self.scalar(entry, cx)?;
+                    }
+                }
+                _ => {
+                    cx.error(row.place.clone(), "expected a row of three numbers");
+                    return None;
+                }
+            }
+        }
+        Some(m)
+    }
+
+    /// The value of an expression.
+    pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        match &e.kind {
+            ExprKind::Number(n) => Some(Value::Scalar(self.graph.num(*n))),
+            ExprKind::Name(name) => self.name(name, e, cx),
+            ExprKind::Field(inner, member) => self.member(inner, member, cx),
+            ExprKind::Neg(inner) => Some(match self.value(inner, cx)? {
+                Value::Scalar(s) => Value::Scalar(-s),
+                Value::Vector(v) => Value::Vector(v.into_iter().map(|(a, v)| (a, -v)).collect()),
+            }),
+            ExprKind::Binary(op, left, right) => {
+                let (left, right) = (self.value(left, cx), self.value(right, cx));
+                self.binary(*op, left?, right?, e, cx)
+            }
+            ExprKind::Call(function, arguments) => self.call(function, arguments, cx),
+            ExprKind::Array(items) if items.len() == 3 => {
+                let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.scalar(i, cx)).collect();
+                let vector = Vec3([parts[0]?, parts[1]?, parts[2]?]);
+                Some(Value::Vector(vec![(Axes::Own, vector)]))
+            }
+            ExprKind::Method(_, method, _) => {
+                cx.error(
+                    method.place.clone(),
+                    format!("`.{}(…)` has no value here", method.text),
+                );
+                None
+            }
+            ExprKind::Array(_) | ExprKind::Tuple(_) => {
+                cx.error(e.place.clone(), "expected a scalar or a vector");
+                None
+            }
+        }
+    }
+
+    fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
+            self.used.borrow_mut()[k] = true;
+            return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
+        }
+        if let Some(k) = ["x", "y", "z"].iter().position(|a| *a == name) {
+            return Some(Value::Vector(vec![(Axes::Own, Vec3::axis(self.graph, k))]));
+        }
+        if let Some((_, value)) = CONSTANTS.iter().find(|(c, _)| *c == name) {
+            return Some(Value::Scalar(self.graph.num(*value)));
+        }
+        if name == "t" {
+            cx.error(e.place.clone(), "an expression of time is not yet supported");
+        } else if self.bodies.iter().any(|b| b == name) || name == "ground" {
+            cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
+                .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
+        } else if self.others.iter().any(|b| b == name) {
+            cx.error(e.place.clone(), format!("`{name}` has no value here"))
+                .help("an expression is made of parameters, numbers and directions");
+        } else {
+            let known = self.parameters.iter().map(|p| p.text.as_str());
+            cx.error(e.place.clone(), format!("unknown name `{name}`"))
+                .suggest(name, known.chain(["x", "y", "z", "pi"]));
+        }
+        None
+    }
+
+    fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let ExprKind::Name(body) = &inner.kind else {
+            cx.error(
+                member.place.clone(),
+                format!("`.{}` has no value here", member.text),
+            );
+            return None;
+        };
+        if body != "ground" && !self.bodies.contains(body) {
+            let known = self.bodies.iter().map(String::as_str).chain(["ground"]);
+            cx.error(inner.place.clone(), format!("unknown body `{body}`"))
+                .suggest(body, known);
+            return None;
+        }
+        let Some(k) = ["x", "y", "z"].iter().position(|a| *a == member.text) else {
+            cx.error(member.place.clone(), format!("a body has no `{}`", member.text))
+                .help("its axes are `x`, `y` and `z`");
+            return None;
+        };
+        Some(Value::Vector(vec![(
+            Axes::Of(body.clone()),
+            Vec3::axis(self.graph, k),
+        )]))
+    }
+
+    fn binary(
+        &self,
+        op: BinaryOp,
+        left: Value<'g>,
+        right: Value<'g>,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        use Value::{Scalar, Vector};
+        Some(match (op, left, right) {
+            (BinaryOp::Add, Scalar(a), Scalar(b)) => Scalar(a + b),
+            (BinaryOp::Sub, Scalar(a), Scalar(b)) => Scalar(a - b),
+            (BinaryOp::Mul, Scalar(a), Scalar(b)) => Scalar(a * b),
+            (BinaryOp::Div, _, Scalar(b)) if b.is_zero() => {
+                cx.error(e.place.clone(), "division by zero");
+                return None;
+            }
+            (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
+            (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum(a, b)),
+            (BinaryOp::Sub, Vector(a), Vector(b)) => {
+                Vector(sum(a, b.into_iter().map(|(axes, v)| (axes, -v)).collect()))
+            }
+            (BinaryOp::Mul, Scalar(s), Vector(v)) | (BinaryOp::Mul, Vector(v), Scalar(s)) => {
+                Vector(v.into_iter().map(|(a, v)| (a, v * s)).collect())
+            }
+            (BinaryOp::Div, Vector(v), Scalar(s)) => {
+                Vector(v.into_iter().map(|(a, v)| (a, v.map(|c| c / s))).collect())
+            }
+            (BinaryOp::Mul, Vector(_), Vector(_)) => {
+                cx.error(e.place.clone(), "the product of two vectors is not defined")
+                    .help("write `dot(a, b)` or `cross(a, b)`");
+                return None;
+            }
+            (BinaryOp::Div, left, Vector(_)) => {
+                cx.error(
+                    e.place.clone(),
+                    format!("{} cannot be divided by a vector", left.word()),
+                )
+                .help("divide by its length, `norm(v)`");
+                return None;
+            }
+            (_, left, right) => {
+                let verb = if op == BinaryOp::Add {
+                    "added to"
+                } else {
+                    "subtracted from"
+                };
+                let (what, from) = if op == BinaryOp::Add {
+                    (&left, &right)
+                } else {
+                    (&right, &left)
+                };
+                cx.error(
+                    e.place.clone(),
+                    format!("{} cannot be {verb} {}", what.word(), from.word()),
+                );
+                return None;
+            }
+        })
+    }
+
+    fn call(&self, function: &Name, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let text = function.text.as_str();
+        if let Some((_, f)) = Function::ALL.iter().find(|(name, _)| *name == text) {
+            let [argument] = arguments else {
+                return wrong_count(function, 1, cx);
+            };
+            let s = self.scalar(argument, cx)?.call(*f);
+            if let crate::expr::Node::Call(f, inner) = s.node()
+                && self.graph.expr(inner).value().is_some()
+            {
+                cx.error(
+                    argument.place.clone(),
+                    format!("`{}` is not defined at this number", f.name()),
+                );
+                return None;
+            }
+            return Some(Value::Scalar(s));
+        }
+        let two_scalars = |cx: &mut Diagnostics| match arguments {
+            [a, b] => self.scalar(a, cx).zip(self.scalar(b, cx)),
+            _ => wrong_count(function, 2, cx),
+        };
+        match text {
+            "atan2" => two_scalars(cx).map(|(y, x)| Value::Scalar(y.atan2(x))),
+            "pow" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.pow(b))),
+            "min" | "max" => two_scalars(cx).map(|(a, b)| {
+                let gap = (a - b).call(Function::Abs);
+                let twice = if text == "max" { a + b + gap } else { a + b - gap };
+                Value::Scalar(twice * 0.5)
+            }),
+            "dot" | "cross" => {
+                let [a, b] = arguments else {
+                    return wrong_count(function, 2, cx);
+                };
+                let (a, b) = (self.own_vector(a, cx), self.own_vector(b, cx));
+                let (a, b) = (a?, b?);
+                Some(if text == "dot" {
+                    Value::Scalar(a.dot(b))
+                } else {
+                    Value::Vector(vec![(Axes::Own, a.cross(b))])
+                })
+            }
+            "norm" | "unit" => {
+                let [a] = arguments else {
+                    return wrong_count(function, 1, cx);
+                };
+                let v = self.own_vector(a, cx)?;
+                if text == "norm" {
+                    return Some(Value::Scalar(v.norm()));
+                }
+                if v.is_zero() {
+                    cx.error(a.place.clone(), "the zero vector has no direction");
+                    return None;
+                }
+                Some(Value::Vector(vec![(Axes::Own, v.map(|c| c / v.norm()))]))
+            }
+            _ if LATER.contains(&text) => {
+                cx.error(
+                    function.place.clone(),
+                    format!("`{text}(…)` is not yet supported"),
+                );
+                None
+            }
+            _ => {
+                let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS);
+                cx.error(function.place.clone(), format!("unknown function `{text}`"))
+                    .suggest(text, known);
+                None
+            }
+        }
+    }
+}
+
+fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
+    for (axes, v) in b {
+        match a.iter_mut().find(|(known, _)| *known == axes) {
+            Some((_, sum)) => *sum += v,
+            None => a.push((axes, v)),
+        }
+    }
+    a
+}
+
+fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option<T> {
+    let plural = if count == 1 { "" } else { "s" };
+    cx.error(
+        function.place.clone(),
+        format!("`{}` takes {count} argument{plural}", function.text),
+    );
+    None
+}

@@ -1,0 +1,350 @@
+//! The struct and its attributes: which fields are parameters, which are elements, and what their attributes say.
+
+use super::element::{self, Arguments};
+use super::expression::name;
+use super::{Base, Description, Name, ScalarType, guard};
+use crate::diag::{Diagnostics, Place};
+use proc_macro2::{Span, TokenStream};
+use syn::spanned::Spanned;
+use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type, Visibility};
+
+/// A parsed use of `#[mechanism]`.
+pub struct Mechanism {
+    /// What the struct says.
+    pub description: Description,
+    /// What remains of the struct itself.
+    pub shell: Shell,
+    /// The file to read, if one is named.
+    pub urdf: Option<UrdfOptions>,
+}
+
+/// The struct without its elements.
+pub struct Shell {
+    /// Documentation and other attributes.
+    pub attributes: Vec<Attribute>,
+    /// Visibility.
+    pub visibility: Visibility,
+    /// Name.
+    pub ident: Ident,
+    /// Generics, with their where clause.
+    pub generics: syn::Generics,
+    /// The fields that stay.
+    pub parameters: Vec<Field>,
+    /// Name and type of the fields that go, for the editor's sake.
+    pub elements: Vec<(Ident, Ident)>,
+}
+
+/// The options of `#[mechanism(urdf = "…", …)]`.
+#[derive(Clone, Debug)]
+pub struct UrdfOptions {
+    /// Path as written.
+    pub path: Name,
+    /// How the root link is held.
+    pub base: Base,
+    /// Damping and friction of the file are kept.
+    pub honour_passive: bool,
+    /// Mimic joints follow their masters.
+    pub follow_mimic: bool,
+    /// Impossible inertias are taken as they are.
+    pub trust_inertia: bool,
+    /// Every moving joint with one degree of freedom is an input.
+    pub inputs: bool,
+    /// Joints frozen at zero.
+    pub lock: Vec<Name>,
+}
+
+const OPTIONS: [&str; 10] = [
+    "gravity",
+    "friction_speed",
+    "scalar",
+    "urdf",
+    "base",
+    "passive",
+    "mimic",
+    "inertia",
+    "inputs",
+    "lock",
+];
+
+/// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
+pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
+    if !guard::check_tokens(&arguments, cx) || !guard::check_tokens(&item, cx) {
+        return None;
+    }
+    let item = parse_struct(item, cx)?;
+    let generic = check_generics(&item, cx);
+    let mut description = empty_description(&item);
+    let mut shell = Shell {
+        attributes: item.attrs.clone(),
+        visibility: item.vis.clone(),
+        ident: item.ident.clone(),
+        generics: item.generics.clone(),
+        parameters: Vec::new(),
+        elements: Vec::new(),
+    };
+    let mut scalar: Option<(ScalarType, Place)> = None;
+    for field in item.fields {
+        read_field(
+            field,
+            generic.as_deref(),
+            &mut description,
+            &mut shell,
+            &mut scalar,
+            cx,
+        );
+    }
+    let urdf = read_options(arguments, &mut description, &mut scalar, cx);
+    if let Some((scalar, _)) = scalar {
+        description.scalar = scalar;
+    }
+    if let Some(generic) = generic
+        && description.scalar != ScalarType::Generic(generic.clone())
+    {
+        cx.error(
+            item.generics.span(),
+            format!("no parameter of the mechanism has the type `{generic}`"),
+        )
+        .help("remove the type parameter, or give it to a parameter: then all generated functions use it");
+    }
+    check_duplicates(&description, cx);
+    Some(Mechanism {
+        description,
+        shell,
+        urdf,
+    })
+}
+
+fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
+    let item = match syn::parse2::<Item>(item) {
+        Ok(item) => item,
+        Err(error) => {
+            cx.syn(error);
+            return None;
+        }
+    };
+    let (span, what) = match &item {
+        Item::Struct(s) if !matches!(s.fields, Fields::Unnamed(_)) => match item {
+            Item::Struct(s) => return Some(s),
+            _ => return None,
+        },
+        Item::Struct(s) => (s.fields.span(), "a struct with unnamed fields"),
+        Item::Enum(e) => (e.enum_token.span, "an enum"),
+        Item::Union(u) => (u.union_token.span, "a union"),
+        Item::Fn(f) => (f.sig.fn_token.span, "a function"),
+        Item::Impl(i) => (i.impl_token.span, "an impl"),
+        Item::Mod(m) => (m.mod_token.span, "a module"),
+        Item::Trait(t) => (t.trait_token.span, "a trait"),
+        _ => (Span::call_site(), "this item"),
+    };
+    cx.error(span, format!("`#[mechanism]` cannot be put on {what}")).help(
+        "a mechanism is a struct with named fields: parameters (`mass: f64`) and elements (`#[body(mass = mass)] cart: Body`)",
+    );
+    None
+}
+
+/// The struct's type parameter, if it has one that can be the scalar type.
+fn check_generics(item: &ItemStruct, cx: &mut Diagnostics) -> Option<String> {
+    let mut found = None;
+    for parameter in &item.generics.params {
+        match parameter {
+            GenericParam::Type(t) if found.is_none() => found = Some(t.ident.to_string()),
+            GenericParam::Type(t) => {
+                cx.error(t.ident.span(), format!("a second type parameter `{}`", t.ident))
+                    .help("a mechanism has one scalar type at most");
+            }
+            other => {
+                cx.error(
+                    other.span(),
+                    "a mechanism can be generic over its scalar type only",
+                )
+                .help("write `struct Robot<T>` with parameters of type `T`");
+            }
+        }
+    }
+    found
+}
+
+fn empty_description(item: &ItemStruct) -> Description {
+    Description {
+        name: name(&item.ident),
+        gravity: None,
+        friction_speed: None,
+        scalar: ScalarType::F64,
+        parameters: Vec::new(),
+        bodies: Vec::new(),
+        particles: Vec::new(),
+        joints: Vec::new(),
+        actions: Vec::new(),
+    }
+}
+
+fn read_field(
+    field: Field,
+    generic: Option<&str>,
+    description: &mut Description,
+    shell: &mut Shell,
+    scalar: &mut Option<(ScalarType, Place)>,
+    cx: &mut Diagnostics,
+) {
+    let Some(ident) = field.ident.clone() else { return };
+    let field_name = name(&ident);
+    let Some(kind) = type_name(&field.ty) else {
+        cx.error(field.ty.span(), format!("field `{ident}` has a type that a mechanism cannot have"))
+            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …)");
+        return;
+    };
+    let found = match kind.to_string().as_str() {
+        "f64" => ScalarType::F64,
+        "f32" => ScalarType::F32,
+        k if Some(k) == generic => ScalarType::Generic(k.to_string()),
+        _ => {
+            element::read_element(&field_name, &kind, &field.attrs, description, cx);
+            shell.elements.push((ident, kind));
+            return;
+        }
+    };
+    check_parameter_attributes(&field_name, &field.attrs, cx);
+    unify_scalar(scalar, found, field.ty.span().into(), cx);
+    description.parameters.push(field_name);
+    shell.parameters.push(field);
+}
+
+fn unify_scalar(
+    scalar: &mut Option<(ScalarType, Place)>,
+    found: ScalarType,
+    place: Place,
+    cx: &mut Diagnostics,
+) {
+    match scalar {
+        None => *scalar = Some((found, place)),
+        Some((known, _)) if *known == found => {}
+        Some((known, _)) => {
+            cx.error(
+                place,
+                format!(
+                    "this parameter is `{}`, but others are `{}`",
+                    spell(&found),
+                    spell(known)
+                ),
+            )
+            .help("all parameters of a mechanism have one scalar type");
+        }
+    }
+}
+
+fn spell(scalar: &ScalarType) -> &str {
+    match scalar {
+        ScalarType::F64 => "f64",
+        ScalarType::F32 => "f32",
+        ScalarType::Generic(name) => name,
+    }
+}
+
+/// The last word of a plain path without arguments.
+fn type_name(ty: &Type) -> Option<Ident> {
+    match ty {
+        Type::Path(p) if p.qself.is_none() => {
+            let last = p.path.segments.last()?;
+            last.arguments.is_empty().then(|| last.ident.clone())
+        }
+        _ => None,
+    }
+}
+
+fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
+    for attribute in attributes {
+        if let Some(word) = attribute.path().get_ident()
+            && element::ATTRIBUTES.contains(&word.to_string().as_str())
+        {
+            cx.error(
+                word.span(),
+                format!(
+                    "`#[{word}]` says how an element is placed, but `{}` is a parameter",
+                    field.text
+                ),
+            )
+            .help("give the field an element's type, such as `Body` or `Pin`");
+        }
+    }
+}
+
+fn read_options(
+    arguments: TokenStream,
+    description: &mut Description,
+    scalar: &mut Option<(ScalarType, Place)>,
+    cx: &mut Diagnostics,
+) -> Option<UrdfOptions> {
+    let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
+    description.gravity = arguments.take_expr("gravity", cx);
+    description.friction_speed = arguments.take_expr("friction_speed", cx);
+    if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
+        let found = if word == "f32" {
+            ScalarType::F32
+        } else {
+            ScalarType::F64
+        };
+        unify_scalar(scalar, found, place, cx);
+    }
+    let path = arguments.take_text("urdf", cx);
+    let file_only = ["base", "passive", "mimic", "inertia", "inputs", "lock"];
+    if path.is_none() {
+        for option in file_only {
+            if let Some(place) = arguments.place_of(option) {
+                cx.error(place, format!("`{option}` is an option of a file"))
+                    .help("add `urdf = \"path/to/robot.urdf\"`, or remove the option");
+                arguments.forget(option);
+            }
+        }
+    }
+    let mut choice = |key: &str, words: [&str; 2]| {
+        arguments
+            .take_word(key, &words, cx)
+            .map(|(word, _)| word == words[1])
+    };
+    let base = choice("base", ["fixed", "free"]).unwrap_or(false);
+    let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
+    let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
+    let trust_inertia = choice("inertia", ["check", "trust"]).unwrap_or(false);
+    let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
+    let lock = arguments.take_texts("lock", cx);
+    arguments.finish("mechanism", &OPTIONS, cx);
+    Some(UrdfOptions {
+        path: path?,
+        base: if base { Base::Free } else { Base::Fixed },
+        honour_passive: !ignore_passive,
+        follow_mimic: !independent,
+        trust_inertia,
+        inputs: !no_inputs,
+        lock,
+    })
+}
+
+/// Fields of a struct have distinct names by Rust's own rules, but Rust says so later and less clearly.
+fn check_duplicates(description: &Description, cx: &mut Diagnostics) {
+    let mut names: Vec<&Name> = Vec::new();
+    names.extend(&description.parameters);
+    names.extend(description.bodies.iter().map(|b| &b.name));
+    names.extend(description.particles.iter().map(|p| &p.name));
+    names.extend(description.joints.iter().map(|j| &j.name));
+    names.extend(description.actions.iter().map(|a| &a.name));
+    check_distinct(&names, cx);
+}
+
+/// Reports every name that stands twice, at both places.
+pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) {
+    let mut sorted: Vec<(usize, &&Name)> = names.iter().enumerate().collect();
+    sorted.sort_by(|a, b| a.1.text.cmp(&b.1.text).then(a.0.cmp(&b.0)));
+    for pair in sorted.windows(2) {
+        let (first, second) = (pair[0].1, pair[1].1);
+        if first.text == second.text {
+            cx.error(
+                second.place.clone(),
+                format!("the name `{}` is used twice", second.text),
+            );
+            cx.error(
+                first.place.clone(),
+                format!("`{}` is first used here", first.text),
+            );
+        }
+    }
+}

@@ -1,0 +1,672 @@
+//! The elements: which attribute goes with which type, and the arguments of each.
+
+use super::expression::{parse_expr, parse_name};
+use super::{
+    Action, ActionKind, Body, Description, Endpoint, Expr, ExprKind, Joint, JointKind, Name, Particle,
+};
+use crate::diag::{Diagnostics, Place};
+use proc_macro2::{Span, TokenStream};
+use syn::parse::{ParseStream, Parser};
+use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
+
+/// The attributes of the language.
+pub const ATTRIBUTES: [&str; 12] = [
+    "body",
+    "particle",
+    "frame",
+    "point",
+    "joint",
+    "acts",
+    "energy",
+    "dissipation",
+    "constraint",
+    "define",
+    "output",
+    "unit",
+];
+
+/// The joints by their type's name.
+const JOINTS: [(&str, JointKind); 11] = [
+    ("Pin", JointKind::Pin),
+    ("Sleeve", JointKind::Sleeve),
+    ("Screw", JointKind::Screw),
+    ("Collar", JointKind::Collar),
+    ("Slot", JointKind::Slot),
+    ("Universal", JointKind::Universal),
+    ("Ball", JointKind::Ball),
+    ("Planar", JointKind::Planar),
+    ("Stage", JointKind::Stage),
+    ("Free", JointKind::Free),
+    ("Weld", JointKind::Weld),
+];
+
+/// Elements that act, by their type's name.
+const ACTIONS: [&str; 4] = ["Spring", "Dashpot", "Force", "Torque"];
+
+/// Elements of the language that are not yet compiled, with the attribute that belongs to them.
+const LATER: [(&str, &str); 14] = [
+    ("Inerter", "acts"),
+    ("Friction", "acts"),
+    ("Gravity", "acts"),
+    ("Attraction", "acts"),
+    ("Coordinate", ""),
+    ("Input", ""),
+    ("Frame", "frame"),
+    ("Point", "point"),
+    ("Potential", "energy"),
+    ("Rayleigh", "dissipation"),
+    ("Holonomic", "constraint"),
+    ("Nonholonomic", "constraint"),
+    ("Rolling", "constraint"),
+    ("Scalar", "output"),
+];
+
+/// Every element type of the language.
+fn element_types() -> Vec<&'static str> {
+    let mut all = vec!["Body", "Particle", "Vector", "f64"];
+    all.extend(JOINTS.iter().map(|(name, _)| *name));
+    all.extend(ACTIONS);
+    all.extend(LATER.iter().map(|(name, _)| *name));
+    all
+}
+
+/// Reads the element `name: kind` with its attributes into the description.
+pub fn read_element(
+    name: &Name,
+    kind: &Ident,
+    attributes: &[Attribute],
+    description: &mut Description,
+    cx: &mut Diagnostics,
+) {
+    let kind_name = kind.to_string();
+    let later = LATER
+        .iter()
+        .find(|(later, _)| *later == kind_name)
+        .map(|(_, attribute)| *attribute);
+    if later.is_some() || kind_name == "Vector" {
+        // The grammar of its attribute is checked all the same.
+        for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
+            let _ = Arguments::of(attribute, cx);
+        }
+        cx.error(kind.span(), format!("`{kind_name}` is not yet supported"));
+        return;
+    }
+    let joint = JOINTS
+        .iter()
+        .find(|(joint, _)| *joint == kind_name)
+        .map(|(_, joint)| *joint);
+    let expected = match kind_name.as_str() {
+        "Body" => "body",
+        "Particle" => "particle",
+        _ if joint.is_some() => "joint",
+        k if ACTIONS.contains(&k) => "acts",
+        _ => {
+            cx.error(kind.span(), format!("unknown element type `{kind_name}`"))
+                .suggest(&kind_name, element_types());
+            return;
+        }
+    };
+    let Some(mut arguments) = own_arguments(name, &kind_name, expected, attributes, cx) else {
+        return;
+    };
+    match (expected, joint) {
+        ("body", _) => {
+            let body = read_body(name, &mut arguments, cx);
+            description.bodies.push(body);
+        }
+        ("particle", _) => description
+            .particles
+            .extend(read_particle(name, &mut arguments, cx)),
+        (_, Some(joint)) => description
+            .joints
+            .extend(read_joint(name, joint, &mut arguments, cx)),
+        _ => description
+            .actions
+            .extend(read_action(name, &kind_name, &mut arguments, cx)),
+    }
+}
+
+fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
+    attribute
+        .path()
+        .get_ident()
+        .is_some_and(|i| words.contains(&i.to_string().as_str()))
+}
+
+/// The arguments of the one attribute that an element of this kind has.
+fn own_arguments(
+    name: &Name,
+    kind: &str,
+    expected: &str,
+    attributes: &[Attribute],
+    cx: &mut Diagnostics,
+) -> Option<Arguments> {
+    let mut found = None;
+    for attribute in attributes {
+        let path = attribute.path();
+        let word = path.get_ident().map_or_else(|| "?".to_string(), Ident::to_string);
+        let span = path
+            .segments
+            .first()
+            .map_or_else(Span::call_site, |s| s.ident.span());
+        if word == expected {
+            if found.is_some() {
+                cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text));
+            } else {
+                found = Some(Arguments::of(attribute, cx));
+            }
+        } else if ATTRIBUTES.contains(&word.as_str()) {
+            cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
+                .help(format!("expected `#[{expected}(…)]`"));
+            return None;
+        } else if word == "cfg" || word == "cfg_attr" {
+            cx.error(span, "an element cannot be conditional")
+                .help("put `#[cfg]` on the whole struct");
+        } else if !matches!(
+            word.as_str(),
+            "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated"
+        ) {
+            cx.error(span, format!("unknown attribute `#[{word}]` on an element"))
+                .suggest(&word, ATTRIBUTES);
+            return None;
+        }
+    }
+    if found.is_none() {
+        cx.error(
+            name.place.clone(),
+            format!("`{}` does not say how it is placed", name.text),
+        )
+        .help(format!("add {}", example(expected)));
+    }
+    found.flatten()
+}
+
+fn example(attribute: &str) -> &'static str {
+    match attribute {
+        "body" => "`#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]`",
+        "particle" => "`#[particle(mass = m, at = body.at(l * x))]`",
+        "joint" => "`#[joint(parent -> child, about = z)]`",
+        _ => "`#[acts(on = joint, …)]`",
+    }
+}
+
+fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
+    if arguments.word_given("massive") {
+        cx.error(
+            arguments.place.clone(),
+            "a body with prescribed motion is not yet supported",
+        );
+    }
+    let body = Body {
+        name: name.clone(),
+        mass: arguments.take_expr("mass", cx),
+        com: arguments.take_expr("com", cx),
+        inertia: arguments.take_expr("inertia", cx),
+        trust_inertia: false,
+    };
+    arguments.finish("body", &["mass", "com", "inertia"], cx);
+    body
+}
+
+fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Particle> {
+    let mass = arguments.need_expr("mass", "particle", cx);
+    let at = arguments.take_expr("at", cx);
+    arguments.finish("particle", &["mass", "at"], cx);
+    Some(Particle {
+        name: name.clone(),
+        mass: mass?,
+        at,
+    })
+}
+
+fn read_joint(
+    name: &Name,
+    kind: JointKind,
+    arguments: &mut Arguments,
+    cx: &mut Diagnostics,
+) -> Option<Joint> {
+    let ends = arguments.take_relation(cx);
+    let about = arguments.take_list("about", cx);
+    let along = arguments.take_list("along", cx);
+    let pitch = arguments.take_expr("pitch", cx);
+    let lead = arguments.take_expr("lead", cx);
+    let allowed: &[&str] = match kind {
+        JointKind::Pin | JointKind::Universal => &["about"],
+        JointKind::Sleeve | JointKind::Stage => &["along"],
+        JointKind::Screw => &["about", "along", "pitch", "lead"],
+        JointKind::Collar | JointKind::Slot | JointKind::Planar => &["about", "along"],
+        JointKind::Ball | JointKind::Free | JointKind::Weld => &[],
+    };
+    for key in ["about", "along", "pitch", "lead"] {
+        if let Some(place) = arguments.seen(key)
+            && !allowed.contains(&key)
+        {
+            let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();
+            let help = if list.is_empty() {
+                "it takes no axis".to_string()
+            } else {
+                format!("expected {}", crate::diag::one_of(&list))
+            };
+            cx.error(place, format!("a {} takes no `{key}`", kind_word(kind)))
+                .help(help);
+        }
+    }
+    arguments.finish("joint", allowed, cx);
+    let (parent, child) = ends?;
+    Some(Joint {
+        name: name.clone(),
+        kind,
+        parent: endpoint(parent, cx)?,
+        child: endpoint(child, cx)?,
+        about,
+        along,
+        pitch,
+        lead,
+        normalise_axis: false,
+        mimic: None,
+        damping: None,
+        friction: None,
+        driven: false,
+    })
+}
+
+/// The word of the language for a joint.
+pub fn kind_word(kind: JointKind) -> &'static str {
+    JOINTS
+        .iter()
+        .find(|(_, k)| *k == kind)
+        .map_or("joint", |(word, _)| word)
+}
+
+/// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
+fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
+    match e.kind {
+        ExprKind::Name(text) => Some(Endpoint {
+            body: Name { text, place: e.place },
+            at: None,
+            rotated: Vec::new(),
+        }),
+        ExprKind::Method(inner, method, mut arguments) => {
+            let mut end = endpoint(*inner, cx)?;
+            match method.text.as_str() {
+                "at" if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
+                    end.at = arguments.pop();
+                    Some(end)
+                }
+                "at" if arguments.len() == 1 => {
+                    cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`");
+                    None
+                }
+                "at" => {
+                    cx.error(method.place, "expected one vector in `.at(…)`")
+                        .help("write `body.at(length * x)`");
+                    None
+                }
+                "rotated" if !arguments.is_empty() => {
+                    end.rotated.extend(arguments);
+                    Some(end)
+                }
+                "rotated" => {
+                    cx.error(method.place, "`.rotated()` says no rotation")
+                        .help("write `body.rotated(z(angle))`");
+                    None
+                }
+                other => {
+                    cx.error(method.place, format!("unknown method `.{other}(…)` of a body"))
+                        .suggest(other, ["at", "rotated"]);
+                    None
+                }
+            }
+        }
+        _ => {
+            cx.error(e.place, "expected a body")
+                .help("write `ground -> cart`, `arm.at(length * x) -> hand`");
+            None
+        }
+    }
+}
+
+fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Action> {
+    if let Some(place) = arguments.place_of("between") {
+        cx.error(place, "`between` is not yet supported")
+            .help("let it act on a joint: `on = joint`");
+        arguments.forget("between");
+        arguments.forget_all();
+        return None;
+    }
+    if let Some(place) = arguments.place_of("value") {
+        cx.error(place, format!("a {kind} with a `value` is not yet supported"))
+            .help("without `value` it is an input, an entry of `u`");
+        arguments.forget_all();
+        return None;
+    }
+    let on = arguments.need_expr("on", "acts", cx);
+    let (action, keys): (Option<ActionKind>, &[&str]) = match kind {
+        "Spring" => {
+            let stiffness = arguments.need_expr("stiffness", "acts", cx);
+            let lengths = [
+                arguments.take_expr("free_length", cx),
+                arguments.take_expr("free_angle", cx),
+            ];
+            if let [Some(_), Some(second)] = &lengths {
+                cx.error(
+                    second.place.clone(),
+                    "a spring has one of `free_length` and `free_angle`",
+                );
+            }
+            let free = lengths.into_iter().flatten().next();
+            (
+                stiffness.map(|stiffness| ActionKind::Spring { stiffness, free }),
+                &["on", "stiffness", "free_length", "free_angle"],
+            )
+        }
+        "Dashpot" => {
+            let damping = arguments.need_expr("damping", "acts", cx);
+            (
+                damping.map(|damping| ActionKind::Dashpot { damping }),
+                &["on", "damping"],
+            )
+        }
+        "Force" => {
+            let along = arguments.take_expr("along", cx);
+            (Some(ActionKind::Force { along }), &["on", "along"])
+        }
+        _ => {
+            let about = arguments.take_expr("about", cx);
+            (Some(ActionKind::Torque { about }), &["on", "about"])
+        }
+    };
+    arguments.finish("acts", keys, cx);
+    Some(Action {
+        name: name.clone(),
+        kind: action?,
+        on: on?,
+    })
+}
+
+/// The arguments of an attribute: at most one relation `a -> b`, and `key = value` in any order.
+pub struct Arguments {
+    relation: Option<(Expr, Expr)>,
+    plain: Vec<Expr>,
+    named: Vec<(Name, Value)>,
+    seen: Vec<Name>,
+    place: Place,
+}
+
+enum Value {
+    Expr(Expr),
+    Text(LitStr),
+    Texts(Vec<LitStr>),
+}
+
+impl Arguments {
+    /// The arguments of `#[word(…)]`.
+    fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
+        let span = attribute
+            .path()
+            .segments
+            .first()
+            .map_or_else(Span::call_site, |s| s.ident.span());
+        match &attribute.meta {
+            Meta::List(list) => Arguments::parse(list.tokens.clone(), span, cx),
+            Meta::Path(_) => Arguments::parse(TokenStream::new(), span, cx),
+            Meta::NameValue(_) => {
+                cx.error(span, "expected arguments in parentheses");
+                None
+            }
+        }
+    }
+
+    /// Parses the tokens between the parentheses.
+    pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
+        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span)).parse2(tokens);
+        let arguments = match parsed {
+            Ok(arguments) => arguments,
+            Err(error) => {
+                cx.syn(error);
+                return None;
+            }
+        };
+        for (k, (key, _)) in arguments.named.iter().enumerate() {
+            if arguments.named[..k]
+                .iter()
+                .any(|(other, _)| other.text == key.text)
+            {
+                cx.error(key.place.clone(), format!("`{}` is given twice", key.text));
+            }
+        }
+        Some(arguments)
+    }
+
+    fn take(&mut self, key: &str) -> Option<(Name, Value)> {
+        let at = self.named.iter().position(|(name, _)| name.text == key)?;
+        let (name, value) = self.named.remove(at);
+        self.seen.push(name.clone());
+        Some((name, value))
+    }
+
+    /// Where a key that was not yet taken stands.
+    pub fn place_of(&self, key: &str) -> Option<Place> {
+        self.named
+            .iter()
+            .find(|(name, _)| name.text == key)
+            .map(|(name, _)| name.place.clone())
+    }
+
+    /// Drops a key.
+    pub fn forget(&mut self, key: &str) {
+        self.named.retain(|(name, _)| name.text != key);
+    }
+
+    fn forget_all(&mut self) {
+        self.named.clear();
+    }
+
+    /// Where a key that was taken stood.
+    fn seen(&self, key: &str) -> Option<Place> {
+        self.seen
+            .iter()
+            .find(|name| name.text == key)
+            .map(|name| name.place.clone())
+    }
+
+    fn word_given(&mut self, word: &str) -> bool {
+        let before = self.plain.len();
+        self.plain
+            .retain(|e| !matches!(&e.kind, ExprKind::Name(name) if name == word));
+        self.plain.len() < before
+    }
+
+    /// The expression of a key, if given.
+    pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
+        match self.take(key)? {
+            (_, Value::Expr(e)) => Some(e),
+            (name, _) => {
+                cx.error(name.place, format!("expected an expression for `{key}`"));
+                None
+            }
+        }
+    }
+
+    fn need_expr(&mut self, key: &str, attribute: &str, cx: &mut Diagnostics) -> Option<Expr> {
+        if self.place_of(key).is_none() {
+            // A misspelt key is reported as such, once.
+            let near = self
+                .named
+                .iter()
+                .any(|(name, _)| crate::diag::nearest(&name.text, &[key]).is_some());
+            if !near {
+                cx.error(self.place.clone(), format!("missing `{key}`"))
+                    .help(format!("write `#[{attribute}({key} = …)]`"));
+            }
+        }
+        self.take_expr(key, cx)
+    }
+
+    /// The expressions of a key: one, or several in parentheses.
+    fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
+        match self.take_expr(key, cx) {
+            Some(Expr {
+                kind: ExprKind::Tuple(items),
+                ..
+            }) => items,
+            Some(e) => vec![e],
+            None => Vec::new(),
+        }
+    }
+
+    /// The word of a key, one of a few.
+    pub fn take_word(&mut self, key: &str, words: &[&str], cx: &mut Diagnostics) -> Option<(String, Place)> {
+        let (name, value) = self.take(key)?;
+        match value {
+            Value::Expr(Expr {
+                kind: ExprKind::Name(word),
+                place,
+            }) if words.contains(&word.as_str()) => Some((word, place)),
+            Value::Expr(Expr {
+                kind: ExprKind::Name(word),
+                place,
+            }) => {
+                cx.error(place, format!("unknown choice `{word}` for `{key}`"))
+                    .suggest(&word, words.iter().copied());
+                None
+            }
+            _ => {
+                cx.error(name.place, format!("expected a word for `{key}`"))
+                    .suggest("", words.iter().copied());
+                None
+            }
+        }
+    }
+
+    /// The string of a key.
+    pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
+        match self.take(key)? {
+            (_, Value::Text(text)) => Some(Name {
+                text: text.value(),
+                place: text.span().into(),
+            }),
+            (name, _) => {
+                cx.error(name.place, format!("expected a string for `{key}`"))
+                    .help(format!("write `{key} = \"…\"`"));
+                None
+            }
+        }
+    }
+
+    /// The strings of a key, in brackets.
+    pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
+        let named = |text: &LitStr| Name {
+            text: text.value(),
+            place: text.span().into(),
+        };
+        match self.take(key) {
+            None => Vec::new(),
+            Some((_, Value::Texts(texts))) => texts.iter().map(named).collect(),
+            Some((
+                _,
+                Value::Expr(Expr {
+                    kind: ExprKind::Array(items),
+                    ..
+                }),
+            )) if items.is_empty() => Vec::new(),
+            Some((name, _)) => {
+                cx.error(name.place, format!("expected a list of strings for `{key}`"))
+                    .help(format!("write `{key} = [\"…\", \"…\"]`"));
+                Vec::new()
+            }
+        }
+    }
+
+    /// The relation `parent -> child`.
+    fn take_relation(&mut self, cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
+        if self.relation.is_none() {
+            let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
+            self.plain.clear();
+            cx.error(place, "a joint says which bodies it joins")
+                .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move");
+        }
+        self.relation.take()
+    }
+
+    /// Reports what was not taken.
+    pub fn finish(&mut self, attribute: &str, known: &[&str], cx: &mut Diagnostics) {
+        for (name, _) in self.named.drain(..) {
+            if name.text == "rotation" || name.text == "axes" {
+                cx.error(name.place, format!("`#[{attribute}]` takes no `{}`", name.text))
+                    .help("rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`");
+                continue;
+            }
+            cx.error(
+                name.place,
+                format!("unknown argument `{}` of `#[{attribute}]`", name.text),
+            )
+            .suggest(&name.text, known.iter().copied());
+        }
+        let stray = self.plain.drain(..).chain(self.relation.take().map(|(e, _)| e));
+        for e in stray {
+            cx.error(e.place, "expected `name = value`");
+        }
+    }
+}
+
+fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments> {
+    let mut arguments = Arguments {
+        relation: None,
+        plain: Vec::new(),
+        named: Vec::new(),
+        seen: Vec::new(),
+        place: span.into(),
+    };
+    while !input.is_empty() {
+        parse_argument(input, &mut arguments)?;
+        if !input.is_empty() {
+            if !input.peek(Token![,]) {
+                return Err(input.error("expected `,` or an operator"));
+            }
+            input.parse::<Token![,]>()?;
+        }
+    }
+    Ok(arguments)
+}
+
+fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Result<()> {
+    use syn::ext::IdentExt;
+    if input.peek(Ident::peek_any) && input.peek2(Token![=]) && !input.peek2(Token![==]) {
+        let key = parse_name(input)?;
+        input.parse::<Token![=]>()?;
+        let value = parse_value(input)?;
+        arguments.named.push((key, value));
+        return Ok(());
+    }
+    let first = parse_expr(input)?;
+    if input.peek(Token![->]) {
+        let arrow: Token![->] = input.parse()?;
+        let second = parse_expr(input)?;
+        if arguments.relation.is_some() {
+            return Err(syn::Error::new(arrow.spans[0], "a second `parent -> child`"));
+        }
+        arguments.relation = Some((first, second));
+    } else {
+        arguments.plain.push(first);
+    }
+    Ok(())
+}
+
+fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
+    if input.peek(LitStr) {
+        return input.parse().map(Value::Text);
+    }
+    if input.peek(token::Bracket) {
+        let ahead = input.fork();
+        let content;
+        bracketed!(content in ahead);
+        if content.peek(LitStr) {
+            let content;
+            bracketed!(content in input);
+            let texts = content.parse_terminated(<LitStr as syn::parse::Parse>::parse, Token![,])?;
+            return Ok(Value::Texts(texts.into_iter().collect()));
+        }
+    }
+    parse_expr(input).map(Value::Expr)
+}

@@ -1,0 +1,284 @@
+//! Tokens → what the user wrote, with the place of every word. Knows Rust's grammar and the names of the
+//! language's elements; no mechanics. Imported files arrive in the same [`Description`].
+
+use crate::diag::Place;
+
+pub mod attribute;
+pub mod element;
+pub mod expression;
+pub mod guard;
+
+pub use attribute::{Mechanism, Shell, UrdfOptions, parse_mechanism};
+
+/// A word of the user's: an identifier of the source or a name of an imported file.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The word.
+    pub text: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// An expression as written; names are not yet resolved.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// A number, finite.
+    Number(f64),
+    /// `length`, `x`, `t`.
+    Name(String),
+    /// `hoop.x`.
+    Field(Box<Expr>, Name),
+    /// `body.at(vector)`.
+    Method(Box<Expr>, Name, Vec<Expr>),
+    /// `sin(angle)`, `rod(mass, length, y)`.
+    Call(Name, Vec<Expr>),
+    /// `-e`.
+    Neg(Box<Expr>),
+    /// `a + b` and its kin.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `(a, b)`.
+    Tuple(Vec<Expr>),
+    /// `[a, b, c]`.
+    Array(Vec<Expr>),
+}
+
+/// The operators between two expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`, both division and the slash of `r(y / x)`
+    Div,
+}
+
+impl Expr {
+    /// A number at a place.
+    pub fn number(value: f64, place: &Place) -> Expr {
+        Expr {
+            kind: ExprKind::Number(value),
+            place: place.clone(),
+        }
+    }
+
+    /// A function call at a place.
+    pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
+        let name = Name {
+            text: function.to_string(),
+            place: place.clone(),
+        };
+        Expr {
+            kind: ExprKind::Call(name, arguments),
+            place: place.clone(),
+        }
+    }
+
+    /// Three numbers as a vector `[a, b, c]` at a place.
+    pub fn vector(values: [f64; 3], place: &Place) -> Expr {
+        let items = values.iter().map(|v| Expr::number(*v, place)).collect();
+        Expr {
+            kind: ExprKind::Array(items),
+            place: place.clone(),
+        }
+    }
+}
+
+/// The scalar type of the generated functions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ScalarType {
+    /// `f64`
+    F64,
+    /// `f32`
+    F32,
+    /// The struct's own type parameter.
+    Generic(String),
+}
+
+/// How the root of an imported file is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Base {
+    /// Welded to the ground.
+    Fixed,
+    /// On a free joint.
+    Free,
+}
+
+/// A mechanism as the user wrote it: nothing is resolved and nothing is checked but the grammar.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// The struct's name.
+    pub name: Name,
+    /// Uniform gravity, a vector in ground axes.
+    pub gravity: Option<Expr>,
+    /// Speed at which regularised Coulomb friction reaches `tanh 1` of its full value.
+    pub friction_speed: Option<Expr>,
+    /// The scalar type.
+    pub scalar: ScalarType,
+    /// Parameters: the fields that stay in the struct.
+    pub parameters: Vec<Name>,
+    /// Rigid bodies.
+    pub bodies: Vec<Body>,
+    /// Particles.
+    pub particles: Vec<Particle>,
+    /// Joints.
+    pub joints: Vec<Joint>,
+    /// Force elements and inputs.
+    pub actions: Vec<Action>,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its name, which also names its frame.
+    pub name: Name,
+    /// Mass; zero if absent.
+    pub mass: Option<Expr>,
+    /// Centre of mass, in body axes from the body's origin; the origin if absent.
+    pub com: Option<Expr>,
+    /// Inertia about the centre of mass, in body axes; zero if absent.
+    pub inertia: Option<Expr>,
+    /// The inertia is taken as it is, though no real body can have it.
+    pub trust_inertia: bool,
+}
+
+/// A particle: mass at a point.
+#[derive(Clone, Debug)]
+pub struct Particle {
+    /// Its name, which also names its frame (axes of the body that carries it).
+    pub name: Name,
+    /// Mass.
+    pub mass: Expr,
+    /// `body.at(vector)`; absent for a particle that is itself the end of a joint.
+    pub at: Option<Expr>,
+}
+
+/// The joints of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Rotation about an axis (revolute, hinge).
+    Pin,
+    /// Translation along an axis (prismatic).
+    Sleeve,
+    /// Rotation about and translation along one axis, coupled by a pitch (helical).
+    Screw,
+    /// Rotation about and translation along one axis, independent (cylindrical).
+    Collar,
+    /// Translation along one axis, then rotation about another.
+    Slot,
+    /// Rotations about two axes in turn.
+    Universal,
+    /// All rotations (spherical).
+    Ball,
+    /// Two translations and a rotation about their normal (dual sleeve-pin).
+    Planar,
+    /// Two or three translations (x-y and x-y-z stage).
+    Stage,
+    /// All motions (six degrees of freedom).
+    Free,
+    /// No motion (fixed).
+    Weld,
+}
+
+/// A joint from a parent to a child.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name; it names the coordinate of a joint with one degree of freedom.
+    pub name: Name,
+    /// Which joint.
+    pub kind: JointKind,
+    /// Parent body, with the joint's place on it.
+    pub parent: Endpoint,
+    /// Child body, with the joint's place on it.
+    pub child: Endpoint,
+    /// Rotation axes, in the joint's frame on the parent (a later one in the carried frame).
+    pub about: Vec<Expr>,
+    /// Translation axes, in the joint's frame on the parent.
+    pub along: Vec<Expr>,
+    /// Screw: advance per radian.
+    pub pitch: Option<Expr>,
+    /// Screw: advance per turn.
+    pub lead: Option<Expr>,
+    /// The axis need not be of unit length (URDF): it is normalised, and only zero is a mistake.
+    pub normalise_axis: bool,
+    /// The coordinate follows another joint's.
+    pub mimic: Option<Mimic>,
+    /// Viscous damping on the coordinate (URDF).
+    pub damping: Option<Expr>,
+    /// Coulomb friction on the coordinate (URDF).
+    pub friction: Option<Expr>,
+    /// The joint's coordinate is an input of its own (URDF: the joint's motor).
+    pub driven: bool,
+}
+
+/// One end of a joint: `body.at(position).rotated(rotation, …)`.
+#[derive(Clone, Debug)]
+pub struct Endpoint {
+    /// The body (or `ground`).
+    pub body: Name,
+    /// The joint's place on it, in body axes; its origin if absent.
+    pub at: Option<Expr>,
+    /// Rotations about carried axes, from the body's axes to the joint's: `z(a)`, `eigenaxis(n, a)`, or a
+    /// 3×3 matrix whose columns are the joint's axes.
+    pub rotated: Vec<Expr>,
+}
+
+/// `coordinate = multiplier × other + offset`.
+#[derive(Clone, Debug)]
+pub struct Mimic {
+    /// The joint that is followed.
+    pub joint: Name,
+    /// Factor.
+    pub multiplier: f64,
+    /// Offset.
+    pub offset: f64,
+}
+
+/// A force element or an input.
+#[derive(Clone, Debug)]
+pub struct Action {
+    /// Its name; an input's name is its entry in `INPUTS`.
+    pub name: Name,
+    /// What it is, with its parameters.
+    pub kind: ActionKind,
+    /// What it acts on: `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
+    pub on: Expr,
+}
+
+/// The force elements of the language.
+#[derive(Clone, Debug)]
+pub enum ActionKind {
+    /// Linear spring on a joint coordinate.
+    Spring {
+        /// Stiffness.
+        stiffness: Expr,
+        /// Coordinate at which the force is zero.
+        free: Option<Expr>,
+    },
+    /// Linear dashpot on a joint coordinate.
+    Dashpot {
+        /// Damping coefficient.
+        damping: Expr,
+    },
+    /// Force input: on a sliding coordinate, or on a body along a direction.
+    Force {
+        /// Direction, for a force on a body.
+        along: Option<Expr>,
+    },
+    /// Torque input: on a turning coordinate, or on a body about a direction.
+    Torque {
+        /// Direction, for a torque on a body.
+        about: Option<Expr>,
+    },
+}

@@ -1,0 +1,152 @@
+//! Integrators: one step of the equations of motion after another, without allocation.
+//!
+//! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with
+//! `q = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore stay unit
+//! and every method keeps its order for ball and free joints (Runge–Kutta–Munthe-Kaas methods: Hairer, Lubich and
+//! Wanner, *Geometric Numerical Integration* (2006), IV.8).
+//!
+//! | method | order | step | for |
+//! | --- | --- | --- | --- |
+//! | [`DormandPrince`] | 5 | adaptive | the default: accuracy on request, dense output |
+//! | [`Rk4`] | 4 | fixed | real time, a known cost per step |
+//! | [`ImplicitMidpoint`] | 2 | fixed | long runs: energy and momenta do not drift |
+//! | [`SemiImplicitEuler`] | 1 | fixed | games and learning: one evaluation per step |
+//!
+//! [`simulate`](crate::simulate()) is the way to use them; [`Method`] is what it needs of one.
+
+mod dormand_prince;
+mod error;
+mod implicit_midpoint;
+mod path;
+mod rk4;
+mod semi_implicit_euler;
+mod system;
+
+pub use dormand_prince::DormandPrince;
+pub use error::Error;
+pub use implicit_midpoint::ImplicitMidpoint;
+pub use path::{Path, Step};
+pub use rk4::Rk4;
+pub use semi_implicit_euler::SemiImplicitEuler;
+pub use system::{Dynamics, Held, Inputs, NoInputs, Steered, System};
+
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::SVector;
+
+/// Where a mechanism is: time, s, configuration and velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<T, const NQ: usize, const NV: usize> {
+    /// Time, s.
+    pub t: T,
+    /// Configuration, `NQ` numbers in the mechanism's order.
+    pub q: SVector<T, NQ>,
+    /// Velocity, `NV` numbers in the mechanism's order.
+    pub v: SVector<T, NV>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
+    /// The state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
+    pub(crate) fn finite(self) -> Result<Self, Error> {
+        let finite = self.t.is_finite() && is_finite(&self.q) && is_finite(&self.v);
+        if finite {
+            Ok(self)
+        } else {
+            Err(Error::NotFinite { t: to_f64(self.t) })
+        }
+    }
+}
+
+/// What invalidates things that a method remembers from the step before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jump {
+    /// The inputs changed at once; the state did not.
+    Inputs,
+    /// The state (and perhaps the inputs) changed at once.
+    State,
+}
+
+/// A one-step method.
+///
+/// The method itself holds what the user sets (step, tolerance); what it carries from step to step is `Memory`.
+pub trait Method<T: Real> {
+    /// What one step hands to the next.
+    type Memory<const NV: usize>: Clone + core::fmt::Debug;
+
+    /// Whether steps must end on sample times; otherwise samples are interpolated.
+    const FIXED: bool;
+
+    /// Whether the settings make sense: [`Error::InvalidStep`] names the first that does not.
+    fn check(&self) -> Result<(), Error>;
+
+    /// Memory at the start of a run.
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV>;
+
+    /// Forgets what no longer holds after a jump of the inputs or the state.
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump);
+
+    /// One step from `start`, ending at `until` at the latest and exactly there if at all. With `dense` the
+    /// [`Step`] interpolates to the method's order (or order 3), without it perhaps only linearly.
+    ///
+    /// Errors: [`Error::NotFinite`] where the dynamics are, and the method's own.
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        memory: &mut Self::Memory<NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error>;
+}
+
+pub(crate) fn is_finite<T: Real, const N: usize>(x: &SVector<T, N>) -> bool {
+    x.iter().all(|x| x.is_finite())
+}
+
+/// The largest magnitude of the entries.
+fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
+}
+
+/// `Ok` for finite positive numbers, otherwise [`Error::InvalidStep`] with the name of the setting.
+pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
+    if value.is_finite() && value > T::zero() {
+        Ok(())
+    } else {
+        Err(Error::InvalidStep {
+            name,
+            value: to_f64(value),
+        })
+    }
+}
+
+/// The first of equal steps, none longer than `longest`, that end exactly on `until`: its length and its end.
+///
+/// Errors: [`Error::StepTooSmall`] if the step is lost in the rounding of `t`.
+fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Error> {
+    let (h, end) = match until {
+        None => (longest, t + longest),
+        Some(until) => {
+            let remaining = until - t;
+            // Rounding of the times must not cost one more step.
+            let slack = constant::<T>(8.0) * epsilon::<T>() * (t.abs() + until.abs() + remaining) / longest;
+            let count = (remaining / longest - slack).ceil();
+            if count > T::one() {
+                (remaining / count, t + remaining / count)
+            } else {
+                (remaining, until)
+            }
+        }
+    };
+    if end > t {
+        Ok((h, end))
+    } else {
+        Err(Error::StepTooSmall {
+            t: to_f64(t),
+            h: to_f64(h),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,97 @@
+//! The classical Runge–Kutta method.
+
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive};
+use crate::Real;
+use crate::private::{constant, to_f64};
+use nalgebra::SVector;
+
+/// The classical Runge–Kutta method, order 4, with fixed steps.
+///
+/// Four evaluations of the dynamics per step, in the tangent space at the step's start. Source: Kutta (1901);
+/// Munthe-Kaas, *High order Runge–Kutta methods on manifolds*, Appl. Numer. Math. 29 (1999).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rk4<T> {
+    step: T,
+}
+
+impl<T: Real> Rk4<T> {
+    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    pub fn step(step: T) -> Self {
+        Self { step }
+    }
+}
+
+/// `φ̇` and `v̇` at one stage.
+type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
+
+/// Rates at the time `h` after `start`, reached with the mean rates `mean`.
+fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    h: T,
+    mean: &Rates<T, NV>,
+) -> Rates<T, NV> {
+    let displacement = mean.0 * h;
+    let v = start.v + mean.1 * h;
+    let q = system.integrate(&start.q, &displacement);
+    (
+        system.tangent_rate(&displacement, &v),
+        system.acceleration(start.t + h, &q, &v),
+    )
+}
+
+impl<T: Real> Method<T> for Rk4<T> {
+    /// Acceleration at the end of the last step, if it was needed there.
+    type Memory<const NV: usize> = Option<SVector<T, NV>>;
+
+    const FIXED: bool = true;
+
+    fn check(&self) -> Result<(), Error> {
+        positive("the step", self.step)
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        None
+    }
+
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+        *memory = None;
+    }
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        memory: &mut Self::Memory<NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        let (h, t) = equal_step(self.step, start.t, until)?;
+        let known = memory.take();
+        let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
+        let half = h * constant(0.5);
+        let k1 = (start.v, before);
+        let k2 = rates(system, start, half, &k1);
+        let k3 = rates(system, start, half, &k2);
+        let k4 = rates(system, start, h, &k3);
+        let two = constant::<T>(2.0);
+        let sixth = h / constant(6.0);
+        let displacement = (k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth;
+        let v = start.v + (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth;
+        let end = State {
+            t,
+            q: system.integrate(&start.q, &displacement),
+            v,
+        };
+        let end = end
+            .finite()
+            .map_err(|_| Error::NotFinite { t: to_f64(start.t) })?;
+        let step = Step::linear(*start, end, displacement);
+        if !dense {
+            return Ok(step);
+        }
+        let after = system.acceleration(end.t, &end.q, &end.v);
+        *memory = Some(after);
+        Ok(step.cubic(system, &displacement, [before, after]))
+    }
+}

@@ -1,0 +1,173 @@
+//! A mechanism together with its inputs: the ordinary differential equation that integrators see.
+
+use crate::{Mechanism, Real};
+use nalgebra::SVector;
+
+/// The inputs `u` of a mechanism over time. Implemented for what `simulate` accepts.
+pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
+    /// The inputs at a time and state.
+    fn at(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU>;
+
+    /// The control period, s, of inputs that are held constant in between.
+    fn period(&self) -> Option<T> {
+        None
+    }
+
+    /// Begins a control period.
+    fn renew(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) {}
+}
+
+/// Inputs that are zero.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoInputs;
+
+impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for NoInputs {
+    fn at(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
+        SVector::zeros()
+    }
+}
+
+/// Inputs that are a function of time and state, evaluated whenever an integrator asks.
+#[derive(Clone, Copy, Debug)]
+pub struct Steered<F>(
+    /// `|t, q, v| u`.
+    pub F,
+);
+
+impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for Steered<F>
+where
+    T: Real,
+    F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
+{
+    fn at(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU> {
+        (self.0)(t, q, v)
+    }
+}
+
+/// Inputs of a digital controller: a function evaluated once per control period and held in between.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<T, F, const NU: usize> {
+    period: T,
+    control: F,
+    u: SVector<T, NU>,
+}
+
+impl<T: Real, F, const NU: usize> Held<T, F, NU> {
+    /// Evaluates `control(t, q, v)` every `period` seconds.
+    pub fn new(period: T, control: F) -> Self {
+        Self {
+            period,
+            control,
+            u: SVector::zeros(),
+        }
+    }
+}
+
+impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for Held<T, F, NU>
+where
+    T: Real,
+    F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
+{
+    fn at(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
+        self.u
+    }
+
+    fn period(&self) -> Option<T> {
+        Some(self.period)
+    }
+
+    fn renew(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) {
+        self.u = (self.control)(t, q, v);
+    }
+}
+
+/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in [`Mechanism`].
+pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
+    /// `q ⊕ dv`.
+    fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;
+
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
+    fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// `v̇` under the inputs at time `t`.
+    fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// Generalized momentum `p = M(q) v`.
+    fn momentum(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// `ṗ` under the inputs at time `t`.
+    fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// `M(q)⁻¹ p`, improved from the estimate `v`: exact up to rounding for any `v`, best for a near one.
+    fn velocity(&self, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+}
+
+/// A mechanism and its inputs.
+#[derive(Debug)]
+pub struct System<'m, M, I, const NU: usize> {
+    /// The mechanism.
+    pub mechanism: &'m M,
+    /// Its inputs.
+    pub inputs: I,
+}
+
+impl<M, I: Clone, const NU: usize> Clone for System<'_, M, I, NU> {
+    fn clone(&self) -> Self {
+        Self {
+            mechanism: self.mechanism,
+            inputs: self.inputs.clone(),
+        }
+    }
+}
+
+impl<M, I, const NU: usize> System<'_, M, I, NU> {
+    fn forces<T: Real, const NQ: usize, const NV: usize>(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV>
+    where
+        M: Mechanism<NQ, NV, NU, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        if NU == 0 {
+            return SVector::zeros();
+        }
+        self.mechanism.generalized_forces(q, &self.inputs.at(t, q, v))
+    }
+}
+
+impl<T, M, I, const NQ: usize, const NV: usize, const NU: usize> Dynamics<T, NQ, NV> for System<'_, M, I, NU>
+where
+    T: Real,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    I: Inputs<T, NQ, NV, NU>,
+{
+    fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ> {
+        self.mechanism.integrate(q, dv)
+    }
+
+    fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.tangent_rate(dv, v)
+    }
+
+    fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        let tau = self.forces(t, q, v);
+        self.mechanism.forward_dynamics(q, v, &tau)
+    }
+
+    fn momentum(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.generalized_momentum(q, v)
+    }
+
+    fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.momentum_rate(q, v) + self.forces(t, q, v)
+    }
+
+    fn velocity(&self, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        // With τ = p + (h − M v) the equation of motion M a + h = τ has the solution a = M⁻¹ p − v.
+        let tau = p + self.mechanism.inverse_dynamics(q, v, &-v);
+        v + self.mechanism.forward_dynamics(q, v, &tau)
+    }
+}

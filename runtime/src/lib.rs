@@ -1,0 +1,65 @@
+#![cfg_attr(not(feature = "std"), no_std)]
+//! Linkwork compiles mechanisms: annotate a struct with bodies, joints, springs and inputs (or name a URDF file),
+//! and the compiler derives its equations of motion and puts specialised, allocation-free Rust in its place.
+//!
+//! - [`prelude`]: everything that a program with a mechanism needs, in one import.
+//! - [`elements`]: the words in which a mechanism is declared.
+//! - [`Mechanism`]: what every compiled mechanism offers.
+//! - [`simulate()`]: its motion over time; [`integrate`] holds the methods.
+//!
+//! Nothing here allocates or panics, and nothing needs the standard library if the feature `libm` is chosen instead of
+//! `std`.
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("linkwork needs one of its features `std` and `libm` for the elementary functions");
+
+#[allow(
+    unused_extern_crates,
+    reason = "generated code names this crate, also in its own tests"
+)]
+extern crate self as linkwork;
+#[cfg(test)]
+extern crate std;
+
+pub use frame::{FrameIndex, NamedFrame};
+pub use linkwork_macros::mechanism;
+pub use mechanism::{Mechanism, Real};
+pub use nalgebra;
+pub use simulate::simulate;
+
+pub mod elements;
+mod frame;
+pub mod integrate;
+mod lie;
+mod mechanism;
+mod private;
+pub mod simulate;
+
+/// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
+pub mod prelude {
+    pub use crate::elements::*;
+    pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, SemiImplicitEuler};
+    pub use crate::simulate::{Crossing, Sample, simulate};
+    pub use crate::{Mechanism, Real, frame, mechanism};
+    pub use nalgebra::{SMatrix, SVector};
+}
+
+/// What generated code calls; no part of the public interface.
+#[doc(hidden)]
+pub mod __private {
+    pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
+    pub use crate::lie::{
+        ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
+        free_tangent_rate,
+    };
+    pub use crate::private::{
+        abs, acos, asin, atan, atan2, constant, cos, cosh, exp, ln, mul_add, mul_sub, neg_mul_add, powf,
+        signum, sin, sin_cos, sinh, sqrt, tan, tanh,
+    };
+    pub use nalgebra::{
+        ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
+    };
+}
+
+#[cfg(test)]
+mod testing;

@@ -1,0 +1,258 @@
+//! Exponential, logarithm and their derivatives on SO(3) and SE(3), for ball and free joints.
+//!
+//! Quaternions are stored x y z w and turn child components into parent components; velocities are resolved in the
+//! child (body) frame; SE(3) vectors hold the linear part first (m), then the angular part (rad). Conventions of
+//! Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
+
+use crate::Real;
+use crate::private::{constant, epsilon};
+
+/// `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
+const BERNOULLI: [f64; 8] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30240.0,
+    1.0 / 1209600.0,
+    1.0 / 47900160.0,
+    691.0 / 1307674368000.0,
+    1.0 / 74724249600.0,
+    3617.0 / 10670622842880000.0,
+];
+
+fn cross<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
+    a * x + b * y + c * z
+}
+
+fn add<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
+    [a + x, b + y, c + z]
+}
+
+fn scale<T: Real>([a, b, c]: [T; 3], s: T) -> [T; 3] {
+    [a * s, b * s, c * s]
+}
+
+/// The Hamilton product of two quaternions.
+fn product<T: Real>([ax, ay, az, aw]: [T; 4], [bx, by, bz, bw]: [T; 4]) -> [T; 4] {
+    let [x, y, z] = cross([ax, ay, az], [bx, by, bz]);
+    [
+        x + aw * bx + bw * ax,
+        y + aw * by + bw * ay,
+        z + aw * bz + bw * az,
+        aw * bw - dot([ax, ay, az], [bx, by, bz]),
+    ]
+}
+
+fn conjugate<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
+    [-x, -y, -z, w]
+}
+
+fn normalised<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
+    let norm = (x * x + y * y + z * z + w * w).sqrt();
+    [x / norm, y / norm, z / norm, w / norm]
+}
+
+/// `a` turned by the unit quaternion: `a + 2 u × (u × a + w a)`.
+fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
+    let u = [x, y, z];
+    let inner = add(cross(u, a), scale(a, w));
+    add(a, scale(cross(u, inner), constant(2.0)))
+}
+
+/// The unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
+fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
+    let square = dot(dv, dv);
+    let (factor, w) = if square < epsilon::<T>() {
+        // The first neglected terms, θ⁴/3840 and θ⁴/384, are far below rounding.
+        (
+            constant::<T>(0.5) - square / constant(48.0),
+            T::one() - square / constant(8.0),
+        )
+    } else {
+        let angle = square.sqrt();
+        let (sin, cos) = (angle * constant(0.5)).sin_cos();
+        (sin / angle, cos)
+    };
+    let [x, y, z] = scale(dv, factor);
+    [x, y, z, w]
+}
+
+/// The rotation vector of shortest length of a quaternion of any length but zero.
+fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
+    let sign = if w < T::zero() { -T::one() } else { T::one() };
+    let u = scale([x, y, z], sign);
+    let w = w * sign;
+    let square = dot(u, u);
+    let factor = if square < epsilon::<T>() * w * w {
+        constant::<T>(2.0) / w - constant::<T>(2.0 / 3.0) * square / (w * w * w)
+    } else {
+        let sin = square.sqrt();
+        constant::<T>(2.0) * sin.atan2(w) / sin
+    };
+    scale(u, factor)
+}
+
+/// `Σ weight(k) cₖ x^(k − from)` over k ≥ `from`, with the Bernoulli coefficients `cₖ`.
+fn series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
+    let terms = (1_u8..).zip(BERNOULLI).skip(from - 1);
+    let (sum, _) = terms.fold((T::zero(), T::one()), |(sum, power), (k, c)| {
+        (sum + power * constant(weight(f64::from(k)) * c), power * x)
+    });
+    sum
+}
+
+/// Below this `θ²` the eight terms of the series are exact to rounding; above it the closed forms are.
+const SMALL: f64 = 0.25;
+
+/// `(1 − (θ/2) cot(θ/2)) / θ²` of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse Jacobians of SO(3).
+/// Not finite at the full turns, where the exponential cannot be inverted.
+fn second_bracket<T: Real>(square: T) -> T {
+    if square < constant(SMALL) {
+        return series(square, 1, |_| 1.0);
+    }
+    let half = square.sqrt() * constant(0.5);
+    (T::one() - half / half.tan()) / square
+}
+
+/// Factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3), of `θ²`.
+///
+/// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree four
+/// that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
+fn even_brackets<T: Real>(square: T) -> (T, T) {
+    if square < constant(SMALL) {
+        return (series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k));
+    }
+    let half = square.sqrt() * constant(0.5);
+    let (sin, cos) = half.sin_cos();
+    let value = T::one() - half * cos / sin;
+    let slope = (half * cos / sin - half * half / (sin * sin)) * constant(0.5);
+    let two = constant::<T>(2.0);
+    (
+        (two * value + slope) / square,
+        (value + slope) / (square * square),
+    )
+}
+
+/// The bracket `[a, b]` of SE(3) for body velocities, linear part first.
+fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
+    let [ax, ay, az, arx, ary, arz] = a;
+    let [bx, by, bz, brx, bry, brz] = b;
+    let (a_turn, b_turn) = ([arx, ary, arz], [brx, bry, brz]);
+    let [x, y, z] = add(cross(a_turn, [bx, by, bz]), cross([ax, ay, az], b_turn));
+    let [rx, ry, rz] = cross(a_turn, b_turn);
+    [x, y, z, rx, ry, rz]
+}
+
+/// `a + s b`.
+fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
+    [
+        a0 + s * b0,
+        a1 + s * b1,
+        a2 + s * b2,
+        a3 + s * b3,
+        a4 + s * b4,
+        a5 + s * b5,
+    ]
+}
+
+/// `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` of `θ²`: the left Jacobian of SO(3) is `1 + a [φ]ₓ + b [φ]ₓ²`.
+fn left_jacobian<T: Real>(square: T) -> (T, T) {
+    if square < constant(0.05) {
+        let polynomial = |terms: [f64; 6]| {
+            terms
+                .iter()
+                .rev()
+                .fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s)
+        };
+        return (
+            polynomial([2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
+            polynomial([6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
+        );
+    }
+    let angle = square.sqrt();
+    let half_sin = (angle * constant(0.5)).sin();
+    (
+        constant::<T>(2.0) * half_sin * half_sin / square,
+        (angle - angle.sin()) / (angle * square),
+    )
+}
+
+/// `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
+///
+/// - `q`: x y z w, of any length but zero; `dv`: rotation vector in the child frame, rad, of any size.
+pub fn ball_integrate<T: Real>(q: [T; 4], dv: [T; 3]) -> [T; 4] {
+    normalised(product(q, exponential(dv)))
+}
+
+/// The rotation vector `dv`, child frame of `q0`, rad, with `q0 ⊕ dv = ±q1`: the shortest turn, `|dv| ≤ π`.
+///
+/// At half a turn either of the two shortest answers is returned. Quaternions need not be normalised.
+pub fn ball_difference<T: Real>(q0: [T; 4], q1: [T; 4]) -> [T; 3] {
+    logarithm(product(conjugate(normalised(q0)), normalised(q1)))
+}
+
+/// Rate of `dv` for which `q ⊕ dv` turns with the body-frame angular velocity `v`, rad/s: the inverse right Jacobian
+/// of SO(3), `v + ½ dv × v + c dv × (dv × v)`. Not finite at `|dv|` = 2π.
+///
+/// Source: Iserles et al., *Lie-group methods*, Acta Numerica 9 (2000), appendix B.
+pub fn ball_tangent_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
+    let first = cross(dv, v);
+    let second = scale(cross(dv, first), second_bracket(dot(dv, dv)));
+    add(add(v, scale(first, constant(0.5))), second)
+}
+
+/// `q ⊕ dv` of a free joint: the exponential of SE(3).
+///
+/// - `q`: position in the parent frame, m, then quaternion x y z w; the quaternion of the result is normalised.
+/// - `dv`: displacement, m, then rotation vector, rad, both in the child frame, of any size.
+pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
+    let [px, py, pz, qx, qy, qz, qw] = q;
+    let [x, y, z, rx, ry, rz] = dv;
+    let (linear, turn) = ([x, y, z], [rx, ry, rz]);
+    let quaternion = normalised([qx, qy, qz, qw]);
+    let (a, b) = left_jacobian(dot(turn, turn));
+    let first = cross(turn, linear);
+    let moved = add(add(linear, scale(first, a)), scale(cross(turn, first), b));
+    let [px, py, pz] = add([px, py, pz], rotated(quaternion, moved));
+    let [qx, qy, qz, qw] = ball_integrate(quaternion, turn);
+    [px, py, pz, qx, qy, qz, qw]
+}
+
+/// The `dv`, child frame of `q0`, m and rad, with `q0 ⊕ dv = q1`: the logarithm of SE(3), shortest turn.
+pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
+    let [x0, y0, z0, qx0, qy0, qz0, qw0] = q0;
+    let [x1, y1, z1, qx1, qy1, qz1, qw1] = q1;
+    let start = normalised([qx0, qy0, qz0, qw0]);
+    let turn = ball_difference(start, [qx1, qy1, qz1, qw1]);
+    let moved = rotated(conjugate(start), [x1 - x0, y1 - y0, z1 - z0]);
+    let first = cross(turn, moved);
+    let second = scale(cross(turn, first), second_bracket(dot(turn, turn)));
+    let [x, y, z] = add(add(moved, scale(first, constant(-0.5))), second);
+    let [rx, ry, rz] = turn;
+    [x, y, z, rx, ry, rz]
+}
+
+/// Rate of `dv` for which `q ⊕ dv` moves with the body-frame velocity `v` (linear, m/s, then angular, rad/s):
+/// `v + ½ [dv, v] + 1/12 [dv, [dv, v]] − …`, summed in closed form. Not finite at an angular part of 2π.
+///
+/// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), III.4.
+pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
+    let [_, _, _, rx, ry, rz] = dv;
+    let turn = [rx, ry, rz];
+    let (second, fourth) = even_brackets(dot(turn, turn));
+    let first = bracket(dv, v);
+    let twice = bracket(dv, first);
+    let four_times = bracket(dv, bracket(dv, twice));
+    plus(
+        plus(plus(v, constant(0.5), first), second, twice),
+        fourth,
+        four_times,
+    )
+}
+
+#[cfg(test)]
+#[path = "lie_tests.rs"]
+mod tests;

@@ -1,0 +1,149 @@
+use super::*;
+
+const ANGLES: [f64; 12] = [
+    0.0, 1e-200, 1e-12, 1e-8, 3e-8, 1e-4, 0.1, 0.2236, 0.49999, 0.50001, 2.0, 3.1,
+];
+const AXIS: [f64; 3] = [0.36, -0.48, 0.8];
+const QUATERNION: [f64; 4] = [0.1, -0.5, 0.7, 0.5];
+const POSE: [f64; 7] = [1.0, -2.0, 0.5, 0.1, -0.5, 0.7, 0.5];
+
+fn far<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    a.iter()
+        .zip(b)
+        .fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()))
+}
+
+fn twist(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
+    let ([x, y, z], [rx, ry, rz]) = (linear, turn);
+    [x, y, z, rx, ry, rz]
+}
+
+#[test]
+fn ball_exponential_is_a_turn_about_the_axis() {
+    for angle in ANGLES.into_iter().chain([10.0, 1e3]) {
+        let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scale(AXIS, angle));
+        let [x, y, z] = scale(AXIS, (angle / 2.0).sin());
+        assert!(
+            far(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle),
+            "{angle}"
+        );
+    }
+}
+
+#[test]
+fn ball_difference_inverts_integrate() {
+    for angle in ANGLES {
+        let dv = scale(AXIS, angle);
+        let q = normalised(QUATERNION);
+        let found = ball_difference(q, ball_integrate(q, dv));
+        assert!(far(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
+        let [x, y, z, w] = ball_integrate(q, dv);
+        let found = ball_difference(q, [-x, -y, -z, -w]);
+        assert!(
+            far(found, dv) <= 4e-15 * (angle + 1e-1),
+            "antipode of {angle}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn ball_difference_near_half_a_turn_is_shortest() {
+    for excess in [-1e-9, -1e-15, 0.0, 1e-15, 1e-9] {
+        let angle = core::f64::consts::PI + excess;
+        let q1 = ball_integrate(QUATERNION, scale(AXIS, angle));
+        let found = ball_difference(QUATERNION, q1);
+        assert!(dot(found, found).sqrt() <= core::f64::consts::PI + 1e-15);
+        let reached = ball_integrate(QUATERNION, found);
+        assert!(far(reached, q1).min(far(reached, scale4(q1))) < 1e-15);
+    }
+}
+
+fn scale4([x, y, z, w]: [f64; 4]) -> [f64; 4] {
+    [-x, -y, -z, -w]
+}
+
+#[test]
+fn free_difference_inverts_integrate() {
+    for angle in ANGLES {
+        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let found = free_difference(POSE, free_integrate(POSE, dv));
+        assert!(far(found, dv) < 2e-14, "{angle}: {found:?}");
+    }
+}
+
+#[test]
+fn free_exponential_of_a_screw() {
+    // Along and about z by a quarter of a turn: the tip of a circular arc, radius v / ω.
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let q = free_integrate(
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [1.0, 0.0, 3.0, 0.0, 0.0, quarter],
+    );
+    let half = core::f64::consts::FRAC_1_SQRT_2;
+    assert!(far(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
+}
+
+#[test]
+fn free_exponential_is_a_flow() {
+    for angle in ANGLES.into_iter().chain([20.0]) {
+        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let half = dv.map(|x| 0.5 * x);
+        let twice = free_integrate(free_integrate(POSE, half), half);
+        assert!(far(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
+    }
+}
+
+/// The path φ(t) = dv + t rate must leave `q ⊕ dv` with the velocity `v`.
+#[test]
+fn tangent_rates_give_the_velocity() {
+    let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
+    for angle in ANGLES.into_iter().chain([5.5, 7.0]) {
+        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let rate = free_tangent_rate(dv, v);
+        let step = 1e-3;
+        let at = |t: f64| free_integrate(POSE, plus(dv, t, rate));
+        let slope = |h: f64| plus([0.0; 6], 0.5 / h, free_difference(at(-h), at(h)));
+        // Central differences, extrapolated: the error is of order step⁴.
+        let (coarse, fine) = (slope(step), slope(step / 2.0));
+        let body = plus(plus([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
+        assert!(far(body, v) < 1e-9, "{angle}: {body:?}");
+        let [.., rx, ry, rz] = rate;
+        let ball = ball_tangent_rate(scale(AXIS, angle), [0.4, 0.9, -1.3]);
+        assert!(far(ball, [rx, ry, rz]) < 1e-13, "{angle}");
+    }
+}
+
+#[test]
+fn closed_forms_continue_the_series() {
+    let (below, above) = (SMALL - 1e-15, SMALL);
+    assert!((second_bracket(below) - second_bracket(above)).abs() < 1e-14);
+    let (a, b) = (even_brackets(below), even_brackets(above));
+    assert!((a.0 - b.0).abs() < 1e-14 && (a.1 - b.1).abs() < 1e-13);
+    let (a, b) = (left_jacobian(0.05_f64 - 1e-16), left_jacobian(0.05_f64));
+    assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).abs() < 3e-14);
+}
+
+#[test]
+fn single_precision_is_accurate_to_its_rounding() {
+    for angle in ANGLES {
+        let single = |x: f64| x as f32;
+        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
+        let exact = free_integrate(POSE, dv);
+        let found = free_integrate(POSE.map(single), dv.map(single)).map(f64::from);
+        assert!(far(found, exact) < 2e-6, "{angle}");
+        let exact = free_tangent_rate(dv, v);
+        let found = free_tangent_rate(dv.map(single), v.map(single)).map(f64::from);
+        assert!(far(found, exact) < 2e-5, "{angle}");
+    }
+}
+
+#[test]
+fn quaternions_stay_unit() {
+    let mut q = QUATERNION;
+    for _ in 0..100_000 {
+        q = ball_integrate(q, [0.01, -0.02, 0.03]);
+    }
+    let [x, y, z, w] = q;
+    assert!((x * x + y * y + z * z + w * w - 1.0).abs() < 4e-16);
+}

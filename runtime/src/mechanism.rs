@@ -1,0 +1,113 @@
+//! The trait that generic code (integrators, controllers, plotters) is written against.
+
+use nalgebra::{RealField, SMatrix, SVector};
+
+/// The numbers that generated code can run on: every `Copy` real field of nalgebra, so `f64`, `f32`, dual
+/// numbers for automatic differentiation and SIMD lanes.
+pub trait Real: RealField + Copy {}
+
+impl<T: RealField + Copy> Real for T {}
+
+/// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs: what `#[mechanism]` implements.
+///
+/// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball
+/// or a free joint holds a unit quaternion x y z w), `v` in its tangent space: body-frame velocities for ball and
+/// free joints, rates of the coordinates for all others. Entries follow the order in which joints are declared.
+///
+/// A mechanism implements the trait for one triple of numbers only, so they need not be written:
+/// `fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(m: &M, …)` is called
+/// as `energy(&cart_pole, …)`.
+pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
+    /// The scalar type: `f64`, `f32` or the struct's own parameter.
+    type Scalar: Real;
+
+    /// Name of every entry of `q`.
+    const CONFIGURATION: [&'static str; NQ];
+    /// Name of every entry of `v`.
+    const VELOCITIES: [&'static str; NV];
+    /// Name of every entry of `u`.
+    const INPUTS: [&'static str; NU];
+
+    /// The configuration with all coordinates zero and unit quaternions.
+    fn neutral(&self) -> SVector<Self::Scalar, NQ>;
+
+    /// `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one unit of time.
+    /// A sum for plain coordinates, the exponential of SO(3) for a ball and of SE(3) for a free joint. Quaternions
+    /// are normalised.
+    fn integrate(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NQ>;
+
+    /// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that
+    /// `integrate(from, difference(from, to))` is `to`. Rotations take the shorter way.
+    fn difference(
+        &self,
+        from: &SVector<Self::Scalar, NQ>,
+        to: &SVector<Self::Scalar, NQ>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`: the inverse of the exponential's derivative, the
+    /// identity for plain coordinates. The series `v + ½ [dv, v] + …` is cut where it matters for steps of order
+    /// above six (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, ch. IV.7).
+    fn tangent_rate(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// Mass matrix `M(q)`, symmetric, both triangles.
+    fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
+
+    /// Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction.
+    fn bias_forces(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// `τ = M(q) a + h(q, v)`.
+    fn inverse_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// `v̇ = M(q)⁻¹ (τ − h(q, v))`. Not finite where `M(q)` is singular.
+    fn forward_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// Generalized forces `τ` of the inputs `u`.
+    fn generalized_forces(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// Kinetic energy `T = ½ vᵀ M(q) v`, J.
+    fn kinetic_energy(&self, q: &SVector<Self::Scalar, NQ>, v: &SVector<Self::Scalar, NV>) -> Self::Scalar;
+
+    /// Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J.
+    fn potential_energy(&self, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar;
+
+    /// Generalized momentum `p = M(q) v`.
+    fn generalized_momentum(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// Rate of the generalized momentum without inputs: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second equation,
+    /// in body components for ball and free joints: the Euler–Poincaré equation).
+    fn momentum_rate(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV>;
+}

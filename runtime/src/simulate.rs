@@ -1,0 +1,382 @@
+//! Simulation of a mechanism: from an initial state to samples of its motion.
+
+mod event;
+mod run;
+
+pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop};
+
+use crate::integrate::{
+    DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, positive,
+};
+use crate::{Mechanism, Real};
+use nalgebra::SVector;
+use run::Progress;
+
+/// Simulates a mechanism: from its neutral configuration at rest at t = 0, without inputs, with
+/// [`DormandPrince`], until the methods of [`Simulation`] say otherwise.
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// fn swing<Pendulum: Mechanism<1, 1, 1, Scalar = f64>>(pendulum: &Pendulum) -> Result<f64, Error> {
+///     let run = simulate(pendulum)
+///         .from([0.1], [0.0])                           // rad, rad/s
+///         .inputs(|t, _q, v| SVector::from([t.sin() - 0.1 * v[0]]))
+///         .duration(10.0)
+///         .sample_every(0.01);
+///     let mut highest = 0.0_f64;
+///     for sample in run {
+///         let sample = sample?;
+///         highest = highest.max(sample.q[0]);
+///     }
+///     Ok(highest)
+/// }
+/// ```
+pub fn simulate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+) -> Simulation<'_, M, M::Scalar, NoInputs, DormandPrince<M::Scalar>, NoEvents, NQ, NV, NU>
+where
+    M: Mechanism<NQ, NV, NU>,
+{
+    let start = State {
+        t: nalgebra::zero(),
+        q: mechanism.neutral(),
+        v: SVector::zeros(),
+    };
+    let system = System {
+        mechanism,
+        inputs: NoInputs,
+    };
+    let method = DormandPrince::new();
+    Simulation {
+        system,
+        method,
+        events: NoEvents,
+        start,
+        duration: None,
+        every: None,
+        progress: None,
+        over: false,
+    }
+}
+
+/// The events `E` and one more.
+type With<E, G, A> = (E, Event<G, A>);
+
+/// The motion at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
+    /// Time, s.
+    pub t: T,
+    /// Configuration.
+    pub q: SVector<T, NQ>,
+    /// Velocity.
+    pub v: SVector<T, NV>,
+    /// Inputs; at a control instant the new ones.
+    pub u: SVector<T, NU>,
+    /// The event that this sample reports, counted from zero in the order of declaration; `None` otherwise.
+    pub event: Option<usize>,
+}
+
+/// A simulation: first what is to be simulated and how, then the iterator over its samples.
+///
+/// Made by [`simulate`]. The samples are the initial state, then one every [`sample_every`](Self::sample_every)
+/// seconds (or one per step of the integrator), one per event, and the last exactly at the end of the
+/// [`duration`](Self::duration). After an error the iterator ends. Changing a setting
+/// starts over. Nothing is allocated.
+pub struct Simulation<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
+where
+    T: Real,
+    S: Method<T>,
+{
+    system: System<'m, M, I, NU>,
+    method: S,
+    events: E,
+    start: State<T, NQ, NV>,
+    duration: Option<T>,
+    every: Option<T>,
+    progress: Option<Progress<T, S::Memory<NV>, NQ, NV>>,
+    over: bool,
+}
+
+impl<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
+    Simulation<'m, M, T, I, S, E, NQ, NV, NU>
+where
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    T: Real,
+    S: Method<T>,
+{
+    /// Starts from the configuration `q` and the velocity `v`: vectors or arrays. Quaternions x y z w of unit length.
+    pub fn from(self, q: impl Into<SVector<T, NQ>>, v: impl Into<SVector<T, NV>>) -> Self {
+        let start = State {
+            t: self.start.t,
+            q: q.into(),
+            v: v.into(),
+        };
+        Self {
+            start,
+            ..self.afresh()
+        }
+    }
+
+    /// Starts at the time `t`, s, instead of zero.
+    pub fn start_at(self, t: T) -> Self {
+        let start = State { t, ..self.start };
+        Self {
+            start,
+            ..self.afresh()
+        }
+    }
+
+    /// Ends `duration` seconds after the start. Without it the run ends at an event of [`until`](Self::until), or
+    /// goes on for as long as samples are asked for.
+    pub fn duration(self, duration: T) -> Self {
+        Self {
+            duration: Some(duration),
+            ..self.afresh()
+        }
+    }
+
+    /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods divide the
+    /// interval into equal steps; [`DormandPrince`] interpolates. Without it every step of the integrator is a sample.
+    pub fn sample_every(self, interval: T) -> Self {
+        Self {
+            every: Some(interval),
+            ..self.afresh()
+        }
+    }
+
+    /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with jumps,
+    /// such as digital controllers, use [`control_every`](Self::control_every).
+    pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, Steered<F>, S, E, NQ, NV, NU>
+    where
+        F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
+    {
+        self.with_inputs(Steered(inputs))
+    }
+
+    /// Inputs of a digital controller: `|t, q, v| u` is called once every `period` seconds, from the start on, and
+    /// `u` is held in between (zero-order hold). Integrator steps end on the control instants.
+    pub fn control_every<F>(
+        self,
+        period: T,
+        control: F,
+    ) -> Simulation<'m, M, T, Held<T, F, NU>, S, E, NQ, NV, NU>
+    where
+        F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
+    {
+        self.with_inputs(Held::new(period, control))
+    }
+
+    /// Integrates with another method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),
+    /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint),
+    /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
+    pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
+        let Self {
+            system,
+            events,
+            start,
+            duration,
+            every,
+            ..
+        } = self;
+        Simulation {
+            system,
+            method,
+            events,
+            start,
+            duration,
+            every,
+            progress: None,
+            over: false,
+        }
+    }
+
+    /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
+    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, G, Stop>, NQ, NV, NU>
+    where
+        G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+    {
+        self.until_crossing(Crossing::Either, function)
+    }
+
+    /// Ends when `function(t, q, v)` crosses zero in the given direction; the last sample is the state there.
+    pub fn until_crossing<G>(
+        self,
+        crossing: Crossing,
+        function: G,
+    ) -> Simulation<'m, M, T, I, S, With<E, G, Stop>, NQ, NV, NU>
+    where
+        G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+    {
+        self.with_event(Event::new(function, crossing, Stop))
+    }
+
+    /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] says which.
+    ///
+    /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step may be
+    /// missed; a function that is zero at the start counts once it has left zero and returned. The crossing is located
+    /// to rounding on the interpolated motion.
+    pub fn event<G>(
+        self,
+        crossing: Crossing,
+        function: G,
+    ) -> Simulation<'m, M, T, I, S, With<E, G, Report>, NQ, NV, NU>
+    where
+        G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+    {
+        self.with_event(Event::new(function, crossing, Report))
+    }
+
+    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. Its sample holds
+    /// the velocity after it. Impacts that follow each other ever faster, without end, are not resolved.
+    pub fn impact<G, F>(
+        self,
+        crossing: Crossing,
+        function: G,
+        after: F,
+    ) -> Simulation<'m, M, T, I, S, With<E, G, Impact<F>>, NQ, NV, NU>
+    where
+        G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+        F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
+    {
+        self.with_event(Event::new(function, crossing, Impact(after)))
+    }
+
+    /// Runs to the end and returns the last sample.
+    ///
+    /// Errors: those of the method, and [`Error::InvalidStep`] if neither a duration nor an
+    /// [`until`](Self::until) ends the run.
+    pub fn finish(mut self) -> Result<Sample<T, NQ, NV, NU>, Error>
+    where
+        I: Inputs<T, NQ, NV, NU>,
+        E: Events<T, NQ, NV>,
+    {
+        let endless = Error::InvalidStep {
+            name: "the duration",
+            value: f64::INFINITY,
+        };
+        if self.duration.is_none() && !E::STOPS {
+            return Err(endless);
+        }
+        let mut run = self.begin()?;
+        run.quiet = true;
+        let mut last = Err(endless);
+        while let Some(sample) = self.next_sample(&mut run)? {
+            last = Ok(sample);
+        }
+        last
+    }
+
+    /// The same simulation before its first sample.
+    fn afresh(self) -> Self {
+        Self {
+            progress: None,
+            over: false,
+            ..self
+        }
+    }
+
+    fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
+        let Self {
+            system,
+            method,
+            events,
+            start,
+            duration,
+            every,
+            ..
+        } = self;
+        let system = System {
+            mechanism: system.mechanism,
+            inputs,
+        };
+        Simulation {
+            system,
+            method,
+            events,
+            start,
+            duration,
+            every,
+            progress: None,
+            over: false,
+        }
+    }
+
+    fn with_event<G, A>(self, event: Event<G, A>) -> Simulation<'m, M, T, I, S, With<E, G, A>, NQ, NV, NU> {
+        let Self {
+            system,
+            method,
+            events,
+            start,
+            duration,
+            every,
+            ..
+        } = self;
+        let events = (events, event);
+        Simulation {
+            system,
+            method,
+            events,
+            start,
+            duration,
+            every,
+            progress: None,
+            over: false,
+        }
+    }
+}
+
+impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize> Clone
+    for Simulation<'_, M, T, I, S, E, NQ, NV, NU>
+where
+    T: Real,
+    I: Clone,
+    S: Method<T> + Clone,
+    E: Clone,
+{
+    fn clone(&self) -> Self {
+        Self {
+            system: self.system.clone(),
+            method: self.method.clone(),
+            events: self.events.clone(),
+            start: self.start,
+            duration: self.duration,
+            every: self.every,
+            progress: self.progress.clone(),
+            over: self.over,
+        }
+    }
+}
+
+impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize> Iterator
+    for Simulation<'_, M, T, I, S, E, NQ, NV, NU>
+where
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    T: Real,
+    I: Inputs<T, NQ, NV, NU>,
+    S: Method<T>,
+    E: Events<T, NQ, NV>,
+{
+    type Item = Result<Sample<T, NQ, NV, NU>, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.over {
+            return None;
+        }
+        let mut run = match self.begin() {
+            Ok(run) => run,
+            Err(error) => {
+                self.over = true;
+                return Some(Err(error));
+            }
+        };
+        let sample = self.next_sample(&mut run);
+        self.over = !matches!(sample, Ok(Some(_)));
+        self.progress = Some(run);
+        sample.transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests;

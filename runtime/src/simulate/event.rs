@@ -1,0 +1,315 @@
+//! Events: zero crossings of functions of time and state, located on the path of a step.
+
+use crate::Real;
+use crate::integrate::State;
+use crate::private::{constant, epsilon};
+use core::cmp::Ordering;
+use nalgebra::SVector;
+
+/// Which zero crossings of an event function count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crossing {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    Either,
+}
+
+impl Crossing {
+    fn counts(self, before: Ordering, after: Ordering) -> bool {
+        match before {
+            Ordering::Less => after != Ordering::Less && self != Self::Falling,
+            Ordering::Greater => after != Ordering::Greater && self != Self::Rising,
+            // Which side the motion comes from is not known until it has left the surface.
+            Ordering::Equal => false,
+        }
+    }
+}
+
+/// An event found on a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit<T> {
+    /// Where on the step, 0 at the start and 1 at the end; at or just behind the crossing.
+    pub theta: T,
+    /// Which event, in the order of declaration.
+    pub index: usize,
+}
+
+/// How a run goes on after an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// It ends.
+    Stop,
+    /// It goes on undisturbed.
+    Go,
+    /// The velocity has changed.
+    Jump,
+}
+
+/// What an event does to the velocity and the run.
+pub trait Action<T, const NQ: usize, const NV: usize> {
+    /// Whether it ends the run.
+    const STOPS: bool;
+
+    /// Acts at the event.
+    fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow;
+}
+
+/// Ends the run.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop;
+
+impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Stop {
+    const STOPS: bool = true;
+
+    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> Flow {
+        Flow::Stop
+    }
+}
+
+/// Emits a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Report;
+
+impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Report {
+    const STOPS: bool = false;
+
+    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> Flow {
+        Flow::Go
+    }
+}
+
+/// Emits a sample and changes the velocity to `(t, q, v) → v`.
+#[derive(Clone, Copy, Debug)]
+pub struct Impact<F>(pub F);
+
+impl<T, F, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Impact<F>
+where
+    T: Real,
+    F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
+{
+    const STOPS: bool = false;
+
+    fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow {
+        state.v = (self.0)(state.t, &state.q, &state.v);
+        Flow::Jump
+    }
+}
+
+/// The events of a run: a list of types, `((NoEvents, Event), Event)`, so that none has to be allocated.
+pub trait Events<T: Real, const NQ: usize, const NV: usize> {
+    /// How many there are.
+    const COUNT: usize;
+    /// Whether one of them ends the run.
+    const STOPS: bool;
+
+    /// Notes the signs at the first state of a run.
+    fn begin(&mut self, state: &State<T, NQ, NV>);
+
+    /// The first event between `from` and `to` on a step.
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, path: &P, from: T, to: T) -> Option<Hit<T>>;
+
+    /// Takes over the signs at the end of the last range without an event.
+    fn pass(&mut self);
+
+    /// Lets an event act.
+    fn act(&mut self, index: usize, state: &mut State<T, NQ, NV>) -> Flow;
+}
+
+/// No events.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoEvents;
+
+impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
+    const COUNT: usize = 0;
+    const STOPS: bool = false;
+
+    fn begin(&mut self, _state: &State<T, NQ, NV>) {}
+
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, _path: &P, _from: T, _to: T) -> Option<Hit<T>> {
+        None
+    }
+
+    fn pass(&mut self) {}
+
+    fn act(&mut self, _index: usize, _state: &mut State<T, NQ, NV>) -> Flow {
+        Flow::Go
+    }
+}
+
+/// One event: its function, which crossings count, what it does, and the sign of the function.
+#[derive(Clone, Copy, Debug)]
+pub struct Event<G, A> {
+    function: G,
+    crossing: Crossing,
+    action: A,
+    side: Ordering,
+    ahead: Ordering,
+}
+
+impl<G, A> Event<G, A> {
+    pub(super) fn new(function: G, crossing: Crossing, action: A) -> Self {
+        Self {
+            function,
+            crossing,
+            action,
+            side: Ordering::Equal,
+            ahead: Ordering::Equal,
+        }
+    }
+}
+
+/// The sign of a number; zero for NaN.
+fn side<T: Real>(value: T) -> Ordering {
+    value.partial_cmp(&T::zero()).unwrap_or(Ordering::Equal)
+}
+
+impl<T, E, G, A, const NQ: usize, const NV: usize> Events<T, NQ, NV> for (E, Event<G, A>)
+where
+    T: Real,
+    E: Events<T, NQ, NV>,
+    G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+    A: Action<T, NQ, NV>,
+{
+    const COUNT: usize = E::COUNT + 1;
+    const STOPS: bool = E::STOPS || A::STOPS;
+
+    fn begin(&mut self, state: &State<T, NQ, NV>) {
+        self.0.begin(state);
+        self.1.side = side((self.1.function)(state.t, &state.q, &state.v));
+    }
+
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, path: &P, from: T, to: T) -> Option<Hit<T>> {
+        let earlier = self.0.locate(path, from, to);
+        let to = earlier.map_or(to, |hit| hit.theta);
+        let event = &mut self.1;
+        let mut value = |theta: T| {
+            let state = path(theta);
+            (event.function)(state.t, &state.q, &state.v)
+        };
+        let end = value(to);
+        event.ahead = side(end);
+        if !event.crossing.counts(event.side, event.ahead) {
+            return earlier;
+        }
+        let sign = if event.side == Ordering::Less {
+            T::one()
+        } else {
+            -T::one()
+        };
+        let theta = first_sign_change(|theta| value(theta) * sign, [from, to], end * sign);
+        if earlier.is_some_and(|hit| hit.theta <= theta) {
+            return earlier;
+        }
+        Some(Hit {
+            theta,
+            index: E::COUNT,
+        })
+    }
+
+    fn pass(&mut self) {
+        self.0.pass();
+        if self.1.ahead != Ordering::Equal {
+            self.1.side = self.1.ahead;
+        }
+    }
+
+    fn act(&mut self, index: usize, state: &mut State<T, NQ, NV>) -> Flow {
+        if index != E::COUNT {
+            return self.0.act(index, state);
+        }
+        let flow = self.1.action.act(state);
+        // After an impact the motion may leave to either side.
+        self.1.side = if flow == Flow::Jump {
+            Ordering::Equal
+        } else {
+            self.1.side.reverse()
+        };
+        flow
+    }
+}
+
+/// The place where `f` changes from negative to `end`, its non-negative value at `b`: bracketed to rounding, the
+/// non-negative end of the bracket. The ITP method: never more than one evaluation above bisection, far fewer for
+/// smooth functions. Oliveira and Takahashi, ACM Trans. Math. Softw. 47 (2020).
+fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
+    let zero = T::zero();
+    let (half, two) = (constant::<T>(0.5), constant::<T>(2.0));
+    let (mut below, mut above) = (f(a), end);
+    if below >= zero {
+        return a;
+    }
+    let tolerance = epsilon::<T>();
+    let truncation = constant::<T>(0.2) / (b - a);
+    let mut reach = b - a;
+    while b - a > two * tolerance {
+        let middle = (a + b) * half;
+        let secant = (above * a - below * b) / (above - below);
+        let shift = truncation * (b - a) * (b - a);
+        let towards = if middle >= secant { T::one() } else { -T::one() };
+        let inner = if shift <= (middle - secant).abs() {
+            secant + towards * shift
+        } else {
+            middle
+        };
+        let slack = reach - (b - a) * half;
+        let x = if (inner - middle).abs() <= slack {
+            inner
+        } else {
+            middle - towards * slack
+        };
+        let x = if x > a && x < b { x } else { middle };
+        if x <= a || x >= b {
+            break;
+        }
+        let value = f(x);
+        if value >= zero {
+            (b, above) = (x, value);
+        } else {
+            (a, below) = (x, value);
+        }
+        reach *= half;
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sign change of `f` between 0 and 1, and the evaluations it took.
+    fn found(f: impl Fn(f64) -> f64) -> (f64, usize) {
+        let mut count = 0;
+        let counted = |x| {
+            count += 1;
+            f(x)
+        };
+        let x = first_sign_change(counted, [0.0, 1.0], f(1.0));
+        (x, count)
+    }
+
+    #[test]
+    fn sign_changes_are_found_to_rounding() {
+        let (x, count) = found(|x| x * x - 0.5);
+        assert!(
+            (x - core::f64::consts::FRAC_1_SQRT_2).abs() < 5e-16 && count < 16,
+            "{count}"
+        );
+        let (x, count) = found(|x| if x < 0.3 { -1e-3 } else { 1e3 });
+        assert!((x - 0.3).abs() < 5e-16 && count < 60, "{count}");
+        let (x, count) = found(|x| (x - 0.7).powi(9));
+        assert!((x - 0.7).abs() < 5e-16 && count < 60, "{count}");
+        assert_eq!(found(|x| x).0, 0.0);
+    }
+
+    #[test]
+    fn crossings_count_by_direction() {
+        use Ordering::{Equal, Greater, Less};
+        assert!(Crossing::Rising.counts(Less, Greater) && Crossing::Rising.counts(Less, Equal));
+        assert!(!Crossing::Rising.counts(Greater, Less) && !Crossing::Falling.counts(Less, Greater));
+        assert!(Crossing::Either.counts(Greater, Less) && Crossing::Either.counts(Less, Greater));
+        assert!(!Crossing::Either.counts(Equal, Greater) && !Crossing::Either.counts(Less, Less));
+    }
+}

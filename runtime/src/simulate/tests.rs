@@ -1,0 +1,362 @@
+use super::*;
+use crate::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
+use crate::testing::{FreeBody, OneDof, falling, oscillator, pendulum, pendulum_period};
+use core::cell::Cell;
+use nalgebra::Vector3;
+use std::vec::Vec;
+
+const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
+
+/// The samples of a run of the oscillator, by their times.
+fn times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
+    let oscillator = oscillator::<f64>();
+    let run = simulate(&oscillator)
+        .from([1.0], [0.0])
+        .duration(duration)
+        .sample_every(interval);
+    run.method(method).map(|sample| sample.unwrap().t).collect()
+}
+
+#[test]
+fn samples_are_on_time() {
+    let expected = |interval: f64| move |k: usize| k as f64 * interval;
+    for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
+        let mut wanted: Vec<f64> = (0..count).map(expected(interval)).collect();
+        wanted.push(duration);
+        assert_eq!(times(DormandPrince::new(), duration, interval), wanted);
+        assert_eq!(times(Rk4::step(0.003), duration, interval), wanted);
+        assert_eq!(times(ImplicitMidpoint::step(0.04), duration, interval), wanted);
+        assert_eq!(times(SemiImplicitEuler::step(0.01), duration, interval), wanted);
+    }
+    assert_eq!(times(Rk4::step(0.1), 1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
+    assert_eq!(times(DormandPrince::new(), 1.0, 5.0), [0.0, 1.0]);
+}
+
+#[test]
+fn without_an_interval_every_step_is_a_sample() {
+    let oscillator = oscillator::<f64>();
+    let run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0);
+    assert_eq!(run.clone().method(Rk4::step(0.01)).count(), 101);
+    assert_eq!(run.clone().method(Rk4::step(0.3)).count(), 5);
+    let last = run.clone().last().unwrap().unwrap();
+    assert_eq!(run.finish().unwrap(), last);
+    assert_eq!(last.t, 1.0);
+    let endless = simulate(&oscillator).from([1.0], [0.0]).method(Rk4::step(0.5));
+    assert_eq!(endless.take(7).last().unwrap().unwrap().t, 3.0);
+}
+
+#[test]
+fn interpolated_samples_are_accurate() {
+    let oscillator = oscillator::<f64>();
+    let run = simulate(&oscillator)
+        .from([1.0], [0.0])
+        .duration(10.0)
+        .sample_every(0.01)
+        .method(TIGHT());
+    for sample in run {
+        let sample = sample.unwrap();
+        assert!((sample.q[0] - sample.t.cos()).abs() < 1e-11, "{sample:?}");
+        assert!((sample.v[0] + sample.t.sin()).abs() < 1e-11, "{sample:?}");
+    }
+}
+
+#[test]
+fn the_defaults_are_rest_in_the_neutral_configuration() {
+    let body = FreeBody {
+        mass: 1.0,
+        inertia: Vector3::new(1.0, 2.0, 2.5),
+        gravity: 0.0,
+    };
+    let end = simulate(&body).duration(1.0).finish().unwrap();
+    assert_eq!(end.q, body.neutral());
+    assert_eq!(end.v.norm(), 0.0);
+    assert!(end.u.is_empty());
+}
+
+#[test]
+fn a_run_can_start_later() {
+    let pushed = |start| {
+        let oscillator = oscillator::<f64>();
+        let run = simulate(&oscillator)
+            .start_at(start)
+            .inputs(|t, _, _| SVector::from([t]));
+        run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
+    };
+    let (t, q) = pushed(2.0);
+    // q̈ = −q + t from rest at t = 2: q = t − 2 cos(t − 2) − sin(t − 2).
+    assert_eq!(t, 3.0);
+    assert!((q - (3.0 - 2.0 * 1.0_f64.cos() - 1.0_f64.sin())).abs() < 1e-7);
+}
+
+/// A free mass pushed by ±1 in turn for periods of 0.1 s; closed form by summation.
+fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
+    let mass = OneDof {
+        force: |_| 0.0,
+        ..oscillator::<f64>()
+    };
+    let calls = Cell::new(0);
+    let instants = core::cell::RefCell::new(Vec::new());
+    let run = simulate(&mass).control_every(0.1, |t, _, _| {
+        instants.borrow_mut().push(t);
+        calls.set(calls.get() + 1);
+        SVector::from([if calls.get() % 2 == 1 { 1.0 } else { -1.0 }])
+    });
+    let end = run
+        .duration(1.0)
+        .sample_every(0.05)
+        .method(method)
+        .last()
+        .unwrap()
+        .unwrap();
+    (end.q[0], instants.take())
+}
+
+#[test]
+fn digital_controllers_hold_their_output() {
+    // Ten periods: up and down five times, and 0.01 m in each pair.
+    for (q, instants) in [
+        controlled(DormandPrince::new()),
+        controlled(Rk4::step(0.02)),
+        controlled(ImplicitMidpoint::step(0.02)),
+    ] {
+        assert!((q - 0.05).abs() < 1e-13, "{q}");
+        let wanted = (0..=10).map(f64::from).map(|k| k / 10.0);
+        assert!(instants.len() == 11 && instants.iter().zip(wanted).all(|(t, k)| (t - k).abs() < 1e-15));
+    }
+}
+
+/// Inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
+fn held<S: Method<f64>>(method: S) -> Vec<f64> {
+    let oscillator = oscillator::<f64>();
+    let mut count = -1.0;
+    let run = simulate(&oscillator).control_every(0.3, |_, _, _| {
+        count += 1.0;
+        SVector::from([count])
+    });
+    run.duration(3.0)
+        .sample_every(0.1)
+        .method(method)
+        .map(|sample| sample.unwrap().u[0])
+        .collect()
+}
+
+#[test]
+fn samples_hold_the_inputs() {
+    let wanted: Vec<f64> = (0..=30).map(|k| f64::from(k / 3)).collect();
+    assert_eq!(held(Rk4::step(0.1)), wanted);
+    assert_eq!(held(ImplicitMidpoint::step(0.03)), wanted);
+    assert_eq!(held(DormandPrince::new()), wanted);
+    let oscillator = oscillator::<f64>();
+    let run = simulate(&oscillator)
+        .inputs(|t, _, _| SVector::from([2.0 * t]))
+        .duration(1.0);
+    assert!(
+        run.sample_every(0.1)
+            .all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t))
+    );
+}
+
+#[test]
+fn pendulum_crossings_are_periodic() {
+    let pendulum = pendulum();
+    let period = pendulum_period(2.5);
+    let run = simulate(&pendulum)
+        .from([2.5], [0.0])
+        .duration(5.0 * period)
+        .sample_every(100.0);
+    let run = run
+        .event(Crossing::Falling, |_, q, _| q[0])
+        .event(Crossing::Rising, |_, q, _| q[0])
+        .method(TIGHT());
+    let mut count = 0;
+    for sample in run.filter(|sample| sample.is_ok_and(|s| s.event.is_some())) {
+        let sample = sample.unwrap();
+        assert_eq!(sample.event, Some(count % 2));
+        let wanted = period * (0.25 + 0.5 * count as f64);
+        // The tolerance lets the energy drift, and with it the period: errors grow with the square of time.
+        assert!(
+            (sample.t - wanted).abs() < 5e-13 * ((count + 1) * (count + 1)) as f64,
+            "{count}: {}",
+            sample.t
+        );
+        count += 1;
+    }
+    assert_eq!(count, 10);
+}
+
+#[test]
+fn a_run_ends_where_it_is_told() {
+    // A stone thrown up from the ground lands after t = 2 v; the start itself does not count.
+    let stone = falling();
+    let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
+    let check = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
+        let end = end.unwrap();
+        assert!(
+            (end.t - 6.0).abs() < 1e-13 && (end.v[0] + 3.0).abs() < 1e-13,
+            "{end:?}"
+        );
+        assert_eq!(end.event, Some(0));
+    };
+    check(run.clone().finish());
+    check(run.clone().method(Rk4::step(0.7)).finish());
+    check(run.clone().method(ImplicitMidpoint::step(0.7)).finish());
+    check(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
+    // Directions: the stone passes 4 m on its way up, and again on its way down.
+    let falls = |crossing| {
+        let run = simulate(&stone)
+            .from([0.0], [3.0])
+            .until_crossing(crossing, |_, q, _| q[0] - 4.0);
+        run.finish().unwrap().t
+    };
+    assert!((falls(Crossing::Rising) - 2.0).abs() < 1e-13);
+    assert!((falls(Crossing::Either) - 2.0).abs() < 1e-13);
+    assert!((falls(Crossing::Falling) - 4.0).abs() < 1e-13);
+}
+
+#[test]
+fn several_events_come_in_order() {
+    let mass = OneDof {
+        force: |_| 0.0,
+        ..oscillator::<f64>()
+    };
+    let run = simulate(&mass)
+        .from([0.0], [1.0])
+        .duration(1.0)
+        .method(Rk4::step(1.0));
+    let run = run
+        .event(Crossing::Rising, |_, q, _| q[0] - 0.9)
+        .event(Crossing::Either, |_, q, _| q[0] - 0.2)
+        .event(Crossing::Rising, |t, _, _| t - 0.2)
+        .event(Crossing::Falling, |_, q, _| q[0] - 0.5)
+        .event(Crossing::Rising, |t, _, _| (t - 0.3) * (t - 0.6));
+    let found: Vec<_> = run
+        .map(|sample| sample.unwrap())
+        .map(|s| (s.event, (s.t * 1e9).round() / 1e9))
+        .collect();
+    let wanted = [
+        (None, 0.0),
+        (Some(1), 0.2),
+        (Some(2), 0.2),
+        (Some(4), 0.6),
+        (Some(0), 0.9),
+        (None, 1.0),
+    ];
+    assert_eq!(found, wanted);
+}
+
+#[test]
+fn a_ball_bounces() {
+    // From 0.5 m under unit gravity it falls for 1 s; every bounce halves the speed: impacts at 1, 2, 2.5, 2.75 s.
+    let ball = falling();
+    let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
+    let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
+    let check = |samples: &mut dyn Iterator<Item = Result<Sample<f64, 1, 1, 1>, Error>>| {
+        let hits: Vec<_> = samples
+            .map(|s| s.unwrap())
+            .filter(|s| s.event.is_some())
+            .collect();
+        let wanted = [
+            (1.0, 0.5),
+            (2.0, 0.25),
+            (2.5, 0.125),
+            (2.75, 0.0625),
+            (2.875, 0.03125),
+        ];
+        assert_eq!(hits.len(), wanted.len());
+        for (hit, (t, v)) in hits.iter().zip(wanted) {
+            assert!(
+                (hit.t - t).abs() < 1e-12 && (hit.v[0] - v).abs() < 1e-12,
+                "{hit:?}"
+            );
+        }
+    };
+    check(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
+    check(&mut run.clone().method(Rk4::step(0.01)));
+    check(&mut run.clone().method(ImplicitMidpoint::step(0.01)).sample_every(0.1));
+    check(
+        &mut run
+            .clone()
+            .method(DormandPrince::new().max_step(0.05))
+            .sample_every(0.125),
+    );
+}
+
+#[test]
+fn an_impact_on_a_control_instant_is_both() {
+    let ball = falling();
+    let run = simulate(&ball)
+        .from([0.5], [0.0])
+        .control_every(1.0, |_, _, _| SVector::zeros());
+    let run = run
+        .impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v)
+        .duration(2.5);
+    for end in [
+        run.clone().finish(),
+        run.sample_every(0.5).method(Rk4::step(0.1)).finish(),
+    ] {
+        let end = end.unwrap();
+        assert!((end.q[0] - 0.375).abs() < 1e-12, "{end:?}");
+    }
+}
+
+#[test]
+fn an_error_ends_the_run() {
+    let broken = OneDof {
+        force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 },
+        ..oscillator::<f64>()
+    };
+    let mut run = simulate(&broken).duration(2.0).method(Rk4::step(0.125));
+    let failed = run.by_ref().find(Result::is_err);
+    assert!(
+        matches!(failed, Some(Err(Error::NotFinite { t })) if t > 0.8 && t < 1.01),
+        "{failed:?}"
+    );
+    assert!(run.next().is_none());
+}
+
+#[test]
+fn changing_a_setting_starts_over() {
+    let oscillator = oscillator::<f64>();
+    let mut run = simulate(&oscillator)
+        .from([1.0], [0.0])
+        .duration(1.0)
+        .sample_every(0.1);
+    assert_eq!(run.by_ref().count(), 11);
+    assert!(run.next().is_none());
+    assert_eq!(run.duration(2.0).count(), 21);
+}
+
+/// Energy that a mechanism has gained after a unit of time: code over all mechanisms.
+fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    q: SVector<M::Scalar, NQ>,
+    v: SVector<M::Scalar, NV>,
+) -> M::Scalar {
+    let energy = |q, v| mechanism.kinetic_energy(q, v) + mechanism.potential_energy(q);
+    let end = simulate(mechanism)
+        .from(q, v)
+        .duration(nalgebra::one())
+        .finish()
+        .unwrap();
+    energy(&end.q, &end.v) - energy(&q, &v)
+}
+
+#[test]
+fn generic_code_can_simulate() {
+    assert!(gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
+    assert!(gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
+    let body = FreeBody {
+        mass: 1.0,
+        inertia: Vector3::new(1.0, 2.0, 2.5),
+        gravity: 1.0,
+    };
+    assert!(
+        gain(
+            &body,
+            body.neutral(),
+            SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])
+        )
+        .abs()
+            < 1e-8
+    );
+}

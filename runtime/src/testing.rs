@@ -1,0 +1,244 @@
+//! Mechanisms written by hand, with closed forms, for the tests of this crate.
+
+use crate::__private::{ball_integrate, ball_tangent_rate, constant, free_integrate, free_tangent_rate};
+use crate::{Mechanism, Real};
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// One plain coordinate of inertia `inertia` under the force `force(q)`, damped; the input is a force on it.
+pub(crate) struct OneDof<T> {
+    pub(crate) inertia: T,
+    pub(crate) damping: T,
+    pub(crate) force: fn(T) -> T,
+    pub(crate) energy: fn(T) -> T,
+}
+
+/// `q̈ = −q`.
+pub(crate) fn oscillator<T: Real>() -> OneDof<T> {
+    let half = |q: T| q * q * constant(0.5);
+    OneDof {
+        inertia: T::one(),
+        damping: T::zero(),
+        force: |q| -q,
+        energy: half,
+    }
+}
+
+/// A pendulum of unit mass and length under unit gravity.
+pub(crate) fn pendulum() -> OneDof<f64> {
+    OneDof {
+        inertia: 1.0,
+        damping: 0.0,
+        force: |q| -q.sin(),
+        energy: |q| 1.0 - q.cos(),
+    }
+}
+
+/// A ball of unit mass above the floor under unit gravity.
+pub(crate) fn falling() -> OneDof<f64> {
+    OneDof {
+        inertia: 1.0,
+        damping: 0.0,
+        force: |_| -1.0,
+        energy: |q| q,
+    }
+}
+
+type V<T, const N: usize> = SVector<T, N>;
+
+impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
+    type Scalar = T;
+    const CONFIGURATION: [&'static str; 1] = ["q"];
+    const VELOCITIES: [&'static str; 1] = ["q"];
+    const INPUTS: [&'static str; 1] = ["push"];
+
+    fn neutral(&self) -> V<T, 1> {
+        SVector::zeros()
+    }
+    fn difference(&self, from: &V<T, 1>, to: &V<T, 1>) -> V<T, 1> {
+        to - from
+    }
+
+    fn integrate(&self, q: &V<T, 1>, dv: &V<T, 1>) -> V<T, 1> {
+        q + dv
+    }
+    fn tangent_rate(&self, _dv: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+        *v
+    }
+    fn mass_matrix(&self, _q: &V<T, 1>) -> SMatrix<T, 1, 1> {
+        SMatrix::from([self.inertia])
+    }
+    fn bias_forces(&self, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+        -self.momentum_rate(q, v)
+    }
+    fn inverse_dynamics(&self, q: &V<T, 1>, v: &V<T, 1>, a: &V<T, 1>) -> V<T, 1> {
+        a * self.inertia + self.bias_forces(q, v)
+    }
+    fn forward_dynamics(&self, q: &V<T, 1>, v: &V<T, 1>, tau: &V<T, 1>) -> V<T, 1> {
+        (tau - self.bias_forces(q, v)) / self.inertia
+    }
+    fn generalized_forces(&self, _q: &V<T, 1>, u: &V<T, 1>) -> V<T, 1> {
+        *u
+    }
+    fn kinetic_energy(&self, _q: &V<T, 1>, v: &V<T, 1>) -> T {
+        self.inertia * v[0] * v[0] * constant(0.5)
+    }
+    fn potential_energy(&self, q: &V<T, 1>) -> T {
+        (self.energy)(q[0])
+    }
+    fn generalized_momentum(&self, _q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+        v * self.inertia
+    }
+    fn momentum_rate(&self, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+        SVector::from([(self.force)(q[0]) - self.damping * v[0]])
+    }
+}
+
+/// A body that turns about its fixed centre of mass: a ball joint. The input is a torque in the body frame.
+pub(crate) struct Top<T> {
+    pub(crate) inertia: Vector3<T>,
+}
+
+impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
+    type Scalar = T;
+    const CONFIGURATION: [&'static str; 4] = ["qx", "qy", "qz", "qw"];
+    const VELOCITIES: [&'static str; 3] = ["wx", "wy", "wz"];
+    const INPUTS: [&'static str; 3] = ["x", "y", "z"];
+
+    fn neutral(&self) -> V<T, 4> {
+        SVector::from([T::zero(), T::zero(), T::zero(), T::one()])
+    }
+    fn difference(&self, from: &V<T, 4>, to: &V<T, 4>) -> V<T, 3> {
+        V::from(crate::lie::ball_difference(from.data.0[0], to.data.0[0]))
+    }
+
+    fn integrate(&self, q: &V<T, 4>, dv: &V<T, 3>) -> V<T, 4> {
+        ball_integrate((*q).into(), (*dv).into()).into()
+    }
+    fn tangent_rate(&self, dv: &V<T, 3>, v: &V<T, 3>) -> V<T, 3> {
+        ball_tangent_rate((*dv).into(), (*v).into()).into()
+    }
+    fn mass_matrix(&self, _q: &V<T, 4>) -> SMatrix<T, 3, 3> {
+        SMatrix::from_diagonal(&self.inertia)
+    }
+    fn bias_forces(&self, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+        v.cross(&self.inertia.component_mul(v))
+    }
+    fn inverse_dynamics(&self, q: &V<T, 4>, v: &V<T, 3>, a: &V<T, 3>) -> V<T, 3> {
+        self.inertia.component_mul(a) + self.bias_forces(q, v)
+    }
+    fn forward_dynamics(&self, q: &V<T, 4>, v: &V<T, 3>, tau: &V<T, 3>) -> V<T, 3> {
+        (tau - self.bias_forces(q, v)).component_div(&self.inertia)
+    }
+    fn generalized_forces(&self, _q: &V<T, 4>, u: &V<T, 3>) -> V<T, 3> {
+        *u
+    }
+    fn kinetic_energy(&self, _q: &V<T, 4>, v: &V<T, 3>) -> T {
+        self.inertia.component_mul(v).dot(v) * constant(0.5)
+    }
+    fn potential_energy(&self, _q: &V<T, 4>) -> T {
+        T::zero()
+    }
+    fn generalized_momentum(&self, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+        self.inertia.component_mul(v)
+    }
+    fn momentum_rate(&self, q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+        -self.bias_forces(q, v)
+    }
+}
+
+/// `R(q) a` for a quaternion x y z w.
+pub(crate) fn turned(q: [f64; 4], a: Vector3<f64>) -> Vector3<f64> {
+    let [x, y, z, w] = q;
+    let u = Vector3::new(x, y, z);
+    a + u.cross(&(u.cross(&a) + a * w)) * 2.0
+}
+
+/// A free body with its centre of mass at the origin, under gravity along −z.
+pub(crate) struct FreeBody {
+    pub(crate) mass: f64,
+    pub(crate) inertia: Vector3<f64>,
+    pub(crate) gravity: f64,
+}
+
+/// Linear and angular part.
+fn split(v: &V<f64, 6>) -> (Vector3<f64>, Vector3<f64>) {
+    (Vector3::new(v[0], v[1], v[2]), Vector3::new(v[3], v[4], v[5]))
+}
+
+fn join(a: Vector3<f64>, b: Vector3<f64>) -> V<f64, 6> {
+    SVector::from([a.x, a.y, a.z, b.x, b.y, b.z])
+}
+
+impl Mechanism<7, 6, 0> for FreeBody {
+    type Scalar = f64;
+    const CONFIGURATION: [&'static str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+    const VELOCITIES: [&'static str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
+    const INPUTS: [&'static str; 0] = [];
+
+    fn neutral(&self) -> V<f64, 7> {
+        SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    }
+    fn difference(&self, from: &V<f64, 7>, to: &V<f64, 7>) -> V<f64, 6> {
+        V::from(crate::lie::free_difference(from.data.0[0], to.data.0[0]))
+    }
+
+    fn integrate(&self, q: &V<f64, 7>, dv: &V<f64, 6>) -> V<f64, 7> {
+        free_integrate((*q).into(), (*dv).into()).into()
+    }
+    fn tangent_rate(&self, dv: &V<f64, 6>, v: &V<f64, 6>) -> V<f64, 6> {
+        free_tangent_rate((*dv).into(), (*v).into()).into()
+    }
+    fn mass_matrix(&self, _q: &V<f64, 7>) -> SMatrix<f64, 6, 6> {
+        SMatrix::from_diagonal(&join(Vector3::repeat(self.mass), self.inertia))
+    }
+    fn bias_forces(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+        -self.momentum_rate(q, v)
+    }
+    fn inverse_dynamics(&self, q: &V<f64, 7>, v: &V<f64, 6>, a: &V<f64, 6>) -> V<f64, 6> {
+        self.mass_matrix(q) * a + self.bias_forces(q, v)
+    }
+    fn forward_dynamics(&self, q: &V<f64, 7>, v: &V<f64, 6>, tau: &V<f64, 6>) -> V<f64, 6> {
+        (tau - self.bias_forces(q, v)).component_div(&self.mass_matrix(q).diagonal())
+    }
+    fn generalized_forces(&self, _q: &V<f64, 7>, _u: &V<f64, 0>) -> V<f64, 6> {
+        SVector::zeros()
+    }
+    fn kinetic_energy(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> f64 {
+        (self.mass_matrix(q) * v).dot(v) * 0.5
+    }
+    fn potential_energy(&self, q: &V<f64, 7>) -> f64 {
+        self.mass * self.gravity * q[2]
+    }
+    fn generalized_momentum(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+        self.mass_matrix(q) * v
+    }
+    fn momentum_rate(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+        let (linear, angular) = split(v);
+        let weight = Vector3::new(0.0, 0.0, -self.mass * self.gravity);
+        let weight = turned([-q[3], -q[4], -q[5], q[6]], weight);
+        let spin = self.inertia.component_mul(&angular);
+        join(linear.cross(&angular) * self.mass + weight, spin.cross(&angular))
+    }
+}
+
+/// Angular velocity of the symmetric free top `inertia = (a, a, c)` in the body frame at time `t`, and its attitude,
+/// from the attitude of the ground and the velocity `w`: `R = exp(t L/a) exp(t (w₃ − L₃/a) e₃)`.
+pub(crate) fn symmetric_top(inertia: Vector3<f64>, w: Vector3<f64>, t: f64) -> ([f64; 4], Vector3<f64>) {
+    let momentum = inertia.component_mul(&w) / inertia.x;
+    let rate = w.z - momentum.z;
+    let nutation = (momentum * t).into();
+    let attitude = ball_integrate([0.0, 0.0, 0.0, 1.0], nutation);
+    let attitude = ball_integrate(attitude, [0.0, 0.0, rate * t]);
+    let (sin, cos) = (rate * t).sin_cos();
+    let w = Vector3::new(cos * w.x + sin * w.y, cos * w.y - sin * w.x, w.z);
+    (attitude, w)
+}
+
+/// Period of the pendulum of [`pendulum`] with the amplitude `angle`: `2π / agm(1, cos(angle/2))`.
+pub(crate) fn pendulum_period(angle: f64) -> f64 {
+    let (mut a, mut b) = (1.0_f64, (angle / 2.0).cos());
+    for _ in 0..8 {
+        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+    }
+    2.0 * core::f64::consts::PI / a
+}
