@@ -17,11 +17,8 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     let mass = crba::mass_matrix(model, &joints);
     if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
         let (name, place) = &model.velocities[k];
-        cx.error(
-            place.clone(),
-            format!("the coordinate `{name}` moves nothing that has inertia"),
-        )
-        .help("the mass matrix is singular: give mass or inertia to what the joint carries");
+        cx.error(place.clone(), format!("the coordinate `{name}` moves nothing that has inertia"))
+            .help("the mass matrix is singular: give mass or inertia to what the joint carries");
         return None;
     }
     let mut functions = signatures(model.nv(), model.nq());
@@ -30,17 +27,8 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     }
     Some(Output {
         functions,
-        links: model
-            .links
-            .iter()
-            .zip(&joints)
-            .map(|(_, joint)| link_steps(model, joint))
-            .collect(),
-        frames: model
-            .frames
-            .iter()
-            .map(|frame| frame_steps(model, frame))
-            .collect(),
+        links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
+        frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
         charts: charts(model),
         equations: equations(model),
     })
@@ -81,11 +69,7 @@ fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Ma
     let g = model.graph;
     let v = mechanics::velocities(model);
     let bias = rnea::inverse_dynamics(model, joints, &v, None);
-    let r: Vec<Expr<'g>> = bias
-        .iter()
-        .enumerate()
-        .map(|(k, h)| Quantity::Force(k).expr(g) - *h)
-        .collect();
+    let r: Vec<Expr<'g>> = bias.iter().enumerate().map(|(k, h)| Quantity::Force(k).expr(g) - *h).collect();
     let articulated = mechanics::aba::accelerations(model, joints, &r).map(|a| done(&a));
     match articulated {
         Some(program) if model.nv() > COMPARE => program,
@@ -134,10 +118,8 @@ fn charts(model: &Model<'_>) -> Vec<Chart> {
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
     let v = mechanics::velocities(model);
     let a = mechanics::accelerations(model);
-    let columns: Vec<Expr<'g>> = frames::jacobian_columns(model, joint)
-        .iter()
-        .flat_map(frames::flat)
-        .collect();
+    let columns: Vec<Expr<'g>> =
+        frames::jacobian_columns(model, joint).iter().flat_map(frames::flat).collect();
     LinkSteps {
         parent: joint.parent.map(|p| p.0),
         velocities: joint.dofs.iter().map(|d| d.index).collect(),
@@ -222,24 +204,14 @@ pub fn signatures(nv: usize, nq: usize) -> Vec<Function> {
             Shape::Vector(nv),
             &["What the inputs `u` contribute to `τ`, by virtual work."],
         ),
-        function(
-            "kinetic_energy",
-            &[Q, V],
-            Shape::Scalar,
-            &["Kinetic energy `T = ½ vᵀ M(q) v`, J."],
-        ),
+        function("kinetic_energy", &[Q, V], Shape::Scalar, &["Kinetic energy `T = ½ vᵀ M(q) v`, J."]),
         function(
             "potential_energy",
             &[Q],
             Shape::Scalar,
             &["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
         ),
-        function(
-            "generalized_momentum",
-            &[Q, V],
-            Shape::Vector(nv),
-            &["Generalized momentum `p = M(q) v`."],
-        ),
+        function("generalized_momentum", &[Q, V], Shape::Vector(nv), &["Generalized momentum `p = M(q) v`."]),
         function(
             "momentum_rate",
             &[Q, V],
@@ -250,12 +222,7 @@ pub fn signatures(nv: usize, nq: usize) -> Vec<Function> {
                 "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
             ],
         ),
-        function(
-            "total_mass",
-            &[],
-            Shape::Scalar,
-            &["Mass of everything that moves, kg."],
-        ),
+        function("total_mass", &[], Shape::Scalar, &["Mass of everything that moves, kg."]),
         function(
             "center_of_mass",
             &[Q],

@@ -90,11 +90,7 @@ impl Diagnostics {
 
     /// Reports a mistake. The message is lower case without a full stop, the user's words in backticks.
     pub fn error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
-        self.errors.push(Diagnostic {
-            place: place.into(),
-            message: message.into(),
-            help: Vec::new(),
-        });
+        self.errors.push(Diagnostic { place: place.into(), message: message.into(), help: Vec::new() });
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
@@ -117,10 +113,7 @@ impl Diagnostics {
 
     /// One `compile_error!` for each mistake, at its token.
     pub fn into_tokens(self) -> TokenStream {
-        self.errors
-            .iter()
-            .map(|e| syn::Error::new(e.place.span, e.text()).into_compile_error())
-            .collect()
+        self.errors.iter().map(|e| syn::Error::new(e.place.span, e.text()).into_compile_error()).collect()
     }
 }
 
@@ -170,10 +163,7 @@ mod tests {
     #[test]
     fn a_slip_finds_its_name_and_a_stranger_does_not() {
         assert_eq!(nearest("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
-        assert_eq!(
-            nearest("cart_mas", &["cart_mass", "pole_mass"]),
-            Some("cart_mass")
-        );
+        assert_eq!(nearest("cart_mas", &["cart_mass", "pole_mass"]), Some("cart_mass"));
         assert_eq!(nearest("abuot", &["about", "along"]), Some("about"));
         assert_eq!(nearest("pin", &["Pin", "Sleeve"]), Some("Pin"));
         assert_eq!(nearest("spaceship", &["Pin", "Sleeve"]), None);

@@ -30,9 +30,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Token
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
     let interface = source.interface(output.as_ref().map(|(model, _)| model));
-    let tokens = output
-        .as_ref()
-        .map(|(_, output)| emit_mechanism(&interface, output));
+    let tokens = output.as_ref().map(|(_, output)| emit_mechanism(&interface, output));
     match tokens {
         Some(Ok(tokens)) => tokens,
         Some(Err(message)) => {
@@ -96,18 +94,12 @@ fn merge(description: &mut Description, imported: import::Imported, cx: &mut Dia
     let own_joints = std::mem::replace(&mut description.joints, imported.joints);
     for own in &own_bodies {
         if description.bodies.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(
-                own.name.place.clone(),
-                format!("the file has a link `{}` already", own.name.text),
-            );
+            cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text));
         }
     }
     for own in &own_joints {
         if description.joints.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(
-                own.name.place.clone(),
-                format!("the file has a joint `{}` already", own.name.text),
-            );
+            cx.error(own.name.place.clone(), format!("the file has a joint `{}` already", own.name.text));
         }
     }
     description.bodies.extend(own_bodies);

@@ -82,11 +82,7 @@ impl Writer<'_> {
                     let angle = self.operand(angle);
                     let helper = self.helper("sin_cos");
                     let text = format!("{helper}({})", angle.text);
-                    self.statements.push(Statement {
-                        names: vec![pair.0, pair.1],
-                        text,
-                        needs: angle.needs,
-                    });
+                    self.statements.push(Statement { names: vec![pair.0, pair.1], text, needs: angle.needs });
                 }
                 continue;
             }
@@ -94,11 +90,7 @@ impl Writer<'_> {
             if self.program.uses[k] == 1 && piece.text.len() <= LINE {
                 self.pieces[k] = Some(piece);
             } else {
-                self.statements.push(Statement {
-                    names: vec![k],
-                    text: piece.text,
-                    needs: piece.needs,
-                });
+                self.statements.push(Statement { names: vec![k], text: piece.text, needs: piece.needs });
             }
         }
     }
@@ -109,28 +101,14 @@ impl Writer<'_> {
         let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = self.program.instructions[k] else {
             return None;
         };
-        let other = if f == Elementary::Sin {
-            Elementary::Cos
-        } else {
-            Elementary::Sin
-        };
+        let other = if f == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
         let near = k.saturating_sub(8)..(k + 9).min(self.program.instructions.len());
-        let other = near
-            .into_iter()
-            .find(|j| self.program.instructions[*j] == Op::Call(other, angle))?;
-        Some(if f == Elementary::Sin {
-            (k, other)
-        } else {
-            (other, k)
-        })
+        let other = near.into_iter().find(|j| self.program.instructions[*j] == Op::Call(other, angle))?;
+        Some(if f == Elementary::Sin { (k, other) } else { (other, k) })
     }
 
     fn operand(&mut self, o: Operand) -> Piece {
-        let plain = |text| Piece {
-            text,
-            needs: Vec::new(),
-            level: 3,
-        };
+        let plain = |text| Piece { text, needs: Vec::new(), level: 3 };
         match o {
             Operand::Const(c) => plain(self.constant(c)),
             Operand::Symbol(s) => plain(self.symbol(s)),
@@ -163,11 +141,7 @@ impl Writer<'_> {
             Op::Neg(a) => {
                 let a = self.operand(a);
                 let text = format!("-{}", wrap(&a, 3));
-                Piece {
-                    text,
-                    needs: a.needs,
-                    level: 2,
-                }
+                Piece { text, needs: a.needs, level: 2 }
             }
             Op::Add(a, b) => self.infix(a, "+", b, 1, 1),
             Op::Sub(a, b) => self.infix(a, "-", b, 1, 2),
@@ -199,20 +173,12 @@ impl Writer<'_> {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece {
-            text: format!("{helper}({})", list.join(", ")),
-            needs,
-            level: 3,
-        }
+        Piece { text: format!("{helper}({})", list.join(", ")), needs, level: 3 }
     }
 }
 
 fn wrap(piece: &Piece, level: u8) -> String {
-    if piece.level < level {
-        format!("({})", piece.text)
-    } else {
-        piece.text.clone()
-    }
+    if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }
 
 /// Imports and the numbers of the arguments.
@@ -250,11 +216,7 @@ fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece
     }
     // The last block that needs each value decides whether it leaves its own.
     let blocks: Vec<&[Statement]> = statements.chunks(BLOCK).collect();
-    let size = statements
-        .iter()
-        .flat_map(|s| &s.names)
-        .max()
-        .map_or(0, |m| m + 1);
+    let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
     let mut last_need = vec![0; size];
     for (b, block) in blocks.iter().enumerate() {
         for need in block.iter().flat_map(|s| &s.needs) {

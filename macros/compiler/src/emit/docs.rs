@@ -22,21 +22,13 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
     if !output.equations.is_empty() {
-        let _ = writeln!(
-            text,
-            "\n# Equations of motion\n\n```text\n{}\n```",
-            output.equations.trim_end()
-        );
+        let _ = writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.trim_end());
     }
     text.push_str("\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n");
     for f in output.functions.iter().filter(|f| !f.docs.is_empty()) {
         let c = f.program.counts;
         if c.total() + c.calls > 0 {
-            let _ = writeln!(
-                text,
-                "| `{}` | {} | {} | {} | {} |",
-                f.name, c.mul, c.add, c.div, c.calls
-            );
+            let _ = writeln!(text, "| `{}` | {} | {} | {} | {} |", f.name, c.mul, c.add, c.div, c.calls);
         }
     }
     text

@@ -41,13 +41,8 @@ const PARENT: Argument = Argument::Given("p", 0, 12);
 /// Writes the private steps and the implementations of `NamedFrame`.
 pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
-        let f = Function {
-            name,
-            docs: Vec::new(),
-            arguments,
-            shape: Shape::Array(n),
-            program: program.clone(),
-        };
+        let f =
+            Function { name, docs: Vec::new(), arguments, shape: Shape::Array(n), program: program.clone() };
         write_function(out, &f, s, false);
     };
     for (k, link) in links.iter().enumerate() {
@@ -56,50 +51,21 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
             all.extend(link.parent.map(|_| given));
             all
         };
-        step(
-            format!("__link{k}_placement"),
-            from_parent(&[Argument::Q], PARENT),
-            12,
-            &link.placement,
-        );
+        step(format!("__link{k}_placement"), from_parent(&[Argument::Q], PARENT), 12, &link.placement);
         let twist = from_parent(&[Argument::Q, Argument::V], Argument::Given("p", 0, 6));
         step(format!("__link{k}_twist"), twist, 6, &link.twist);
-        let acceleration = from_parent(
-            &[Argument::Q, Argument::V, Argument::A],
-            Argument::Given("p", 0, 12),
-        );
-        step(
-            format!("__link{k}_acceleration"),
-            acceleration,
-            6,
-            &link.acceleration,
-        );
+        let acceleration = from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", 0, 12));
+        step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
         let columns = vec![Argument::Given("p", 0, 12), Argument::Given("o", 12, 3)];
-        step(
-            format!("__link{k}_columns"),
-            columns,
-            6 * link.velocities.len(),
-            &link.columns,
-        );
+        step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
-        let given = |n: usize| {
-            frame
-                .link
-                .map(|_| Argument::Given("p", 0, n))
-                .into_iter()
-                .collect::<Vec<_>>()
-        };
+        let given = |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
         if !frame.is_link {
             step(format!("__frame{k}_placement"), given(12), 12, &frame.placement);
         }
         step(format!("__frame{k}_twist"), given(18), 6, &frame.twist);
-        step(
-            format!("__frame{k}_acceleration"),
-            given(24),
-            6,
-            &frame.acceleration,
-        );
+        step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
     }
 }
 
@@ -152,11 +118,7 @@ pub fn write_frame_impl(
     let scalar = s.scalar.name();
     let path = path(links, frame.link);
     let method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
-        let _ = writeln!(
-            out,
-            "#[inline]\nfn {name}({}) -> {result} {{",
-            s.parameters(arguments)
-        );
+        let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(arguments));
     };
     method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
     for link in &path {
@@ -164,24 +126,12 @@ pub fn write_frame_impl(
     }
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
-    method(
-        out,
-        "twist",
-        &[Argument::Q, Argument::V],
-        &format!("[{scalar}; 6]"),
-    );
+    method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
     write_motion(out, &path, links, false);
-    let last = path.last().map_or(String::new(), |l| {
-        format!("&::linkwork::__private::join(&x{l}, &w{l})")
-    });
+    let last = path.last().map_or(String::new(), |l| format!("&::linkwork::__private::join(&x{l}, &w{l})"));
     let _ = writeln!(out, "self.__frame{k}_twist({last})\n}}");
 
-    method(
-        out,
-        "acceleration",
-        &[Argument::Q, Argument::V, Argument::A],
-        &format!("[{scalar}; 6]"),
-    );
+    method(out, "acceleration", &[Argument::Q, Argument::V, Argument::A], &format!("[{scalar}; 6]"));
     write_motion(out, &path, links, true);
     let last = path.last().map_or(String::new(), |l| {
         let join = "::linkwork::__private::join";
@@ -197,9 +147,9 @@ fn write_motion(out: &mut String, path: &[usize], links: &[LinkSteps], accelerat
         let parent = links[k].parent.map_or(String::new(), |p| format!(", &w{p}"));
         let _ = writeln!(out, "let w{k} = self.__link{k}_twist(q, v{parent});");
         if accelerations {
-            let parent = links[k].parent.map_or(String::new(), |p| {
-                format!(", &::linkwork::__private::join(&w{p}, &a{p})")
-            });
+            let parent = links[k]
+                .parent
+                .map_or(String::new(), |p| format!(", &::linkwork::__private::join(&w{p}, &a{p})"));
             let _ = writeln!(out, "let a{k} = self.__link{k}_acceleration(q, v, a{parent});");
         }
     }
@@ -215,11 +165,7 @@ fn write_jacobian(
 ) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
-    let _ = writeln!(
-        out,
-        "#[inline]\nfn jacobian({}) -> {matrix} {{",
-        s.parameters(&[Argument::Q])
-    );
+    let _ = writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::Q]));
     for &link in path {
         write_link_placement(out, link, &links[link]);
     }
@@ -232,35 +178,22 @@ fn write_jacobian(
     for &link in path {
         let velocities = &links[link].velocities;
         let names: Vec<String> = (0..velocities.len()).map(|c| format!("j{link}_{c}")).collect();
-        let entries: Vec<String> = names
-            .iter()
-            .map(|n| format!("{n}_0, {n}_1, {n}_2, {n}_3, {n}_4, {n}_5"))
-            .collect();
-        let _ = writeln!(
-            out,
-            "let [{}] = self.__link{link}_columns(&x{link}, &o);",
-            entries.join(", ")
-        );
+        let entries: Vec<String> =
+            names.iter().map(|n| format!("{n}_0, {n}_1, {n}_2, {n}_3, {n}_4, {n}_5")).collect();
+        let _ = writeln!(out, "let [{}] = self.__link{link}_columns(&x{link}, &o);", entries.join(", "));
         for (name, v) in names.iter().zip(velocities) {
             columns[*v].push(name.clone());
         }
     }
     if columns.iter().any(Vec::is_empty) {
-        let _ = writeln!(
-            out,
-            "let zero = ::linkwork::__private::constant::<{scalar}>(0.0);"
-        );
+        let _ = writeln!(out, "let zero = ::linkwork::__private::constant::<{scalar}>(0.0);");
     }
     let columns: Vec<String> = columns
         .iter()
         .map(|terms| {
             let entry = |row: usize| {
                 let sum: Vec<String> = terms.iter().map(|t| format!("{t}_{row}")).collect();
-                if sum.is_empty() {
-                    "zero".to_string()
-                } else {
-                    sum.join(" + ")
-                }
+                if sum.is_empty() { "zero".to_string() } else { sum.join(" + ") }
             };
             let entries: Vec<String> = (0..6).map(entry).collect();
             format!("[{}]", entries.join(", "))

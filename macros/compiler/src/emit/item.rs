@@ -80,11 +80,8 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<Toke
     }
     write_manifold(&mut methods, &output.charts, &s);
     write_frame_access(&mut methods, &s);
-    let placements = format!(
-        "[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]",
-        spelling.name(),
-        output.frames.len()
-    );
+    let placements =
+        format!("[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]", spelling.name(), output.frames.len());
     let _ = writeln!(
         methods,
         "/// Placements of all frames in the ground, in the order of `FRAMES`.\n#[inline]\n#[must_use]\npub fn frame_placements({}) -> {placements} {{",
@@ -122,11 +119,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> TokenSt
 }
 
 fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
-    let fields = interface
-        .shell
-        .parameters
-        .iter()
-        .filter_map(|f| f.ident.as_ref().map(ToString::to_string));
+    let fields = interface.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string));
     ScalarSpelling::new(interface.scalar.clone(), fields.collect())
 }
 
@@ -273,10 +266,7 @@ fn write_manifold(out: &mut String, charts: &[Chart], s: &Signature<'_>) {
 /// Access to one frame: `frame!(Robot, "tool")` names it, and the compiler checks the name.
 fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     let scalar = s.scalar.name();
-    let bound = format!(
-        "where Self: ::linkwork::NamedFrame<I, {}, {}, Scalar = {scalar}>",
-        s.nq, s.nv
-    );
+    let bound = format!("where Self: ::linkwork::NamedFrame<I, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
@@ -345,32 +335,17 @@ fn assemble(
     frames: &[String],
     docs: &str,
 ) -> Result<TokenStream, String> {
-    let Shell {
-        attributes,
-        visibility,
-        ident,
-        parameters,
-        elements,
-        ..
-    } = i.shell;
+    let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
     let mut generics = i.shell.generics.clone();
     let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
-    let struct_generics = if struct_generics.is_empty() {
-        quote!()
-    } else {
-        quote!(<#struct_generics>)
-    };
+    let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
     let fields = if parameters.is_empty() {
         quote!(#struct_where;)
     } else {
         quote!(#struct_where { #(#parameters),* })
     };
-    let docs = if docs.is_empty() {
-        quote!()
-    } else {
-        quote!(#[doc = #docs])
-    };
+    let docs = if docs.is_empty() { quote!() } else { quote!(#[doc = #docs]) };
     // The types of the elements, so that an editor explains them.
     let words = elements.iter().map(|(_, kind)| kind);
     let known = if frames.is_empty() {
@@ -392,10 +367,7 @@ fn assemble(
     };
     if s.scalar.is_generic() {
         let name: syn::Ident = syn::parse_str(s.scalar.name()).map_err(|e| e.to_string())?;
-        generics
-            .make_where_clause()
-            .predicates
-            .push(syn::parse_quote!(#name: ::linkwork::Real));
+        generics.make_where_clause().predicates.push(syn::parse_quote!(#name: ::linkwork::Real));
     }
     let (impl_generics, _, where_clause) = generics.split_for_impl();
     let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();

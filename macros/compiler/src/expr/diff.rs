@@ -13,11 +13,7 @@ pub struct Derivative<'g> {
 impl<'g> Derivative<'g> {
     /// Derivatives with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
-        Derivative {
-            graph,
-            symbol,
-            known: Vec::new(),
-        }
+        Derivative { graph, symbol, known: Vec::new() }
     }
 
     /// The derivative of `e`.
@@ -64,16 +60,9 @@ impl<'g> Derivative<'g> {
             Node::Call(f, a) => self.outer(f, at(a), at(id)) * d(a),
             Node::Atan2(y, x) => (at(x) * d(y) - at(y) * d(x)) / (at(x).square() + at(y).square()),
             Node::Pow(a, b) => {
-                let base = if d(a).is_zero() {
-                    self.graph.zero()
-                } else {
-                    at(b) * d(a) / at(a)
-                };
-                let exponent = if d(b).is_zero() {
-                    self.graph.zero()
-                } else {
-                    d(b) * at(a).call(Function::Ln)
-                };
+                let base = if d(a).is_zero() { self.graph.zero() } else { at(b) * d(a) / at(a) };
+                let exponent =
+                    if d(b).is_zero() { self.graph.zero() } else { d(b) * at(a).call(Function::Ln) };
                 at(id) * (base + exponent)
             }
         }

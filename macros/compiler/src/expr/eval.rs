@@ -12,11 +12,7 @@ pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
     for root in roots {
         needed[root.id() as usize] = true;
     }
-    for id in (0..nodes.len())
-        .rev()
-        .filter(|id| needed[*id])
-        .collect::<Vec<_>>()
-    {
+    for id in (0..nodes.len()).rev().filter(|id| needed[*id]).collect::<Vec<_>>() {
         mark(&nodes, id, &mut needed);
     }
     let mut values = vec![0.0_f64; nodes.len()];

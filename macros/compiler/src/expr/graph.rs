@@ -57,10 +57,7 @@ impl Function {
 
     /// The name in the language and in generated code.
     pub fn name(self) -> &'static str {
-        Function::ALL
-            .iter()
-            .find(|(_, f)| *f == self)
-            .map_or("?", |(name, _)| name)
+        Function::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 
     /// The value at a number.
@@ -250,15 +247,10 @@ const ONE: Id = 1;
 impl Graph {
     /// An empty graph.
     pub fn new() -> Graph {
-        let mut store = Store {
-            nodes: Vec::new(),
-            table: vec![EMPTY; 1024],
-        };
+        let mut store = Store { nodes: Vec::new(), table: vec![EMPTY; 1024] };
         store.intern(Node::Const(0.0));
         store.intern(Node::Const(1.0));
-        Graph {
-            store: RefCell::new(store),
-        }
+        Graph { store: RefCell::new(store) }
     }
 
     /// Number of nodes made so far.
@@ -398,11 +390,7 @@ impl Graph {
             _ => {}
         }
         // One order for both signs, so that `a − b` and `b − a` share.
-        if a < b {
-            self.intern(Node::Sub(a, b))
-        } else {
-            self.neg(self.intern(Node::Sub(b, a)))
-        }
+        if a < b { self.intern(Node::Sub(a, b)) } else { self.neg(self.intern(Node::Sub(b, a))) }
     }
 
     fn sub(&self, a: Id, b: Id) -> Id {
@@ -570,8 +558,7 @@ impl<'g> Expr<'g> {
         if let (Some(y), Some(x)) = (self.value(), abscissa.value()) {
             return self.num(y.atan2(x));
         }
-        self.graph
-            .expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
+        self.graph.expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
     }
 
     /// A power; small whole exponents become products.
@@ -580,16 +567,10 @@ impl<'g> Expr<'g> {
             (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
             (_, Some(n)) if n == n.trunc() && n.abs() <= 8.0 => {
                 let product = (0..n.abs() as u32).fold(self.graph.one(), |p, _| p * self);
-                if n < 0.0 {
-                    self.graph.one() / product
-                } else {
-                    product
-                }
+                if n < 0.0 { self.graph.one() / product } else { product }
             }
             (_, Some(0.5)) => self.sqrt(),
-            _ => self
-                .graph
-                .expr(self.graph.intern(Node::Pow(self.id, exponent.id))),
+            _ => self.graph.expr(self.graph.intern(Node::Pow(self.id, exponent.id))),
         }
     }
 

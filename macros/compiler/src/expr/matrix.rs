@@ -193,36 +193,23 @@ pub struct Sym3<'g> {
 impl<'g> Sym3<'g> {
     /// Zero.
     pub fn zero(g: &'g Graph) -> Sym3<'g> {
-        Sym3 {
-            diagonal: [g.zero(); 3],
-            off: [g.zero(); 3],
-        }
+        Sym3 { diagonal: [g.zero(); 3], off: [g.zero(); 3] }
     }
 
     /// A multiple of the unit matrix.
     pub fn scalar(s: Expr<'g>) -> Sym3<'g> {
-        Sym3 {
-            diagonal: [s; 3],
-            off: [s.zero(); 3],
-        }
+        Sym3 { diagonal: [s; 3], off: [s.zero(); 3] }
     }
 
     /// The symmetric matrix with the upper triangle of `m`.
     pub fn from_upper(m: &Mat3<'g>) -> Sym3<'g> {
         let m = &m.0;
-        Sym3 {
-            diagonal: [m[0][0], m[1][1], m[2][2]],
-            off: [m[0][1], m[0][2], m[1][2]],
-        }
+        Sym3 { diagonal: [m[0][0], m[1][1], m[2][2]], off: [m[0][1], m[0][2], m[1][2]] }
     }
 
     /// Entry (i, j).
     pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
-        if i == j {
-            self.diagonal[i]
-        } else {
-            self.off[i + j - 1]
-        }
+        if i == j { self.diagonal[i] } else { self.off[i + j - 1] }
     }
 
     /// All nine entries.
@@ -235,10 +222,7 @@ impl<'g> Sym3<'g> {
         let [x, y, z] = a.0;
         let (sx, sy, sz) = (s * x, s * y, s * z);
         let (xx, yy, zz) = (sx * x, sy * y, sz * z);
-        Sym3 {
-            diagonal: [yy + zz, xx + zz, xx + yy],
-            off: [-(sx * y), -(sx * z), -(sy * z)],
-        }
+        Sym3 { diagonal: [yy + zz, xx + zz, xx + yy], off: [-(sx * y), -(sx * z), -(sy * z)] }
     }
 }
 

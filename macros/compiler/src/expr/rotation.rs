@@ -10,11 +10,7 @@ enum Step<'g> {
     /// A rotation matrix.
     Matrix(Mat3<'g>),
     /// A rotation about coordinate axis `axis` by the angle with this sine and cosine.
-    Axis {
-        axis: usize,
-        sin: Expr<'g>,
-        cos: Expr<'g>,
-    },
+    Axis { axis: usize, sin: Expr<'g>, cos: Expr<'g> },
 }
 
 /// The orientation of a child frame in a parent frame: `v_parent = R v_child`, `R` a product of steps.
@@ -27,20 +23,13 @@ pub struct Rotation<'g> {
 impl<'g> Rotation<'g> {
     /// No rotation.
     pub fn identity(graph: &'g Graph) -> Rotation<'g> {
-        Rotation {
-            steps: Vec::new(),
-            graph,
-        }
+        Rotation { steps: Vec::new(), graph }
     }
 
     /// A rotation about coordinate axis `axis` by `angle`.
     pub fn about_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
         let graph = angle.graph();
-        let step = Step::Axis {
-            axis,
-            sin: angle.sin(),
-            cos: angle.cos(),
-        };
+        let step = Step::Axis { axis, sin: angle.sin(), cos: angle.cos() };
         let mut rotation = Rotation::identity(graph);
         rotation.push(step);
         rotation
@@ -98,10 +87,7 @@ impl<'g> Rotation<'g> {
     /// The inverse rotation.
     pub fn inverse(&self) -> Rotation<'g> {
         let steps = self.steps.iter().rev().map(|s| s.inverse()).collect();
-        Rotation {
-            steps,
-            graph: self.graph,
-        }
+        Rotation { steps, graph: self.graph }
     }
 
     /// Appends a step; constant neighbours become one matrix, and the unit matrix none.
@@ -215,13 +201,8 @@ impl<'g> Step<'g> {
         match self {
             Step::Matrix(m) => {
                 let half = *m * x.full();
-                let upper = Mat3::from_fn(|i, j| {
-                    if i <= j {
-                        half.row(i).dot(m.row(j))
-                    } else {
-                        m.0[0][0].zero()
-                    }
-                });
+                let upper =
+                    Mat3::from_fn(|i, j| if i <= j { half.row(i).dot(m.row(j)) } else { m.0[0][0].zero() });
                 Sym3::from_upper(&upper)
             }
             Step::Axis { .. } => Sym3::from_upper(&self.apply_mat(x.full())),

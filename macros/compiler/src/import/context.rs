@@ -33,14 +33,7 @@ impl<'a> Cx<'a> {
             blocks.push(position);
         }
         let (path, span) = (Rc::from(path.text.as_str()), path.place.span);
-        Cx {
-            text,
-            path,
-            span,
-            blocks,
-            diagnostics,
-            mistakes: 0,
-        }
+        Cx { text, path, span, blocks, diagnostics, mistakes: 0 }
     }
 
     /// The place of the byte at `offset`.
@@ -48,23 +41,14 @@ impl<'a> Cx<'a> {
         let offset = offset.min(self.text.len());
         let block = offset / BLOCK;
         let start = self.blocks.get(block).copied().unwrap_or((1, 1));
-        let (line, column) = self.text.as_bytes()[block * BLOCK..offset]
-            .iter()
-            .fold(start, advance);
+        let (line, column) = self.text.as_bytes()[block * BLOCK..offset].iter().fold(start, advance);
         self.place_at(line, column)
     }
 
     /// The place at a line and a column, both from one.
     pub(super) fn place_at(&self, line: u32, column: u32) -> Place {
-        let file = Some(FilePosition {
-            file: self.path.clone(),
-            line,
-            column,
-        });
-        Place {
-            span: self.span,
-            file,
-        }
+        let file = Some(FilePosition { file: self.path.clone(), line, column });
+        Place { span: self.span, file }
     }
 
     /// The place of the end of the file.
@@ -88,10 +72,7 @@ impl<'a> Cx<'a> {
         if self.mistakes <= MISTAKES_SHOWN {
             mend(self.diagnostics.error(place.clone(), message));
         } else if self.mistakes == MISTAKES_SHOWN + 1 {
-            let message = format!(
-                "`{}` has more mistakes; these are the first {MISTAKES_SHOWN}",
-                self.path
-            );
+            let message = format!("`{}` has more mistakes; these are the first {MISTAKES_SHOWN}", self.path);
             self.diagnostics.error(self.span, message);
         }
     }

@@ -22,8 +22,7 @@ pub(super) fn tag(node: Node<'_>) -> String {
 /// The child elements of the file's own vocabulary; those with another prefix are extensions.
 pub(super) fn elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     let namespace = node.tag_name().namespace();
-    node.children()
-        .filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
+    node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
 /// The child elements named in `known`, at most one of each. Others are ignored, unless they look like
@@ -48,34 +47,23 @@ pub(super) fn children<'a, const N: usize>(
 fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
     let first = first.map(|node| position(&place(node, cx))).unwrap_or_default();
     let message = format!("second {} of one element", tag(child));
-    cx.error(&place(child, cx), message, |d| {
-        d.help(format!("the first is at {first}"))
-    });
+    cx.error(&place(child, cx), message, |d| d.help(format!("the first is at {first}")));
 }
 
 /// Reports an element whose name is nearly one of `known`.
 pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     if let Some(best) = nearest(node.tag_name().name(), known) {
         let help = format!("did you mean `<{best}>`?");
-        cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| {
-            d.help(help)
-        });
+        cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| d.help(help));
     }
 }
 
 /// Reports the required attributes that are missing, and attributes that look like a misspelt one.
 /// One mistake for both: the misspelt attribute is the missing one.
 pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
-    let mut missing: Vec<&str> = required
-        .iter()
-        .copied()
-        .filter(|name| !node.has_attribute(*name))
-        .collect();
+    let mut missing: Vec<&str> = required.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
     let known = |name: &str| required.contains(&name) || optional.contains(&name);
-    for attribute in node
-        .attributes()
-        .filter(|a| a.namespace().is_none() && !known(a.name()))
-    {
+    for attribute in node.attributes().filter(|a| a.namespace().is_none() && !known(a.name())) {
         let absent = optional.iter().copied().filter(|name| !node.has_attribute(*name));
         let candidates: Vec<&str> = missing.iter().copied().chain(absent).collect();
         if let Some(best) = nearest(attribute.name(), &candidates) {
@@ -107,9 +95,7 @@ pub(super) fn required<'a>(
 ) -> Option<Node<'a>> {
     if child.is_none() {
         let message = format!("{} without `<{element}>`", tag(node));
-        cx.error(&place(node, cx), message, |d| {
-            d.help(expected(element, attributes))
-        });
+        cx.error(&place(node, cx), message, |d| d.help(expected(element, attributes)));
     }
     child
 }
@@ -127,10 +113,7 @@ pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<N
 
 /// A finite number, if the attribute is there and holds one.
 pub(super) fn number(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-    let Placed {
-        value: [value],
-        place,
-    } = numbers(node, attribute, cx)?;
+    let Placed { value: [value], place } = numbers(node, attribute, cx)?;
     Some(Placed { value, place })
 }
 
@@ -145,15 +128,9 @@ pub(super) fn numbers<const N: usize>(
     let place = cx.place(start);
     let count = text.split_ascii_whitespace().count();
     if count != N {
-        let expected = if N == 1 {
-            "a number".to_string()
-        } else {
-            format!("{N} numbers")
-        };
+        let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
         let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
-        cx.error(&place, message, |d| {
-            if text.contains(',') { d.help(SEPARATE) } else { d }
-        });
+        cx.error(&place, message, |d| if text.contains(',') { d.help(SEPARATE) } else { d });
         return None;
     }
     // References (`&#32;`) in the value move its words away from their places in the file.
@@ -161,29 +138,19 @@ pub(super) fn numbers<const N: usize>(
     let mut value = [0.0; N];
     let mut good = true;
     for (k, word) in text.split_ascii_whitespace().enumerate() {
-        let offset = if verbatim {
-            word.as_ptr() as usize - text.as_ptr() as usize
-        } else {
-            0
-        };
+        let offset = if verbatim { word.as_ptr() as usize - text.as_ptr() as usize } else { 0 };
         match word.parse::<f64>() {
             // Adding zero turns −0 into 0.
             Ok(number) if number.is_finite() => value[k] = number + 0.0,
             Ok(_) => {
                 good = false;
-                cx.error(
-                    &cx.place(start + offset),
-                    format!("{} is not a finite number", quote(word)),
-                    |d| d,
-                );
+                cx.error(&cx.place(start + offset), format!("{} is not a finite number", quote(word)), |d| d);
             }
             Err(_) => {
                 good = false;
                 let message = format!("{} is not a number", quote(word));
                 let comma = word.contains(',');
-                cx.error(&cx.place(start + offset), message, |d| {
-                    if comma { d.help(COMMA) } else { d }
-                });
+                cx.error(&cx.place(start + offset), message, |d| if comma { d.help(COMMA) } else { d });
             }
         }
     }

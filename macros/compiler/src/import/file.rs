@@ -37,27 +37,18 @@ fn refuse(about: &fs::Metadata) -> Option<String> {
 
 /// What is wrong with a file that is larger than any robot's description.
 pub(super) fn too_large(bytes: u64) -> String {
-    format!(
-        "has {} MiB, expected at most {} MiB",
-        bytes.div_ceil(1 << 20),
-        LARGEST_FILE >> 20
-    )
+    format!("has {} MiB, expected at most {} MiB", bytes.div_ceil(1 << 20), LARGEST_FILE >> 20)
 }
 
 /// Reports a mistake of the file as a whole.
 pub(super) fn report(reason: &str, options: &UrdfOptions, cx: &mut Diagnostics) {
-    cx.error(
-        options.path.place.clone(),
-        format!("{} {reason}", quote(&options.path.text)),
-    );
+    cx.error(options.path.place.clone(), format!("{} {reason}", quote(&options.path.text)));
 }
 
 /// The bytes of the file, one more than is allowed if it grew meanwhile.
 fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    fs::File::open(path)?
-        .take(LARGEST_FILE as u64 + 1)
-        .read_to_end(&mut bytes)?;
+    fs::File::open(path)?.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -68,8 +59,7 @@ fn decode(bytes: Vec<u8>, options: &UrdfOptions, cx: &mut Diagnostics) -> Option
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = 1 + good.iter().filter(|b| **b == b'\n').count();
             let message = format!("{} is not UTF-8 text: line {line}", quote(&options.path.text));
-            cx.error(options.path.place.clone(), message)
-                .help("save the file in UTF-8");
+            cx.error(options.path.place.clone(), message).help("save the file in UTF-8");
             None
         }
     }
@@ -103,18 +93,12 @@ fn neighbours(path: &Path, written: &str) -> Vec<String> {
         return Vec::new();
     };
     let stem = &written[..written.rfind(['/', '\\']).map_or(0, |slash| slash + 1)];
-    let names = entries
-        .take(NEIGHBOURS)
-        .flatten()
-        .filter_map(|entry| entry.file_name().into_string().ok());
+    let names = entries.take(NEIGHBOURS).flatten().filter_map(|entry| entry.file_name().into_string().ok());
     let is_description = |name: &String| {
         let end = name.rsplit('.').next().unwrap_or_default();
         end.eq_ignore_ascii_case("urdf") || end.eq_ignore_ascii_case("xml")
     };
-    let mut list: Vec<String> = names
-        .filter(is_description)
-        .map(|name| format!("{stem}{name}"))
-        .collect();
+    let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
     // The order of a directory differs from machine to machine.
     list.sort();
     list

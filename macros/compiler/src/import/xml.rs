@@ -29,10 +29,7 @@ pub(super) fn parse<'t>(text: &'t str, cx: &mut Cx<'_>) -> Option<Document<'t>> 
             return None;
         }
     };
-    let options = ParsingOptions {
-        allow_dtd: false,
-        ..ParsingOptions::default()
-    };
+    let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
     match Document::parse_with_options(text, options) {
         Ok(document) => refuse_template(&document, cx).then_some(document),
         Err(error) => {
@@ -49,10 +46,7 @@ pub(super) fn parse<'t>(text: &'t str, cx: &mut Cx<'_>) -> Option<Document<'t>> 
 fn scan(text: &str) -> Result<Option<usize>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
-        return Err((
-            0,
-            "the file has too many elements, attributes or namespaces for a robot".to_string(),
-        ));
+        return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
     let mut open = Vec::new();
     let mut at = 0;
@@ -82,9 +76,7 @@ fn scan(text: &str) -> Result<Option<usize>, (usize, String)> {
 
 /// Length of a piece of markup that ends with `end`.
 fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
-    rest.get(skip..)
-        .and_then(|body| body.find(end))
-        .map_or(rest.len(), |k| skip + k + end.len())
+    rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
 /// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty.
@@ -94,18 +86,12 @@ fn scan_tag(rest: &str, start: usize, open: &mut Vec<usize>) -> Result<usize, (u
     while k < bytes.len() && bytes[k] != b'>' && bytes[k] != b'<' {
         if matches!(bytes[k], b'"' | b'\'') {
             attributes += 1;
-            k = bytes[k + 1..]
-                .iter()
-                .position(|b| *b == bytes[k])
-                .map_or(bytes.len(), |n| k + 1 + n);
+            k = bytes[k + 1..].iter().position(|b| *b == bytes[k]).map_or(bytes.len(), |n| k + 1 + n);
         }
         k += 1;
     }
     if attributes > MOST_ATTRIBUTES {
-        return Err((
-            start,
-            format!("element with more than {MOST_ATTRIBUTES} attributes"),
-        ));
+        return Err((start, format!("element with more than {MOST_ATTRIBUTES} attributes")));
     }
     let k = k.min(bytes.len());
     if bytes[k - 1] != b'/' {
@@ -123,10 +109,8 @@ fn refuse_template(document: &Document<'_>, cx: &mut Cx<'_>) -> bool {
     for node in document.descendants().filter(Node::is_element) {
         let name = node.tag_name();
         if name.namespace().is_some_and(|uri| uri.contains("xacro")) {
-            let message = format!(
-                "{} is an instruction to xacro",
-                quote(&format!("<xacro:{}>", name.name()))
-            );
+            let message =
+                format!("{} is an instruction to xacro", quote(&format!("<xacro:{}>", name.name())));
             cx.error(&cx.place(node.range().start), message, |d| d.help(RUN_XACRO));
             return false;
         }
@@ -136,9 +120,7 @@ fn refuse_template(document: &Document<'_>, cx: &mut Cx<'_>) -> bool {
         let is_expression = |value: &str| value.contains("${") || value.contains("$(");
         if let Some(attribute) = node.attributes().find(|a| is_expression(a.value())) {
             let message = format!("{} is an expression of xacro", quote(attribute.value()));
-            cx.error(&cx.place(attribute.range_value().start), message, |d| {
-                d.help(RUN_XACRO)
-            });
+            cx.error(&cx.place(attribute.range_value().start), message, |d| d.help(RUN_XACRO));
             return false;
         }
     }
@@ -170,22 +152,15 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, cx: &mut Cx<'_>) {
             help = (prefix == "xacro").then_some(RUN_XACRO);
             format!("unknown namespace prefix {}", quote(prefix))
         }
-        other => other
-            .to_string()
-            .replace(&format!(" at {}", other.pos()), "")
-            .replace('\'', "`"),
+        other => other.to_string().replace(&format!(" at {}", other.pos()), "").replace('\'', "`"),
     };
     if !text.trim_start().starts_with('<') {
         help = Some("a URDF file is XML: `<robot name=\"…\"> … </robot>`");
     }
-    cx.error(
-        &place_of(error, unclosed, cx),
-        format!("malformed XML: {message}"),
-        |d| match help {
-            Some(help) => d.help(help),
-            None => d,
-        },
-    );
+    cx.error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {
+        Some(help) => d.help(help),
+        None => d,
+    });
 }
 
 /// The parser knows no place for an early end.

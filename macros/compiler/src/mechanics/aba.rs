@@ -12,11 +12,8 @@ pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]
     if !is_plain_tree(model) {
         return None;
     }
-    let mut inertias: Vec<Articulated<'g>> = model
-        .links
-        .iter()
-        .map(|l| Articulated::rigid(&l.inertia))
-        .collect();
+    let mut inertias: Vec<Articulated<'g>> =
+        model.links.iter().map(|l| Articulated::rigid(&l.inertia)).collect();
     let mut wrenches = vec![Spatial::zero(model); joints.len()];
     let mut handles: Vec<Vec<Handle<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
@@ -40,9 +37,7 @@ fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Handle<'g
     let mut result = vec![model.graph.zero(); model.nv()];
     let mut motions: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for (k, joint) in joints.iter().enumerate() {
-        let mut motion = joint
-            .parent
-            .map_or(Spatial::zero(model), |p| joint.twist_to_child(&motions[p.0]));
+        let mut motion = joint.parent.map_or(Spatial::zero(model), |p| joint.twist_to_child(&motions[p.0]));
         for (dof, handle) in joint.dofs.iter().zip(handles[k].iter().rev()) {
             let a = (handle.force - handle.column.dot(&motion)) * handle.inverse;
             result[dof.index] = a;
@@ -65,11 +60,7 @@ impl<'g> Handle<'g> {
     fn new(dof: &Dof<'g>, inertia: &Articulated<'g>, wrench: &Spatial<'g>, r: Expr<'g>) -> Handle<'g> {
         let column = inertia.times(&dof.subspace);
         let d = dof.subspace.dot(&column);
-        Handle {
-            column,
-            inverse: d.num(1.0) / d,
-            force: r - dof.subspace.dot(wrench),
-        }
+        Handle { column, inverse: d.num(1.0) / d, force: r - dof.subspace.dot(wrench) }
     }
 }
 
@@ -83,19 +74,11 @@ struct Articulated<'g> {
 
 impl<'g> Articulated<'g> {
     fn rigid(inertia: &Inertia<'g>) -> Articulated<'g> {
-        Articulated {
-            m: Sym3::scalar(inertia.mass),
-            h: Mat3::skew(inertia.moment),
-            i: inertia.tensor,
-        }
+        Articulated { m: Sym3::scalar(inertia.mass), h: Mat3::skew(inertia.moment), i: inertia.tensor }
     }
 
     fn plus(&self, b: &Articulated<'g>) -> Articulated<'g> {
-        Articulated {
-            m: self.m + b.m,
-            h: self.h + b.h,
-            i: self.i + b.i,
-        }
+        Articulated { m: self.m + b.m, h: self.h + b.h, i: self.i + b.i }
     }
 
     fn times(&self, s: &Spatial<'g>) -> Spatial<'g> {
@@ -146,11 +129,7 @@ impl<'g> Articulated<'g> {
             diagonal: std::array::from_fn(|k| entry(k, k, &whole)),
             off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(a, b, &half) + entry(b, a, &half)),
         };
-        Articulated {
-            m,
-            h: moved,
-            i: i - shift,
-        }
+        Articulated { m, h: moved, i: i - shift }
     }
 }
 

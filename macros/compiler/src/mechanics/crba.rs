@@ -34,11 +34,7 @@ fn add_column<'g>(
     let own = &joints[link].dofs[row];
     let mut at = link;
     loop {
-        let dofs = if at == link {
-            &joints[at].dofs[..=row]
-        } else {
-            &joints[at].dofs[..]
-        };
+        let dofs = if at == link { &joints[at].dofs[..=row] } else { &joints[at].dofs[..] };
         for (k, other) in dofs.iter().enumerate() {
             let entry = other.subspace.dot(&wrench) * model.graph.num(own.ratio * other.ratio);
             m[own.index][other.index] += entry;
@@ -81,11 +77,7 @@ pub fn to_parent<'g>(joint: &Joint<'g>, child: &Inertia<'g>) -> Inertia<'g> {
         diagonal: [twice[1] + twice[2], twice[2] + twice[0], twice[0] + twice[1]],
         off: [(0, 1), (0, 2), (1, 2)].map(|(i, j)| -(p[i] * s[j] + p[j] * s[i])),
     };
-    Inertia {
-        mass: child.mass,
-        moment: h + p * child.mass,
-        tensor: turned + shift,
-    }
+    Inertia { mass: child.mass, moment: h + p * child.mass, tensor: turned + shift }
 }
 
 /// Momentum (linear, and angular about the link's origin) of a body with a given twist.

@@ -13,9 +13,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
         .links
         .iter()
         .zip(&twists)
-        .fold(model.graph.zero(), |sum, (link, twist)| {
-            sum + twist.dot(&momentum(&link.inertia, twist))
-        });
+        .fold(model.graph.zero(), |sum, (link, twist)| sum + twist.dot(&momentum(&link.inertia, twist)));
     twice * 0.5
 }
 
@@ -23,11 +21,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
     let composites = composites(model, joints);
     let mut sum = (model.graph.zero(), Vec3::zero(model.graph));
-    for (joint, composite) in joints
-        .iter()
-        .zip(&composites)
-        .filter(|(joint, _)| joint.parent.is_none())
-    {
+    for (joint, composite) in joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none()) {
         let moved = to_parent(joint, composite);
         sum = (sum.0 + moved.mass, sum.1 + moved.moment);
     }

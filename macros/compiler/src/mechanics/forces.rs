@@ -16,10 +16,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
             Input::Coordinate(c) => tau[c.v] += u * g.num(c.ratio),
             Input::Force { link, point, along } => {
                 let force = resolve(joints, along, *link, Vec3::zero(g)) * u;
-                let wrench = Spatial {
-                    linear: force,
-                    angular: point.cross(force),
-                };
+                let wrench = Spatial { linear: force, angular: point.cross(force) };
                 wrenches[link.0] = wrenches[link.0].plus(&wrench);
             }
             Input::Torque { link, about } => {
@@ -42,9 +39,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
 
 /// A direction in the axes of a link, by way of the nearest common ancestor's.
 fn resolve<'g>(joints: &[Joint<'g>], direction: &Direction<'g>, link: LinkId, zero: Vec3<'g>) -> Vec3<'g> {
-    direction.iter().fold(zero, |sum, (from, v)| {
-        sum + change_axes(joints, *v, *from, Some(link))
-    })
+    direction.iter().fold(zero, |sum, (from, v)| sum + change_axes(joints, *v, *from, Some(link)))
 }
 
 /// Components in the axes of `to` of a vector given in the axes of `from`.
@@ -70,7 +65,5 @@ pub fn change_axes<'g>(
             _ => break,
         }
     }
-    down.iter()
-        .rev()
-        .fold(v, |v, link| joints[link.0].rotation.to_child(v))
+    down.iter().rev().fold(v, |v, link| joints[link.0].rotation.to_child(v))
 }

@@ -21,13 +21,7 @@ pub struct Placement<'g> {
 impl<'g> Placement<'g> {
     /// Twelve numbers: the rotation by rows, then the position.
     pub fn flat(&self) -> Vec<Expr<'g>> {
-        self.rotation
-            .0
-            .iter()
-            .flatten()
-            .chain(&self.position.0)
-            .copied()
-            .collect()
+        self.rotation.0.iter().flatten().chain(&self.position.0).copied().collect()
     }
 
     fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
@@ -41,9 +35,7 @@ impl<'g> Placement<'g> {
 }
 
 fn given<'g>(model: &Model<'g>, first: usize) -> Vec3<'g> {
-    Vec3(std::array::from_fn(|k| {
-        Quantity::Given(first + k).expr(model.graph)
-    }))
+    Vec3(std::array::from_fn(|k| Quantity::Given(first + k).expr(model.graph)))
 }
 
 fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
@@ -54,17 +46,11 @@ fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
 }
 
 fn ground<'g>(model: &Model<'g>) -> Placement<'g> {
-    Placement {
-        rotation: Mat3::identity(model.graph),
-        position: Vec3::zero(model.graph),
-    }
+    Placement { rotation: Mat3::identity(model.graph), position: Vec3::zero(model.graph) }
 }
 
 fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
-    Spatial {
-        linear: given(model, first),
-        angular: given(model, first + 3),
-    }
+    Spatial { linear: given(model, first), angular: given(model, first + 3) }
 }
 
 /// Six numbers of a spatial vector.
@@ -74,24 +60,13 @@ pub fn flat<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
 
 /// Placement of a link from its parent's (12 given numbers, none for a root).
 pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
-    let parent = if joint.parent.is_some() {
-        given_placement(model)
-    } else {
-        ground(model)
-    };
-    parent.then(&Pose {
-        rotation: joint.rotation.clone(),
-        translation: joint.translation,
-    })
+    let parent = if joint.parent.is_some() { given_placement(model) } else { ground(model) };
+    parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation })
 }
 
 /// Placement of a named frame from its link's (12 given numbers, none if it is fixed to the ground).
 pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
-    let link = if frame.link.is_some() {
-        given_placement(model)
-    } else {
-        ground(model)
-    };
+    let link = if frame.link.is_some() { given_placement(model) } else { ground(model) };
     link.then(&frame.pose)
 }
 
@@ -115,10 +90,7 @@ pub fn link_acceleration<'g>(
     let (rate, own) = (joint.relative(model, v), joint.relative(model, a));
     let turning = rate.angular.cross(rate.linear);
     if joint.parent.is_none() {
-        return Spatial {
-            linear: own.linear + turning,
-            angular: own.angular,
-        };
+        return Spatial { linear: own.linear + turning, angular: own.angular };
     }
     let (twist, parent) = (given_spatial(model, 0), given_spatial(model, 6));
     let w = joint.rotation.to_child(twist.angular);
@@ -152,10 +124,7 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
     let (twist, acceleration) = (given_spatial(model, 12), given_spatial(model, 18));
     let (p, w) = (frame.pose.translation, twist.angular);
     let point = acceleration.linear + acceleration.angular.cross(p) + w.cross(w.cross(p));
-    Spatial {
-        linear: placement.rotation * point,
-        angular: placement.rotation * acceleration.angular,
-    }
+    Spatial { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
 }
 
 /// Columns of a frame's Jacobian for the degrees of freedom of one link: twist of the frame per unit of velocity, in
@@ -169,10 +138,7 @@ pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial
         .map(|dof| {
             let s = dof.subspace.times(model.graph.num(dof.ratio));
             let angular = placement.rotation * s.angular;
-            Spatial {
-                linear: placement.rotation * s.linear + angular.cross(arm),
-                angular,
-            }
+            Spatial { linear: placement.rotation * s.linear + angular.cross(arm), angular }
         })
         .collect()
 }

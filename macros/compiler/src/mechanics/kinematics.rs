@@ -33,18 +33,13 @@ impl<'g> Joint<'g> {
     pub fn wrench_to_parent(&self, w: &Spatial<'g>) -> Spatial<'g> {
         let force = self.rotation.to_parent(w.linear);
         let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
-        Spatial {
-            linear: force,
-            angular: moment,
-        }
+        Spatial { linear: force, angular: moment }
     }
 
     /// The parent's twist, at the link's origin in link axes.
     pub fn twist_to_child(&self, parent: &Spatial<'g>) -> Spatial<'g> {
         Spatial {
-            linear: self
-                .rotation
-                .to_child(parent.linear + parent.angular.cross(self.translation)),
+            linear: self.rotation.to_child(parent.linear + parent.angular.cross(self.translation)),
             angular: self.rotation.to_child(parent.angular),
         }
     }
@@ -69,35 +64,19 @@ fn joint<'g>(model: &Model<'g>, link: &crate::model::Link<'g>) -> Joint<'g> {
     let zero = Vec3::zero(g);
     let q = |k: usize| Quantity::Configuration(k).expr(g);
     let single = |c: &Coordinate, linear, angular| {
-        vec![Dof {
-            index: c.v,
-            ratio: c.ratio,
-            subspace: Spatial { linear, angular },
-        }]
+        vec![Dof { index: c.v, ratio: c.ratio, subspace: Spatial { linear, angular } }]
     };
     let (motion, shift, dofs) = match &link.motion {
-        Motion::Turn { axis, coordinate } => (
-            Rotation::eigenaxis(*axis, position(model, coordinate)),
-            zero,
-            single(coordinate, zero, *axis),
-        ),
-        Motion::Slide { axis, coordinate } => (
-            Rotation::identity(g),
-            *axis * position(model, coordinate),
-            single(coordinate, *axis, zero),
-        ),
-        Motion::Helix {
-            axis,
-            pitch,
-            coordinate,
-        } => {
+        Motion::Turn { axis, coordinate } => {
+            (Rotation::eigenaxis(*axis, position(model, coordinate)), zero, single(coordinate, zero, *axis))
+        }
+        Motion::Slide { axis, coordinate } => {
+            (Rotation::identity(g), *axis * position(model, coordinate), single(coordinate, *axis, zero))
+        }
+        Motion::Helix { axis, pitch, coordinate } => {
             let angle = position(model, coordinate);
             let shift = *axis * (*pitch * angle);
-            (
-                Rotation::eigenaxis(*axis, angle),
-                shift,
-                single(coordinate, *axis * *pitch, *axis),
-            )
+            (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
         }
         Motion::Ball { q: first, v } => {
             let rotation = Rotation::quaternion([q(*first), q(first + 1), q(first + 2), q(first + 3)]);
@@ -110,11 +89,7 @@ fn joint<'g>(model: &Model<'g>, link: &crate::model::Link<'g>) -> Joint<'g> {
                 0..3 => unit_dof(model, v + k, Some(k), None),
                 _ => unit_dof(model, v + k, None, Some(k - 3)),
             });
-            (
-                rotation,
-                Vec3([q(*first), q(first + 1), q(first + 2)]),
-                dofs.collect(),
-            )
+            (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
         }
     };
     Joint {
@@ -127,14 +102,7 @@ fn joint<'g>(model: &Model<'g>, link: &crate::model::Link<'g>) -> Joint<'g> {
 
 fn unit_dof<'g>(model: &Model<'g>, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
     let axis = |k: Option<usize>| k.map_or(Vec3::zero(model.graph), |k| Vec3::axis(model.graph, k));
-    Dof {
-        index,
-        ratio: 1.0,
-        subspace: Spatial {
-            linear: axis(linear),
-            angular: axis(angular),
-        },
-    }
+    Dof { index, ratio: 1.0, subspace: Spatial { linear: axis(linear), angular: axis(angular) } }
 }
 
 /// Twists of all links (velocity of the origin, angular velocity; link axes) for rates `v`.

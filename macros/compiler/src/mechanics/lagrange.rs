@@ -74,15 +74,12 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let mut by_q: Vec<Derivative<'g>> = (0..model.nq())
         .map(|k| Derivative::with_respect_to(Quantity::Configuration(k).symbol(), g))
         .collect();
-    let mut by_v: Vec<Derivative<'g>> = (0..model.nv())
-        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g))
-        .collect();
+    let mut by_v: Vec<Derivative<'g>> =
+        (0..model.nv()).map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g)).collect();
     let (kinetic, potential) = energies(model, joints, &rates, &mut by_q);
     let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.of(kinetic)).collect();
-    let mass_matrix: Matrix<'g> = momenta
-        .iter()
-        .map(|p| by_v.iter_mut().map(|d| d.of(*p)).collect())
-        .collect();
+    let mass_matrix: Matrix<'g> =
+        momenta.iter().map(|p| by_v.iter_mut().map(|d| d.of(*p)).collect()).collect();
     let lagrangian = kinetic - potential;
     let dl_dq: Vec<Expr<'g>> = by_q.iter_mut().map(|d| d.of(lagrangian)).collect();
     // d/dt ∂T/∂v at constant v: the derivative along the motion.
@@ -92,12 +89,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     for (bias, passive) in bias.iter_mut().zip(dissipation(model)) {
         *bias += passive;
     }
-    Lagrange {
-        kinetic,
-        potential,
-        mass_matrix,
-        bias,
-    }
+    Lagrange { kinetic, potential, mass_matrix, bias }
 }
 
 /// `Σ ∂e/∂q q̇`.
@@ -147,10 +139,7 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
 fn dissipation<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let all = resistance(model, true);
     let springs = resistance(model, false);
-    all.into_iter()
-        .zip(springs)
-        .map(|(all, springs)| all - springs)
-        .collect()
+    all.into_iter().zip(springs).map(|(all, springs)| all - springs).collect()
 }
 
 /// Kinetic and potential energy from positions and orientations in the ground frame.
@@ -164,9 +153,7 @@ fn energies<'g>(
     let mut frames: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
     let (mut kinetic, mut potential) = (g.zero(), g.zero());
     for (joint, link) in joints.iter().zip(&model.links) {
-        let (r_parent, p_parent) = joint
-            .parent
-            .map_or((Mat3::identity(g), Vec3::zero(g)), |p| frames[p.0]);
+        let (r_parent, p_parent) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |p| frames[p.0]);
         let r = r_parent * joint.rotation.matrix();
         let p = p_parent + r_parent * joint.translation;
         frames.push((r, p));

@@ -14,11 +14,7 @@ pub fn solve<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, joints: &[Joint<'g>]) 
     let mut inverse = vec![graph.zero(); r.len()];
     for (step, &k) in order.iter().enumerate() {
         inverse[k] = graph.one() / m[k][k];
-        let rest: Vec<usize> = order[step + 1..]
-            .iter()
-            .copied()
-            .filter(|&i| !m[k][i].is_zero())
-            .collect();
+        let rest: Vec<usize> = order[step + 1..].iter().copied().filter(|&i| !m[k][i].is_zero()).collect();
         for &i in &rest {
             let factor = m[k][i] * inverse[k];
             for &j in rest.iter().filter(|&&j| j <= i) {

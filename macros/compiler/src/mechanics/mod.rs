@@ -32,16 +32,12 @@ pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// All velocities as symbols.
 pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nv())
-        .map(|k| Quantity::Velocity(k).expr(model.graph))
-        .collect()
+    (0..model.nv()).map(|k| Quantity::Velocity(k).expr(model.graph)).collect()
 }
 
 /// All accelerations as symbols.
 pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nv())
-        .map(|k| Quantity::Acceleration(k).expr(model.graph))
-        .collect()
+    (0..model.nv()).map(|k| Quantity::Acceleration(k).expr(model.graph)).collect()
 }
 
 /// True if every velocity belongs to one joint coordinate, so that the articulated-body algorithm applies.
@@ -67,10 +63,7 @@ pub struct Spatial<'g> {
 impl<'g> Spatial<'g> {
     /// Zero.
     pub fn zero(model: &Model<'g>) -> Spatial<'g> {
-        Spatial {
-            linear: Vec3::zero(model.graph),
-            angular: Vec3::zero(model.graph),
-        }
+        Spatial { linear: Vec3::zero(model.graph), angular: Vec3::zero(model.graph) }
     }
 
     /// Twist dotted with wrench: a power.
@@ -80,17 +73,11 @@ impl<'g> Spatial<'g> {
 
     /// The sum.
     pub fn plus(&self, other: &Spatial<'g>) -> Spatial<'g> {
-        Spatial {
-            linear: self.linear + other.linear,
-            angular: self.angular + other.angular,
-        }
+        Spatial { linear: self.linear + other.linear, angular: self.angular + other.angular }
     }
 
     /// All components multiplied.
     pub fn times(&self, s: Expr<'g>) -> Spatial<'g> {
-        Spatial {
-            linear: self.linear * s,
-            angular: self.angular * s,
-        }
+        Spatial { linear: self.linear * s, angular: self.angular * s }
     }
 }

@@ -13,12 +13,7 @@ fn composite_momenta<'g>(
     joints: &[Joint<'g>],
     twists: &[Spatial<'g>],
 ) -> Vec<Spatial<'g>> {
-    let own = model
-        .links
-        .iter()
-        .zip(twists)
-        .map(|(link, twist)| momentum(&link.inertia, twist))
-        .collect();
+    let own = model.links.iter().zip(twists).map(|(link, twist)| momentum(&link.inertia, twist)).collect();
     accumulate(joints, own)
 }
 
@@ -82,10 +77,7 @@ fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
         .links
         .iter()
         .zip(gravity)
-        .map(|(link, g)| Spatial {
-            linear: g * link.inertia.mass,
-            angular: link.inertia.moment.cross(g),
-        })
+        .map(|(link, g)| Spatial { linear: g * link.inertia.mass, angular: link.inertia.moment.cross(g) })
         .collect()
 }
 
@@ -93,16 +85,9 @@ fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
 pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     let momenta = composite_momenta(model, joints, &twists(model, joints, v));
     let mut sum = Spatial::zero(model);
-    for (joint, wrench) in joints
-        .iter()
-        .zip(&momenta)
-        .filter(|(joint, _)| joint.parent.is_none())
-    {
+    for (joint, wrench) in joints.iter().zip(&momenta).filter(|(joint, _)| joint.parent.is_none()) {
         sum = sum.plus(&joint.wrench_to_parent(wrench));
     }
     let center = center_of_mass(model, joints);
-    Spatial {
-        linear: sum.linear,
-        angular: sum.angular - center.cross(sum.linear),
-    }
+    Spatial { linear: sum.linear, angular: sum.angular - center.cross(sum.linear) }
 }

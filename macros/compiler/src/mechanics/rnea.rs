@@ -15,12 +15,8 @@ pub fn inverse_dynamics<'g>(
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Expr<'g>> {
     let states = motion(model, joints, v, a);
-    let mut wrenches: Vec<Spatial<'g>> = model
-        .links
-        .iter()
-        .zip(&states)
-        .map(|(link, state)| newton_euler(&link.inertia, state))
-        .collect();
+    let mut wrenches: Vec<Spatial<'g>> =
+        model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect();
     let mut tau = resistance(model, true);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
@@ -56,13 +52,7 @@ impl<'g> State<'g> {
             [xy + dw[2], -(xx + zz), yz - dw[0]],
             [zx - dw[1], yz + dw[0], -(xx + yy)],
         ]);
-        State {
-            w,
-            products,
-            dw,
-            u,
-            a,
-        }
+        State { w, products, dw, u, a }
     }
 }
 
@@ -109,8 +99,5 @@ fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
             + i.at(k, m) * u[l][k];
     }
     moment = Vec3(components);
-    Spatial {
-        linear: s.a * inertia.mass + s.u * inertia.moment,
-        angular: moment,
-    }
+    Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
 }

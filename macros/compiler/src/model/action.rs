@@ -36,10 +36,7 @@ impl<'g> Builder<'_, 'g> {
                 let damping = self.scope.scalar(damping, cx);
                 let on = self.coordinate_of(target, "Dashpot", &action.on.place, cx);
                 if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
-                    cx.error(
-                        action.on.place.clone(),
-                        format!("a damping cannot be negative, but it is {d}"),
-                    );
+                    cx.error(action.on.place.clone(), format!("a damping cannot be negative, but it is {d}"));
                 }
                 if let (Some(on), Some(damping)) = (on, damping) {
                     self.model.dashpots.push(Dashpot { on, damping });
@@ -60,11 +57,8 @@ impl<'g> Builder<'_, 'g> {
         match target? {
             Target::Coordinate(c, _) => Some(c),
             Target::Body(..) => {
-                cx.error(
-                    place.clone(),
-                    format!("a {what} acts on the coordinate of a joint"),
-                )
-                .help("between two bodies it is not yet supported");
+                cx.error(place.clone(), format!("a {what} acts on the coordinate of a joint"))
+                    .help("between two bodies it is not yet supported");
                 None
             }
         }
@@ -82,11 +76,7 @@ impl<'g> Builder<'_, 'g> {
         let place = &action.on.place;
         let input = match target {
             Target::Coordinate(_, angle) if angle != torque => {
-                let (is, other) = if angle {
-                    ("an angle", "Torque")
-                } else {
-                    ("a length", "Force")
-                };
+                let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
                 cx.error(place.clone(), format!("this coordinate is {is}"))
                     .help(format!("what acts on it is a {other}"));
                 return;
@@ -118,9 +108,7 @@ impl<'g> Builder<'_, 'g> {
         let Some(direction) = direction else {
             let key = if torque { "about" } else { "along" };
             cx.error(action.name.place.clone(), format!("missing `{key}`"))
-                .help(format!(
-                    "on a body it needs a direction: `{key} = x`, `{key} = ground.z`"
-                ));
+                .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
             return None;
         };
         let terms = self.scope.vector(direction, cx)?;
@@ -151,11 +139,7 @@ impl<'g> Builder<'_, 'g> {
         }
         Some(match torque {
             true => Input::Torque { link, about: sum },
-            false => Input::Force {
-                link,
-                point: pose.point(at),
-                along: sum,
-            },
+            false => Input::Force { link, point: pose.point(at), along: sum },
         })
     }
 
@@ -188,10 +172,7 @@ impl<'g> Builder<'_, 'g> {
             }
             ExprKind::Field(inner, member) => {
                 let ExprKind::Name(joint) = &inner.kind else {
-                    cx.error(
-                        on.place.clone(),
-                        "expected a joint, a coordinate of a joint, or a body",
-                    );
+                    cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
                     return None;
                 };
                 let Some(coordinates) = self.joint_coordinates(joint) else {
@@ -221,11 +202,8 @@ impl<'g> Builder<'_, 'g> {
                 Some(Target::Body(self.body(name, &inner.place, cx)?, at?))
             }
             _ => {
-                cx.error(
-                    on.place.clone(),
-                    "expected a joint, a coordinate of a joint, or a body",
-                )
-                .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+                cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
+                    .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
                 None
             }
         }

@@ -50,10 +50,7 @@ pub fn build_model<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Model<'g>> {
     if description.bodies.len() + description.particles.len() > MAX_BODIES {
-        cx.error(
-            description.name.place.clone(),
-            format!("more than {MAX_BODIES} bodies"),
-        );
+        cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"));
         return None;
     }
     let mut builder = Builder::new(description, graph, cx);
@@ -86,24 +83,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             .bodies
             .iter()
             .map(|b| Held { name: &b.name })
-            .chain(
-                description
-                    .particles
-                    .iter()
-                    .filter(|p| p.at.is_none())
-                    .map(|p| Held { name: &p.name }),
-            )
+            .chain(description.particles.iter().filter(|p| p.at.is_none()).map(|p| Held { name: &p.name }))
             .collect();
-        let all = description
-            .bodies
-            .iter()
-            .map(|b| &b.name)
-            .chain(description.particles.iter().map(|p| &p.name));
-        let others = description
-            .joints
-            .iter()
-            .map(|j| &j.name)
-            .chain(description.actions.iter().map(|a| &a.name));
+        let all =
+            description.bodies.iter().map(|b| &b.name).chain(description.particles.iter().map(|p| &p.name));
+        let others =
+            description.joints.iter().map(|j| &j.name).chain(description.actions.iter().map(|a| &a.name));
         let scope = Scope {
             graph,
             parameters: &description.parameters,
@@ -112,10 +97,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             others: others.map(|n| n.text.clone()).collect(),
         };
         for name in all.filter(|n| n.text == GROUND) {
-            cx.error(
-                name.place.clone(),
-                "the name `ground` is taken: it is what does not move",
-            );
+            cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move");
         }
         check_parameter_names(&description.parameters, cx);
         let gravity = description.gravity.as_ref().and_then(|e| scope.own_vector(e, cx));
@@ -126,10 +108,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         if let (Some(e), Some(s)) = (&description.friction_speed, friction_speed.value())
             && s <= 0.0
         {
-            cx.error(
-                e.place.clone(),
-                format!("this speed must be positive, but it is {s}"),
-            );
+            cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"));
         }
         let model = Model {
             graph,
@@ -148,14 +127,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             frictions: Vec::new(),
         };
         let places = vec![None; held.len()];
-        Builder {
-            scope,
-            model,
-            description,
-            held,
-            places,
-            coordinates: Vec::new(),
-        }
+        Builder { scope, model, description, held, places, coordinates: Vec::new() }
     }
 
     /// Numbers `q` and `v` in the order of declaration. Joints that follow another one come after, since their
@@ -172,11 +144,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 for (k, name) in names_v.iter().enumerate() {
                     let full = full_name(&joint.name.text, name);
                     if names_q == names_v {
-                        plain.push((
-                            full.clone(),
-                            own_coordinate(q + k, v + k),
-                            is_angle(joint.kind, name),
-                        ));
+                        plain.push((full.clone(), own_coordinate(q + k, v + k), is_angle(joint.kind, name)));
                     }
                     self.model.velocities.push((full, joint.name.place.clone()));
                 }
@@ -185,11 +153,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
         for (k, joint) in self.description.joints.iter().enumerate() {
             let Some(mimic) = &joint.mimic else { continue };
-            let master = self
-                .description
-                .joints
-                .iter()
-                .position(|j| j.name.text == mimic.joint.text);
+            let master = self.description.joints.iter().position(|j| j.name.text == mimic.joint.text);
             match master.map(|m| self.coordinates[m].plain.as_slice()) {
                 Some([(_, c, _)]) => {
                     let coordinate = Coordinate {
@@ -198,16 +162,11 @@ impl<'a, 'g> Builder<'a, 'g> {
                         ..*c
                     };
                     let angle = is_angle(joint.kind, "");
-                    self.coordinates[k]
-                        .plain
-                        .push((joint.name.text.clone(), coordinate, angle));
+                    self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
                 }
                 _ => {
-                    cx.error(
-                        mimic.joint.place.clone(),
-                        format!("`{}` cannot be followed", mimic.joint.text),
-                    )
-                    .help("a joint that is followed has one coordinate of its own");
+                    cx.error(mimic.joint.place.clone(), format!("`{}` cannot be followed", mimic.joint.text))
+                        .help("a joint that is followed has one coordinate of its own");
                 }
             }
         }
@@ -228,10 +187,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             None => Some(Vec3::zero(self.scope.graph)),
         };
         let rotation = self.scope.rotation(&end.rotated, cx);
-        Some(Pose {
-            rotation: rotation?,
-            translation: translation?,
-        })
+        Some(Pose { rotation: rotation?, translation: translation? })
     }
 
     fn build_links(&mut self, order: &Order, cx: &mut Diagnostics) {
@@ -264,10 +220,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let graph = self.scope.graph;
         for (k, motion) in motions.iter().enumerate() {
             let own = &self.coordinates[j];
-            let coordinate = own
-                .plain
-                .get(k)
-                .map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
+            let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
             let mut aligned = Rotation::identity(graph);
             let mut align = |axis| {
                 let (axis, rotation) = super::axis::align(graph, axis);
@@ -275,37 +228,18 @@ impl<'a, 'g> Builder<'a, 'g> {
                 axis
             };
             let motion = match motion {
-                Elementary::Turn(axis) => Motion::Turn {
-                    axis: align(*axis),
-                    coordinate,
-                },
-                Elementary::Helix(axis, pitch) => Motion::Helix {
-                    axis: align(*axis),
-                    pitch: *pitch,
-                    coordinate,
-                },
-                Elementary::Slide(axis) => Motion::Slide {
-                    axis: *axis,
-                    coordinate,
-                },
+                Elementary::Turn(axis) => Motion::Turn { axis: align(*axis), coordinate },
+                Elementary::Helix(axis, pitch) => {
+                    Motion::Helix { axis: align(*axis), pitch: *pitch, coordinate }
+                }
+                Elementary::Slide(axis) => Motion::Slide { axis: *axis, coordinate },
                 Elementary::Ball => Motion::Ball { q: own.q, v: own.v },
                 Elementary::Free => Motion::Free { q: own.q, v: own.v },
             };
-            let placement = Pose {
-                rotation: pose.rotation.then(&aligned),
-                translation: pose.translation,
-            };
-            self.model.links.push(Link {
-                parent: link,
-                placement,
-                motion,
-                inertia: Inertia::zero(graph),
-            });
+            let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
+            self.model.links.push(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) });
             link = Some(LinkId(self.model.links.len() - 1));
-            pose = Pose {
-                rotation: aligned.inverse(),
-                translation: Vec3::zero(graph),
-            };
+            pose = Pose { rotation: aligned.inverse(), translation: Vec3::zero(graph) };
         }
         (link, pose)
     }
@@ -318,12 +252,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let (name, on) = (name.clone(), *on);
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
-        self.model
-            .dashpots
-            .extend(damping.map(|damping| Dashpot { on, damping }));
-        self.model
-            .frictions
-            .extend(friction.map(|friction| CoulombFriction { on, friction }));
+        self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
+        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
         if joint.driven && joint.mimic.is_none() {
             self.model.inputs.push((name, Input::Coordinate(on)));
         }
@@ -350,25 +280,13 @@ impl<'a, 'g> Builder<'a, 'g> {
     ) -> Option<(crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>)> {
         let graph = self.scope.graph;
         let name = &body.name.text;
-        let mass = body
-            .mass
-            .as_ref()
-            .map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
-        let com = body
-            .com
-            .as_ref()
-            .map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
-        let inertia = body
-            .inertia
-            .as_ref()
-            .map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
+        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
+        let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
+        let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
         if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
             && m < 0.0
         {
-            cx.error(
-                e.place.clone(),
-                format!("the mass of `{name}` is not positive: it is {m}"),
-            );
+            cx.error(e.place.clone(), format!("the mass of `{name}` is not positive: it is {m}"));
         }
         if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
             && !body.trust_inertia
@@ -428,10 +346,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             if name == GROUND {
                 return Some((
                     None,
-                    Pose {
-                        rotation: Rotation::identity(self.scope.graph),
-                        translation: vector?,
-                    },
+                    Pose { rotation: Rotation::identity(self.scope.graph), translation: vector? },
                 ));
             }
             let Some(k) = self.held_index(name) else {
@@ -441,13 +356,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 return None;
             };
             let (link, pose) = self.placed(k)?;
-            return Some((
-                link,
-                Pose {
-                    translation: pose.point(vector?),
-                    rotation: pose.rotation,
-                },
-            ));
+            return Some((link, Pose { translation: pose.point(vector?), rotation: pose.rotation }));
         }
         cx.error(at.place.clone(), "a particle sits at a point of a body")
             .help("write `at = body.at(length * x)`");
@@ -463,21 +372,13 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn add_frames(&mut self, cx: &mut Diagnostics) {
         for (k, body) in self.description.bodies.iter().enumerate() {
             if let Some((link, pose)) = self.places[k].clone() {
-                self.model.frames.push(NamedFrame {
-                    name: body.name.text.clone(),
-                    link,
-                    pose,
-                });
+                self.model.frames.push(NamedFrame { name: body.name.text.clone(), link, pose });
             }
         }
         let mut silent = Diagnostics::new();
         for particle in &self.description.particles {
             if let Some((link, pose)) = self.particle_place(particle, &mut silent) {
-                self.model.frames.push(NamedFrame {
-                    name: particle.name.text.clone(),
-                    link,
-                    pose,
-                });
+                self.model.frames.push(NamedFrame { name: particle.name.text.clone(), link, pose });
             }
         }
         if self.model.frames.len() < self.description.bodies.len() && cx.is_empty() {
@@ -493,21 +394,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         if !cx.is_empty() {
             return;
         }
-        for (parameter, used) in self
-            .description
-            .parameters
-            .iter()
-            .zip(self.scope.used.borrow().iter())
-        {
+        for (parameter, used) in self.description.parameters.iter().zip(self.scope.used.borrow().iter()) {
             if !used && !parameter.text.starts_with('_') {
-                cx.error(
-                    parameter.place.clone(),
-                    format!("nothing uses the parameter `{}`", parameter.text),
-                )
-                .help(format!(
-                    "remove it, or name it `_{}` to keep it for your own use",
-                    parameter.text
-                ));
+                cx.error(parameter.place.clone(), format!("nothing uses the parameter `{}`", parameter.text))
+                    .help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
             }
         }
     }
@@ -535,11 +425,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     /// Names of all joints.
     pub fn joint_names(&self) -> Vec<String> {
-        self.description
-            .joints
-            .iter()
-            .map(|j| j.name.text.clone())
-            .collect()
+        self.description.joints.iter().map(|j| j.name.text.clone()).collect()
     }
 }
 
@@ -554,11 +440,8 @@ fn is_angle(kind: JointKind, coordinate: &str) -> bool {
 fn check_parameter_names(parameters: &[Name], cx: &mut Diagnostics) {
     for parameter in parameters {
         if ["x", "y", "z", "t", "pi"].contains(&parameter.text.as_str()) {
-            cx.error(
-                parameter.place.clone(),
-                format!("the name `{}` is taken", parameter.text),
-            )
-            .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
+            cx.error(parameter.place.clone(), format!("the name `{}` is taken", parameter.text))
+                .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
         }
     }
 }
@@ -578,10 +461,5 @@ pub fn outline(description: &Description) -> (Vec<String>, Vec<String>, Vec<Stri
             u.push(action.name.text.clone());
         }
     }
-    (
-        q,
-        v,
-        u,
-        description.bodies.iter().map(|b| b.name.text.clone()).collect(),
-    )
+    (q, v, u, description.bodies.iter().map(|b| b.name.text.clone()).collect())
 }

@@ -11,10 +11,7 @@ const SOLIDS: [(&str, &[&str]); 14] = [
     ("ring", &["mass", "radius", "axis"]),
     ("disk", &["mass", "radius", "axis"]),
     ("cylinder", &["mass", "radius", "height", "axis"]),
-    (
-        "tube",
-        &["mass", "inner radius", "outer radius", "height", "axis"],
-    ),
+    ("tube", &["mass", "inner radius", "outer radius", "height", "axis"]),
     ("cone", &["mass", "radius", "height", "axis"]),
     ("capsule", &["mass", "radius", "height", "axis"]),
     ("sphere", &["mass", "radius"]),
@@ -44,11 +41,8 @@ impl<'g> Scope<'_, 'g> {
                 Some(rotation?.sym_to_parent(inertia?))
             }
             ExprKind::Method(_, method, _) => {
-                cx.error(
-                    method.place.clone(),
-                    format!("unknown method `.{}(…)` of an inertia", method.text),
-                )
-                .suggest(&method.text, ["rotated"]);
+                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of an inertia", method.text))
+                    .suggest(&method.text, ["rotated"]);
                 None
             }
             ExprKind::Call(solid, arguments) => self.solid(solid, arguments, cx),
@@ -65,14 +59,13 @@ impl<'g> Scope<'_, 'g> {
         let m = self.matrix(e, cx)?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if m.0[i][j] != m.0[j][i] {
-                cx.error(e.place.clone(), "an inertia matrix is symmetric")
-                    .help(format!(
-                        "entries ({}, {}) and ({}, {}) differ",
-                        i + 1,
-                        j + 1,
-                        j + 1,
-                        i + 1
-                    ));
+                cx.error(e.place.clone(), "an inertia matrix is symmetric").help(format!(
+                    "entries ({}, {}) and ({}, {}) differ",
+                    i + 1,
+                    j + 1,
+                    j + 1,
+                    i + 1
+                ));
                 return None;
             }
         }
@@ -83,16 +76,12 @@ impl<'g> Scope<'_, 'g> {
         let text = solid.text.as_str();
         let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == text) else {
             let known = SOLIDS.iter().map(|(name, _)| *name);
-            cx.error(solid.place.clone(), format!("unknown solid `{text}`"))
-                .suggest(text, known);
+            cx.error(solid.place.clone(), format!("unknown solid `{text}`")).suggest(text, known);
             return None;
         };
         if arguments.len() != names.len() {
-            cx.error(
-                solid.place.clone(),
-                format!("`{text}` takes {} arguments", names.len()),
-            )
-            .help(format!("write `{text}({})`", names.join(", ")));
+            cx.error(solid.place.clone(), format!("`{text}` takes {} arguments", names.len()))
+                .help(format!("write `{text}({})`", names.join(", ")));
             return None;
         }
         let has_axis = names.last() == Some(&"axis");
@@ -117,10 +106,7 @@ impl<'g> Scope<'_, 'g> {
     fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
         match s.value() {
             Some(n) if n < 0.0 => {
-                cx.error(
-                    at.place.clone(),
-                    format!("this cannot be negative, but it is {n}"),
-                );
+                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"));
                 false
             }
             _ => true,
@@ -135,29 +121,17 @@ impl<'g> Scope<'_, 'g> {
             Some(axis) => axisymmetric(axial, transverse, axis),
             None => Sym3::scalar(axial),
         };
-        let diagonal = |d: [Expr<'g>; 3]| Sym3 {
-            diagonal: d,
-            off: [g.zero(); 3],
-        };
+        let diagonal = |d: [Expr<'g>; 3]| Sym3 { diagonal: d, off: [g.zero(); 3] };
         match solid {
             "rod" => about(g.zero(), n[0] * square(1) * (1.0 / 12.0)),
             "ring" => about(n[0] * square(1), n[0] * square(1) * 0.5),
             "disk" => about(n[0] * square(1) * 0.5, n[0] * square(1) * 0.25),
-            "cylinder" => about(
-                n[0] * square(1) * 0.5,
-                n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0)),
-            ),
+            "cylinder" => about(n[0] * square(1) * 0.5, n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0))),
             "tube" => {
                 let radii = square(1) + square(2);
-                about(
-                    n[0] * radii * 0.5,
-                    n[0] * (radii * 0.25 + square(3) * (1.0 / 12.0)),
-                )
+                about(n[0] * radii * 0.5, n[0] * (radii * 0.25 + square(3) * (1.0 / 12.0)))
             }
-            "cone" => about(
-                n[0] * square(1) * 0.3,
-                n[0] * (square(1) * 0.15 + square(2) * 0.0375),
-            ),
+            "cone" => about(n[0] * square(1) * 0.3, n[0] * (square(1) * 0.15 + square(2) * 0.0375)),
             "capsule" => self.capsule(n, axis),
             "sphere" => Sym3::scalar(n[0] * square(1) * 0.4),
             "shell" => Sym3::scalar(n[0] * square(1) * (2.0 / 3.0)),
@@ -188,9 +162,7 @@ impl<'g> Scope<'_, 'g> {
         let axial = m_cylinder * r.square() * 0.5 + m_ball * r.square() * 0.4;
         let transverse = m_cylinder * (r.square() * 0.25 + h.square() * (1.0 / 12.0))
             + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
-        axis.map_or(Sym3::zero(self.graph), |axis| {
-            axisymmetric(axial, transverse, axis)
-        })
+        axis.map_or(Sym3::zero(self.graph), |axis| axisymmetric(axial, transverse, axis))
     }
 }
 
@@ -198,10 +170,7 @@ impl<'g> Scope<'_, 'g> {
 fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
     if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
         let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
-        return Sym3 {
-            diagonal,
-            off: [axial.zero(); 3],
-        };
+        return Sym3 { diagonal, off: [axial.zero(); 3] };
     }
     let extra = axial - transverse;
     Sym3::from_upper(&Mat3::from_fn(|i, j| {
@@ -223,16 +192,11 @@ pub fn check_inertia(
     let scale = moments[2].abs().max(moments[0].abs());
     let list = moments.map(|m| format!("{m:.4e}")).join(", ");
     let diagnostic = if moments[0] < -TOLERANCE * scale {
-        cx.error(
-            place.clone(),
-            format!("the inertia of `{body}` is not positive definite"),
-        )
-        .help(format!("its principal moments are {list}"))
+        cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
+            .help(format!("its principal moments are {list}"))
     } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
         cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
-            .help(format!(
-                "its principal moments are {list}: the largest exceeds the sum of the others"
-            ))
+            .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
     } else {
         return;
     };

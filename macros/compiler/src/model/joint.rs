@@ -2,8 +2,10 @@
 //! ones with massless frames between.
 
 use super::Coordinate;
+use super::axis::sample;
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
+use crate::expr::eval::eval_one;
 use crate::expr::{Expr, Vec3};
 use crate::syntax::{self, Joint, JointKind};
 
@@ -41,11 +43,7 @@ pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static st
 
 /// The full name of a coordinate.
 pub fn full_name(joint: &str, coordinate: &str) -> String {
-    if coordinate.is_empty() {
-        joint.to_string()
-    } else {
-        format!("{joint}.{coordinate}")
-    }
+    if coordinate.is_empty() { joint.to_string() } else { format!("{joint}.{coordinate}") }
 }
 
 impl<'g> Scope<'_, 'g> {
@@ -85,10 +83,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     fn axes(&self, joint: &Joint, axes: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Vec<Vec3<'g>>> {
-        let found: Vec<_> = axes
-            .iter()
-            .map(|a| self.unit_vector(a, joint.normalise_axis, cx))
-            .collect();
+        let found: Vec<_> = axes.iter().map(|a| self.unit_vector(a, joint.normalise_axis, cx)).collect();
         found.into_iter().collect()
     }
 
@@ -122,7 +117,17 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Vec<Elementary<'g>>> {
         let (first, second) = match (about, along) {
             (_, [first, second]) => (*first, *second),
-            ([normal], []) => in_plane(*normal)?,
+            ([normal], []) => match in_plane(*normal) {
+                Some(directions) => directions,
+                None => {
+                    cx.error(
+                        place.clone(),
+                        "a normal that depends on parameters does not say the directions in the plane",
+                    )
+                    .help("write `along = (first, second)` instead of `about`");
+                    return None;
+                }
+            },
             _ => {
                 cx.error(place.clone(), "a Planar joint has a normal or two directions")
                     .help("write `about = z`, or `along = (x, y)`");
@@ -130,33 +135,26 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let normal = first.cross(second);
-        if (0..3).any(|seed| {
-            let cosine = crate::expr::eval::eval_one(first.dot(second), &|s| super::axis::sample(s, seed));
-            cosine.abs() > 1e-9
-        }) {
-            cx.error(
-                place.clone(),
-                "the two directions of a Planar joint are not orthogonal",
-            );
+        if !vanishes(first.dot(second)) {
+            cx.error(place.clone(), "the two directions of a Planar joint are not orthogonal");
             return None;
         }
         if let [given] = about
-            && *given != normal
+            && !(*given - normal).0.iter().all(|c| vanishes(*c))
         {
-            cx.error(
-                place.clone(),
-                "`about` is not the normal of the two directions in `along`",
-            )
-            .help("leave one of them out");
+            cx.error(place.clone(), "`about` is not the normal of the two directions in `along`")
+                .help("leave one of them out");
             return None;
         }
-        let normal = normal.values().map_or(normal, |n| Vec3::numbers(self.graph, n));
-        Some(vec![
-            Elementary::Slide(first),
-            Elementary::Slide(second),
-            Elementary::Turn(normal),
-        ])
+        // The given normal is exact, the product is rounded.
+        let normal = about.first().copied().unwrap_or(normal);
+        Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
     }
+}
+
+/// True if an expression is zero for all values of the parameters, within rounding.
+fn vanishes(e: Expr<'_>) -> bool {
+    (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
 }
 
 /// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
@@ -199,11 +197,8 @@ fn several<'a, 'g>(
         (2, 2) => ("two axes", "(x, y)"),
         _ => ("two or three axes", "(x, y)"),
     };
-    cx.error(
-        place.clone(),
-        format!("{what} has {number} in `{key}`, found {}", axes.len()),
-    )
-    .help(format!("write `{key} = {example}`"));
+    cx.error(place.clone(), format!("{what} has {number} in `{key}`, found {}", axes.len()))
+        .help(format!("write `{key} = {example}`"));
     None
 }
 
@@ -218,8 +213,7 @@ fn either<'g>(
         ([axis], []) | ([], [axis]) => Some(*axis),
         ([a], [b]) if a == b => Some(*a),
         _ => {
-            cx.error(place.clone(), format!("{what} has one axis"))
-                .help("write `about = z`");
+            cx.error(place.clone(), format!("{what} has one axis")).help("write `about = z`");
             None
         }
     }
@@ -227,10 +221,5 @@ fn either<'g>(
 
 /// A coordinate of its own.
 pub fn own_coordinate(q: usize, v: usize) -> Coordinate {
-    Coordinate {
-        q,
-        v,
-        ratio: 1.0,
-        offset: 0.0,
-    }
+    Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

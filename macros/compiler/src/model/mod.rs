@@ -89,10 +89,7 @@ pub struct Pose<'g> {
 impl<'g> Pose<'g> {
     /// The child frame is the parent frame.
     pub fn identity(graph: &'g Graph) -> Pose<'g> {
-        Pose {
-            rotation: Rotation::identity(graph),
-            translation: Vec3::zero(graph),
-        }
+        Pose { rotation: Rotation::identity(graph), translation: Vec3::zero(graph) }
     }
 
     /// This placement, then `next` in the child frame.
@@ -106,10 +103,7 @@ impl<'g> Pose<'g> {
     /// The placement of the parent frame in the child frame.
     pub fn inverse(&self) -> Pose<'g> {
         let rotation = self.rotation.inverse();
-        Pose {
-            translation: -rotation.to_parent(self.translation),
-            rotation,
-        }
+        Pose { translation: -rotation.to_parent(self.translation), rotation }
     }
 
     /// A point of the child frame, from the parent's origin in parent axes.
@@ -132,20 +126,12 @@ pub struct Inertia<'g> {
 impl<'g> Inertia<'g> {
     /// Nothing.
     pub fn zero(graph: &'g Graph) -> Inertia<'g> {
-        Inertia {
-            mass: graph.zero(),
-            moment: Vec3::zero(graph),
-            tensor: Sym3::zero(graph),
-        }
+        Inertia { mass: graph.zero(), moment: Vec3::zero(graph), tensor: Sym3::zero(graph) }
     }
 
     /// A body with its centre of mass at `c` and an inertia about it.
     pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
-        Inertia {
-            mass,
-            moment: c * mass,
-            tensor: central + Sym3::point(mass, c),
-        }
+        Inertia { mass, moment: c * mass, tensor: central + Sym3::point(mass, c) }
     }
 }
 

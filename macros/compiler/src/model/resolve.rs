@@ -74,11 +74,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         let mut sum = Vec3::zero(self.graph);
         for (axes, v) in terms {
             if let Axes::Of(body) = axes {
-                cx.error(
-                    e.place.clone(),
-                    format!("this vector is given in the axes of `{body}`"),
-                )
-                .help("here only the frame's own axes `x`, `y` and `z` can stand");
+                cx.error(e.place.clone(), format!("this vector is given in the axes of `{body}`"))
+                    .help("here only the frame's own axes `x`, `y` and `z` can stand");
                 return None;
             }
             sum += v;
@@ -186,10 +183,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Some(Value::Vector(vec![(Axes::Own, vector)]))
             }
             ExprKind::Method(_, method, _) => {
-                cx.error(
-                    method.place.clone(),
-                    format!("`.{}(…)` has no value here", method.text),
-                );
+                cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
                 None
             }
             ExprKind::Array(_) | ExprKind::Tuple(_) => {
@@ -228,16 +222,12 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let ExprKind::Name(body) = &inner.kind else {
-            cx.error(
-                member.place.clone(),
-                format!("`.{}` has no value here", member.text),
-            );
+            cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
             return None;
         };
         if body != "ground" && !self.bodies.contains(body) {
             let known = self.bodies.iter().map(String::as_str).chain(["ground"]);
-            cx.error(inner.place.clone(), format!("unknown body `{body}`"))
-                .suggest(body, known);
+            cx.error(inner.place.clone(), format!("unknown body `{body}`")).suggest(body, known);
             return None;
         }
         let Some(k) = ["x", "y", "z"].iter().position(|a| *a == member.text) else {
@@ -245,10 +235,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 .help("its axes are `x`, `y` and `z`");
             return None;
         };
-        Some(Value::Vector(vec![(
-            Axes::Of(body.clone()),
-            Vec3::axis(self.graph, k),
-        )]))
+        Some(Value::Vector(vec![(Axes::Of(body.clone()), Vec3::axis(self.graph, k))]))
     }
 
     fn binary(
@@ -285,28 +272,14 @@ impl<'a, 'g> Scope<'a, 'g> {
                 return None;
             }
             (BinaryOp::Div, left, Vector(_)) => {
-                cx.error(
-                    e.place.clone(),
-                    format!("{} cannot be divided by a vector", left.word()),
-                )
-                .help("divide by its length, `norm(v)`");
+                cx.error(e.place.clone(), format!("{} cannot be divided by a vector", left.word()))
+                    .help("divide by its length, `norm(v)`");
                 return None;
             }
             (_, left, right) => {
-                let verb = if op == BinaryOp::Add {
-                    "added to"
-                } else {
-                    "subtracted from"
-                };
-                let (what, from) = if op == BinaryOp::Add {
-                    (&left, &right)
-                } else {
-                    (&right, &left)
-                };
-                cx.error(
-                    e.place.clone(),
-                    format!("{} cannot be {verb} {}", what.word(), from.word()),
-                );
+                let verb = if op == BinaryOp::Add { "added to" } else { "subtracted from" };
+                let (what, from) = if op == BinaryOp::Add { (&left, &right) } else { (&right, &left) };
+                cx.error(e.place.clone(), format!("{} cannot be {verb} {}", what.word(), from.word()));
                 return None;
             }
         })
@@ -322,10 +295,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             if let crate::expr::Node::Call(f, inner) = s.node()
                 && self.graph.expr(inner).value().is_some()
             {
-                cx.error(
-                    argument.place.clone(),
-                    format!("`{}` is not defined at this number", f.name()),
-                );
+                cx.error(argument.place.clone(), format!("`{}` is not defined at this number", f.name()));
                 return None;
             }
             return Some(Value::Scalar(s));
@@ -369,16 +339,12 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Some(Value::Vector(vec![(Axes::Own, v.map(|c| c / v.norm()))]))
             }
             _ if LATER.contains(&text) => {
-                cx.error(
-                    function.place.clone(),
-                    format!("`{text}(…)` is not yet supported"),
-                );
+                cx.error(function.place.clone(), format!("`{text}(…)` is not yet supported"));
                 None
             }
             _ => {
                 let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS);
-                cx.error(function.place.clone(), format!("unknown function `{text}`"))
-                    .suggest(text, known);
+                cx.error(function.place.clone(), format!("unknown function `{text}`")).suggest(text, known);
                 None
             }
         }
@@ -397,9 +363,6 @@ fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes,
 
 fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option<T> {
     let plural = if count == 1 { "" } else { "s" };
-    cx.error(
-        function.place.clone(),
-        format!("`{}` takes {count} argument{plural}", function.text),
-    );
+    cx.error(function.place.clone(), format!("`{}` takes {count} argument{plural}", function.text));
     None
 }

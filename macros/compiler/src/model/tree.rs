@@ -52,11 +52,8 @@ pub fn find_tree(
             continue;
         };
         let Some(child) = child else {
-            cx.error(
-                joint.child.body.place.clone(),
-                "the ground cannot be the child of a joint",
-            )
-            .help("turn the joint around: `ground -> body`");
+            cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
+                .help("turn the joint around: `ground -> body`");
             sound = false;
             continue;
         };
@@ -77,10 +74,7 @@ pub fn find_tree(
                     held[child].name.text, name.text
                 ),
             );
-            cx.error(
-                name.place.clone(),
-                format!("`{}` is first held here", held[child].name.text),
-            );
+            cx.error(name.place.clone(), format!("`{}` is first held here", held[child].name.text));
             sound = false;
             continue;
         }
@@ -92,14 +86,8 @@ pub fn find_tree(
     }
     for (k, body) in held.iter().enumerate() {
         if parents[k].is_none() {
-            cx.error(
-                body.name.place.clone(),
-                format!("nothing holds `{}`", body.name.text),
-            )
-            .help(format!(
-                "add a joint `ground -> {}`, a Free one if it moves freely",
-                body.name.text
-            ));
+            cx.error(body.name.place.clone(), format!("nothing holds `{}`", body.name.text))
+                .help(format!("add a joint `ground -> {}`, a Free one if it moves freely", body.name.text));
             sound = false;
         }
     }
@@ -152,21 +140,10 @@ fn report_cycle(
 fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
     if scope.bodies.contains(&name.text) {
-        cx.error(
-            place,
-            format!(
-                "`{}` is fixed at a point of a body and cannot be joined",
-                name.text
-            ),
-        )
-        .help("leave its `at` out, or join the body");
+        cx.error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
+            .help("leave its `at` out, or join the body");
         return;
     }
-    let known: Vec<&str> = held
-        .iter()
-        .map(|h| h.name.text.as_str())
-        .chain([GROUND])
-        .collect();
-    cx.error(place, format!("unknown body `{}`", name.text))
-        .suggest(&name.text, known);
+    let known: Vec<&str> = held.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
+    cx.error(place, format!("unknown body `{}`", name.text)).suggest(&name.text, known);
 }

@@ -53,18 +53,8 @@ pub struct UrdfOptions {
     pub lock: Vec<Name>,
 }
 
-const OPTIONS: [&str; 10] = [
-    "gravity",
-    "friction_speed",
-    "scalar",
-    "urdf",
-    "base",
-    "passive",
-    "mimic",
-    "inertia",
-    "inputs",
-    "lock",
-];
+const OPTIONS: [&str; 10] =
+    ["gravity", "friction_speed", "scalar", "urdf", "base", "passive", "mimic", "inertia", "inputs", "lock"];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
@@ -84,14 +74,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
     for field in item.fields {
-        read_field(
-            field,
-            generic.as_deref(),
-            &mut description,
-            &mut shell,
-            &mut scalar,
-            cx,
-        );
+        read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
     }
     let urdf = read_options(arguments, &mut description, &mut scalar, cx);
     if let Some((scalar, _)) = scalar {
@@ -100,18 +83,13 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if let Some(generic) = generic
         && description.scalar != ScalarType::Generic(generic.clone())
     {
-        cx.error(
-            item.generics.span(),
-            format!("no parameter of the mechanism has the type `{generic}`"),
-        )
-        .help("remove the type parameter, or give it to a parameter: then all generated functions use it");
+        cx.error(item.generics.span(), format!("no parameter of the mechanism has the type `{generic}`"))
+            .help(
+                "remove the type parameter, or give it to a parameter: then all generated functions use it",
+            );
     }
     check_duplicates(&description, cx);
-    Some(Mechanism {
-        description,
-        shell,
-        urdf,
-    })
+    Some(Mechanism { description, shell, urdf })
 }
 
 fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
@@ -153,11 +131,8 @@ fn check_generics(item: &ItemStruct, cx: &mut Diagnostics) -> Option<String> {
                     .help("a mechanism has one scalar type at most");
             }
             other => {
-                cx.error(
-                    other.span(),
-                    "a mechanism can be generic over its scalar type only",
-                )
-                .help("write `struct Robot<T>` with parameters of type `T`");
+                cx.error(other.span(), "a mechanism can be generic over its scalar type only")
+                    .help("write `struct Robot<T>` with parameters of type `T`");
             }
         }
     }
@@ -221,11 +196,7 @@ fn unify_scalar(
         Some((known, _)) => {
             cx.error(
                 place,
-                format!(
-                    "this parameter is `{}`, but others are `{}`",
-                    spell(&found),
-                    spell(known)
-                ),
+                format!("this parameter is `{}`, but others are `{}`", spell(&found), spell(known)),
             )
             .help("all parameters of a mechanism have one scalar type");
         }
@@ -258,10 +229,7 @@ fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut D
         {
             cx.error(
                 word.span(),
-                format!(
-                    "`#[{word}]` says how an element is placed, but `{}` is a parameter",
-                    field.text
-                ),
+                format!("`#[{word}]` says how an element is placed, but `{}` is a parameter", field.text),
             )
             .help("give the field an element's type, such as `Body` or `Pin`");
         }
@@ -278,11 +246,7 @@ fn read_options(
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
-        let found = if word == "f32" {
-            ScalarType::F32
-        } else {
-            ScalarType::F64
-        };
+        let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
         unify_scalar(scalar, found, place, cx);
     }
     let path = arguments.take_text("urdf", cx);
@@ -296,11 +260,8 @@ fn read_options(
             }
         }
     }
-    let mut choice = |key: &str, words: [&str; 2]| {
-        arguments
-            .take_word(key, &words, cx)
-            .map(|(word, _)| word == words[1])
-    };
+    let mut choice =
+        |key: &str, words: [&str; 2]| arguments.take_word(key, &words, cx).map(|(word, _)| word == words[1]);
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
@@ -337,14 +298,8 @@ pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) {
     for pair in sorted.windows(2) {
         let (first, second) = (pair[0].1, pair[1].1);
         if first.text == second.text {
-            cx.error(
-                second.place.clone(),
-                format!("the name `{}` is used twice", second.text),
-            );
-            cx.error(
-                first.place.clone(),
-                format!("`{}` is first used here", first.text),
-            );
+            cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text));
+            cx.error(first.place.clone(), format!("`{}` is first used here", first.text));
         }
     }
 }

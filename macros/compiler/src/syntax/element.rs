@@ -79,10 +79,7 @@ pub fn read_element(
     cx: &mut Diagnostics,
 ) {
     let kind_name = kind.to_string();
-    let later = LATER
-        .iter()
-        .find(|(later, _)| *later == kind_name)
-        .map(|(_, attribute)| *attribute);
+    let later = LATER.iter().find(|(later, _)| *later == kind_name).map(|(_, attribute)| *attribute);
     if later.is_some() || kind_name == "Vector" {
         // The grammar of its attribute is checked all the same.
         for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
@@ -91,10 +88,7 @@ pub fn read_element(
         cx.error(kind.span(), format!("`{kind_name}` is not yet supported"));
         return;
     }
-    let joint = JOINTS
-        .iter()
-        .find(|(joint, _)| *joint == kind_name)
-        .map(|(_, joint)| *joint);
+    let joint = JOINTS.iter().find(|(joint, _)| *joint == kind_name).map(|(_, joint)| *joint);
     let expected = match kind_name.as_str() {
         "Body" => "body",
         "Particle" => "particle",
@@ -114,23 +108,14 @@ pub fn read_element(
             let body = read_body(name, &mut arguments, cx);
             description.bodies.push(body);
         }
-        ("particle", _) => description
-            .particles
-            .extend(read_particle(name, &mut arguments, cx)),
-        (_, Some(joint)) => description
-            .joints
-            .extend(read_joint(name, joint, &mut arguments, cx)),
-        _ => description
-            .actions
-            .extend(read_action(name, &kind_name, &mut arguments, cx)),
+        ("particle", _) => description.particles.extend(read_particle(name, &mut arguments, cx)),
+        (_, Some(joint)) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
+        _ => description.actions.extend(read_action(name, &kind_name, &mut arguments, cx)),
     }
 }
 
 fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
-    attribute
-        .path()
-        .get_ident()
-        .is_some_and(|i| words.contains(&i.to_string().as_str()))
+    attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
 
 /// The arguments of the one attribute that an element of this kind has.
@@ -145,10 +130,7 @@ fn own_arguments(
     for attribute in attributes {
         let path = attribute.path();
         let word = path.get_ident().map_or_else(|| "?".to_string(), Ident::to_string);
-        let span = path
-            .segments
-            .first()
-            .map_or_else(Span::call_site, |s| s.ident.span());
+        let span = path.segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         if word == expected {
             if found.is_some() {
                 cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text));
@@ -160,23 +142,18 @@ fn own_arguments(
                 .help(format!("expected `#[{expected}(…)]`"));
             return None;
         } else if word == "cfg" || word == "cfg_attr" {
-            cx.error(span, "an element cannot be conditional")
-                .help("put `#[cfg]` on the whole struct");
+            cx.error(span, "an element cannot be conditional").help("put `#[cfg]` on the whole struct");
         } else if !matches!(
             word.as_str(),
             "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated"
         ) {
-            cx.error(span, format!("unknown attribute `#[{word}]` on an element"))
-                .suggest(&word, ATTRIBUTES);
+            cx.error(span, format!("unknown attribute `#[{word}]` on an element")).suggest(&word, ATTRIBUTES);
             return None;
         }
     }
     if found.is_none() {
-        cx.error(
-            name.place.clone(),
-            format!("`{}` does not say how it is placed", name.text),
-        )
-        .help(format!("add {}", example(expected)));
+        cx.error(name.place.clone(), format!("`{}` does not say how it is placed", name.text))
+            .help(format!("add {}", example(expected)));
     }
     found.flatten()
 }
@@ -192,10 +169,7 @@ fn example(attribute: &str) -> &'static str {
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
     if arguments.word_given("massive") {
-        cx.error(
-            arguments.place.clone(),
-            "a body with prescribed motion is not yet supported",
-        );
+        cx.error(arguments.place.clone(), "a body with prescribed motion is not yet supported");
     }
     let body = Body {
         name: name.clone(),
@@ -212,11 +186,7 @@ fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -
     let mass = arguments.need_expr("mass", "particle", cx);
     let at = arguments.take_expr("at", cx);
     arguments.finish("particle", &["mass", "at"], cx);
-    Some(Particle {
-        name: name.clone(),
-        mass: mass?,
-        at,
-    })
+    Some(Particle { name: name.clone(), mass: mass?, at })
 }
 
 fn read_joint(
@@ -247,8 +217,7 @@ fn read_joint(
             } else {
                 format!("expected {}", crate::diag::one_of(&list))
             };
-            cx.error(place, format!("a {} takes no `{key}`", kind_word(kind)))
-                .help(help);
+            cx.error(place, format!("a {} takes no `{key}`", kind_word(kind))).help(help);
         }
     }
     arguments.finish("joint", allowed, cx);
@@ -272,20 +241,15 @@ fn read_joint(
 
 /// The word of the language for a joint.
 pub fn kind_word(kind: JointKind) -> &'static str {
-    JOINTS
-        .iter()
-        .find(|(_, k)| *k == kind)
-        .map_or("joint", |(word, _)| word)
+    JOINTS.iter().find(|(_, k)| *k == kind).map_or("joint", |(word, _)| word)
 }
 
 /// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
 fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
     match e.kind {
-        ExprKind::Name(text) => Some(Endpoint {
-            body: Name { text, place: e.place },
-            at: None,
-            rotated: Vec::new(),
-        }),
+        ExprKind::Name(text) => {
+            Some(Endpoint { body: Name { text, place: e.place }, at: None, rotated: Vec::new() })
+        }
         ExprKind::Method(inner, method, mut arguments) => {
             let mut end = endpoint(*inner, cx)?;
             match method.text.as_str() {
@@ -319,8 +283,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
             }
         }
         _ => {
-            cx.error(e.place, "expected a body")
-                .help("write `ground -> cart`, `arm.at(length * x) -> hand`");
+            cx.error(e.place, "expected a body").help("write `ground -> cart`, `arm.at(length * x) -> hand`");
             None
         }
     }
@@ -328,8 +291,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
 
 fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Action> {
     if let Some(place) = arguments.place_of("between") {
-        cx.error(place, "`between` is not yet supported")
-            .help("let it act on a joint: `on = joint`");
+        cx.error(place, "`between` is not yet supported").help("let it act on a joint: `on = joint`");
         arguments.forget("between");
         arguments.forget_all();
         return None;
@@ -344,15 +306,9 @@ fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diag
     let (action, keys): (Option<ActionKind>, &[&str]) = match kind {
         "Spring" => {
             let stiffness = arguments.need_expr("stiffness", "acts", cx);
-            let lengths = [
-                arguments.take_expr("free_length", cx),
-                arguments.take_expr("free_angle", cx),
-            ];
+            let lengths = [arguments.take_expr("free_length", cx), arguments.take_expr("free_angle", cx)];
             if let [Some(_), Some(second)] = &lengths {
-                cx.error(
-                    second.place.clone(),
-                    "a spring has one of `free_length` and `free_angle`",
-                );
+                cx.error(second.place.clone(), "a spring has one of `free_length` and `free_angle`");
             }
             let free = lengths.into_iter().flatten().next();
             (
@@ -362,10 +318,7 @@ fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diag
         }
         "Dashpot" => {
             let damping = arguments.need_expr("damping", "acts", cx);
-            (
-                damping.map(|damping| ActionKind::Dashpot { damping }),
-                &["on", "damping"],
-            )
+            (damping.map(|damping| ActionKind::Dashpot { damping }), &["on", "damping"])
         }
         "Force" => {
             let along = arguments.take_expr("along", cx);
@@ -377,11 +330,7 @@ fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diag
         }
     };
     arguments.finish("acts", keys, cx);
-    Some(Action {
-        name: name.clone(),
-        kind: action?,
-        on: on?,
-    })
+    Some(Action { name: name.clone(), kind: action?, on: on? })
 }
 
 /// The arguments of an attribute: at most one relation `a -> b`, and `key = value` in any order.
@@ -402,11 +351,7 @@ enum Value {
 impl Arguments {
     /// The arguments of `#[word(…)]`.
     fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
-        let span = attribute
-            .path()
-            .segments
-            .first()
-            .map_or_else(Span::call_site, |s| s.ident.span());
+        let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         match &attribute.meta {
             Meta::List(list) => Arguments::parse(list.tokens.clone(), span, cx),
             Meta::Path(_) => Arguments::parse(TokenStream::new(), span, cx),
@@ -428,10 +373,7 @@ impl Arguments {
             }
         };
         for (k, (key, _)) in arguments.named.iter().enumerate() {
-            if arguments.named[..k]
-                .iter()
-                .any(|(other, _)| other.text == key.text)
-            {
+            if arguments.named[..k].iter().any(|(other, _)| other.text == key.text) {
                 cx.error(key.place.clone(), format!("`{}` is given twice", key.text));
             }
         }
@@ -447,10 +389,7 @@ impl Arguments {
 
     /// Where a key that was not yet taken stands.
     pub fn place_of(&self, key: &str) -> Option<Place> {
-        self.named
-            .iter()
-            .find(|(name, _)| name.text == key)
-            .map(|(name, _)| name.place.clone())
+        self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
     /// Drops a key.
@@ -464,16 +403,12 @@ impl Arguments {
 
     /// Where a key that was taken stood.
     fn seen(&self, key: &str) -> Option<Place> {
-        self.seen
-            .iter()
-            .find(|name| name.text == key)
-            .map(|name| name.place.clone())
+        self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
     fn word_given(&mut self, word: &str) -> bool {
         let before = self.plain.len();
-        self.plain
-            .retain(|e| !matches!(&e.kind, ExprKind::Name(name) if name == word));
+        self.plain.retain(|e| !matches!(&e.kind, ExprKind::Name(name) if name == word));
         self.plain.len() < before
     }
 
@@ -491,10 +426,7 @@ impl Arguments {
     fn need_expr(&mut self, key: &str, attribute: &str, cx: &mut Diagnostics) -> Option<Expr> {
         if self.place_of(key).is_none() {
             // A misspelt key is reported as such, once.
-            let near = self
-                .named
-                .iter()
-                .any(|(name, _)| crate::diag::nearest(&name.text, &[key]).is_some());
+            let near = self.named.iter().any(|(name, _)| crate::diag::nearest(&name.text, &[key]).is_some());
             if !near {
                 cx.error(self.place.clone(), format!("missing `{key}`"))
                     .help(format!("write `#[{attribute}({key} = …)]`"));
@@ -506,10 +438,7 @@ impl Arguments {
     /// The expressions of a key: one, or several in parentheses.
     fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
         match self.take_expr(key, cx) {
-            Some(Expr {
-                kind: ExprKind::Tuple(items),
-                ..
-            }) => items,
+            Some(Expr { kind: ExprKind::Tuple(items), .. }) => items,
             Some(e) => vec![e],
             None => Vec::new(),
         }
@@ -519,14 +448,10 @@ impl Arguments {
     pub fn take_word(&mut self, key: &str, words: &[&str], cx: &mut Diagnostics) -> Option<(String, Place)> {
         let (name, value) = self.take(key)?;
         match value {
-            Value::Expr(Expr {
-                kind: ExprKind::Name(word),
-                place,
-            }) if words.contains(&word.as_str()) => Some((word, place)),
-            Value::Expr(Expr {
-                kind: ExprKind::Name(word),
-                place,
-            }) => {
+            Value::Expr(Expr { kind: ExprKind::Name(word), place }) if words.contains(&word.as_str()) => {
+                Some((word, place))
+            }
+            Value::Expr(Expr { kind: ExprKind::Name(word), place }) => {
                 cx.error(place, format!("unknown choice `{word}` for `{key}`"))
                     .suggest(&word, words.iter().copied());
                 None
@@ -542,10 +467,7 @@ impl Arguments {
     /// The string of a key.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take(key)? {
-            (_, Value::Text(text)) => Some(Name {
-                text: text.value(),
-                place: text.span().into(),
-            }),
+            (_, Value::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
             (name, _) => {
                 cx.error(name.place, format!("expected a string for `{key}`"))
                     .help(format!("write `{key} = \"…\"`"));
@@ -556,20 +478,13 @@ impl Arguments {
 
     /// The strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
-        let named = |text: &LitStr| Name {
-            text: text.value(),
-            place: text.span().into(),
-        };
+        let named = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take(key) {
             None => Vec::new(),
             Some((_, Value::Texts(texts))) => texts.iter().map(named).collect(),
-            Some((
-                _,
-                Value::Expr(Expr {
-                    kind: ExprKind::Array(items),
-                    ..
-                }),
-            )) if items.is_empty() => Vec::new(),
+            Some((_, Value::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
+                Vec::new()
+            }
             Some((name, _)) => {
                 cx.error(name.place, format!("expected a list of strings for `{key}`"))
                     .help(format!("write `{key} = [\"…\", \"…\"]`"));
@@ -597,11 +512,8 @@ impl Arguments {
                     .help("rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`");
                 continue;
             }
-            cx.error(
-                name.place,
-                format!("unknown argument `{}` of `#[{attribute}]`", name.text),
-            )
-            .suggest(&name.text, known.iter().copied());
+            cx.error(name.place, format!("unknown argument `{}` of `#[{attribute}]`", name.text))
+                .suggest(&name.text, known.iter().copied());
         }
         let stray = self.plain.drain(..).chain(self.relation.take().map(|(e, _)| e));
         for e in stray {

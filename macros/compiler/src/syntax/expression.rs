@@ -25,10 +25,7 @@ pub fn parse_name(input: ParseStream<'_>) -> syn::Result<Name> {
 
 /// The name of an identifier.
 pub fn name(ident: &Ident) -> Name {
-    Name {
-        text: ident.unraw().to_string(),
-        place: ident.span().into(),
-    }
+    Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
 fn node(kind: ExprKind, span: Span, depth: usize) -> syn::Result<Parsed> {
@@ -38,13 +35,7 @@ fn node(kind: ExprKind, span: Span, depth: usize) -> syn::Result<Parsed> {
             "this expression is too long\n\n= help: name a part of it as a parameter",
         ));
     }
-    Ok(Parsed(
-        Expr {
-            kind,
-            place: span.into(),
-        },
-        depth,
-    ))
+    Ok(Parsed(Expr { kind, place: span.into() }, depth))
 }
 
 fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -79,11 +70,7 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
 
 fn binary(op: BinaryOp, left: Parsed, right: Parsed, span: Span) -> syn::Result<Parsed> {
     let depth = left.1.max(right.1) + 1;
-    node(
-        ExprKind::Binary(op, Box::new(left.0), Box::new(right.0)),
-        span,
-        depth,
-    )
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0)), span, depth)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -151,10 +138,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         _ => return Err(syn::Error::new(literal.span(), "expected a number")),
     };
     if !matches!(suffix.as_str(), "" | "f64" | "f32") {
-        return Err(syn::Error::new(
-            literal.span(),
-            format!("a number cannot have the suffix `{suffix}`"),
-        ));
+        return Err(syn::Error::new(literal.span(), format!("a number cannot have the suffix `{suffix}`")));
     }
     match digits.parse::<f64>() {
         Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span(), 1),

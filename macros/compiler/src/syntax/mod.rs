@@ -67,31 +67,19 @@ pub enum BinaryOp {
 impl Expr {
     /// A number at a place.
     pub fn number(value: f64, place: &Place) -> Expr {
-        Expr {
-            kind: ExprKind::Number(value),
-            place: place.clone(),
-        }
+        Expr { kind: ExprKind::Number(value), place: place.clone() }
     }
 
     /// A function call at a place.
     pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
-        let name = Name {
-            text: function.to_string(),
-            place: place.clone(),
-        };
-        Expr {
-            kind: ExprKind::Call(name, arguments),
-            place: place.clone(),
-        }
+        let name = Name { text: function.to_string(), place: place.clone() };
+        Expr { kind: ExprKind::Call(name, arguments), place: place.clone() }
     }
 
     /// Three numbers as a vector `[a, b, c]` at a place.
     pub fn vector(values: [f64; 3], place: &Place) -> Expr {
         let items = values.iter().map(|v| Expr::number(*v, place)).collect();
-        Expr {
-            kind: ExprKind::Array(items),
-            place: place.clone(),
-        }
+        Expr { kind: ExprKind::Array(items), place: place.clone() }
     }
 }
 

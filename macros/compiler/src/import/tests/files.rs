@@ -23,17 +23,10 @@ impl Folder {
     /// The text of a file or the mistakes, the directory's own name left out.
     fn read(&self, file: &str) -> String {
         let mut cx = Diagnostics::new();
-        let options = UrdfOptions {
-            path: name(file),
-            ..defaults()
-        };
+        let options = UrdfOptions { path: name(file), ..defaults() };
         let text = read_file(&self.0.join(file), &options, &mut cx);
         assert_eq!(text.is_some(), cx.is_empty());
-        text.unwrap_or_else(|| {
-            cx.messages()
-                .join("\n")
-                .replace(&format!("{}/", self.0.display()), "…")
-        })
+        text.unwrap_or_else(|| cx.messages().join("\n").replace(&format!("{}/", self.0.display()), "…"))
     }
 }
 
@@ -54,10 +47,7 @@ fn a_file_is_read() {
 fn a_missing_file_has_neighbours() {
     let folder = Folder::new("missing");
     let found = folder.read("urdf/pandas.urdf");
-    assert_eq!(
-        found,
-        "there is no file `urdf/pandas.urdf`\n\n= help: looked for `…urdf/pandas.urdf`"
-    );
+    assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: looked for `…urdf/pandas.urdf`");
     folder.write("urdf/panda.urdf", b"");
     folder.write("urdf/readme.txt", b"");
     let found = folder.read("urdf/pandas.urdf");
@@ -75,24 +65,15 @@ fn what_is_no_text_file_is_refused() {
     let folder = Folder::new("refused");
     assert_eq!(folder.read("urdf"), "`urdf` is a directory, expected a URDF file");
     folder.write("r.urdf", b"<robot>\n\xff</robot>");
-    assert_eq!(
-        folder.read("r.urdf"),
-        "`r.urdf` is not UTF-8 text: line 2\n\n= help: save the file in UTF-8"
-    );
+    assert_eq!(folder.read("r.urdf"), "`r.urdf` is not UTF-8 text: line 2\n\n= help: save the file in UTF-8");
     let file = fs::File::create(folder.0.join("large.urdf")).expect("a temporary file");
     file.set_len(40 << 20).expect("a sparse file");
-    assert_eq!(
-        folder.read("large.urdf"),
-        "`large.urdf` has 40 MiB, expected at most 16 MiB"
-    );
+    assert_eq!(folder.read("large.urdf"), "`large.urdf` has 40 MiB, expected at most 16 MiB");
     #[cfg(unix)]
     {
         let found = folder.read("r.urdf/x.urdf");
         assert!(found.starts_with("there is no file `r.urdf/x.urdf`"), "{found}");
-        let options = UrdfOptions {
-            path: name("null"),
-            ..defaults()
-        };
+        let options = UrdfOptions { path: name("null"), ..defaults() };
         let mut cx = Diagnostics::new();
         assert!(read_file("/dev/null".as_ref(), &options, &mut cx).is_none());
         assert_eq!(cx.messages(), ["`null` is not a regular file"]);

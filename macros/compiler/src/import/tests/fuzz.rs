@@ -44,10 +44,7 @@ fn damage(bytes: &mut Vec<u8>, state: &mut u64) {
 
 #[test]
 fn damage_never_panics() {
-    let options = UrdfOptions {
-        inputs: true,
-        ..locked(&["j"])
-    };
+    let options = UrdfOptions { inputs: true, ..locked(&["j"]) };
     let mut state = 0x9E37_79B9_7F4A_7C15;
     let mut good = 0;
     for round in 0..4000 {
@@ -58,10 +55,7 @@ fn damage_never_panics() {
         let answer = run(&options, &String::from_utf8_lossy(&bytes));
         good += usize::from(answer.contains("root_joint"));
     }
-    assert!(
-        (100..3900).contains(&good),
-        "damage should spare some files and not others: {good}"
-    );
+    assert!((100..3900).contains(&good), "damage should spare some files and not others: {good}");
 }
 
 #[test]

@@ -10,19 +10,9 @@ fn check_chain(options: &UrdfOptions, joints: &[(&str, &str)], expected: &str) {
 #[test]
 fn every_type_has_its_joint() {
     let axis = "<axis xyz='0 0 2'/>";
-    let kinds = [
-        "revolute",
-        "continuous",
-        "prismatic",
-        "fixed",
-        "floating",
-        "planar",
-    ];
+    let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar"];
     check_chain(
-        &UrdfOptions {
-            inputs: true,
-            ..defaults()
-        },
+        &UrdfOptions { inputs: true, ..defaults() },
         &kinds.map(|kind| (kind, axis)),
         "Pin j1: l0 -> l1 about [0, 0, 2] driven
          Pin j2: l1 -> l2 about [0, 0, 2] driven
@@ -76,30 +66,22 @@ fn the_origin_is_a_place_and_carried_turns() {
 
 #[test]
 fn passive_elements_count_unless_ignored() {
-    let joints = [
-        ("revolute", "<dynamics damping='2' friction='3'/>"),
-        ("prismatic", "<dynamics friction='0'/>"),
-    ];
+    let joints =
+        [("revolute", "<dynamics damping='2' friction='3'/>"), ("prismatic", "<dynamics friction='0'/>")];
     check_chain(
         &defaults(),
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] damping=2 friction=3
          Sleeve j2: l1 -> l2 along [1, 0, 0]",
     );
-    let ignore = UrdfOptions {
-        honour_passive: false,
-        ..defaults()
-    };
+    let ignore = UrdfOptions { honour_passive: false, ..defaults() };
     check_chain(
         &ignore,
         &[("revolute", "<dynamics damping='-2' friction='x'/>")],
         "Pin j1: l0 -> l1 about [1, 0, 0]",
     );
     check(
-        &chain(&[
-            ("revolute", "<dynamics damping='-2'/>"),
-            ("planar", "<dynamics friction='1'/>"),
-        ]),
+        &chain(&[("revolute", "<dynamics damping='-2'/>"), ("planar", "<dynamics friction='1'/>")]),
         "r.urdf:3:90: negative damping `-2`
          = help: to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`
          r.urdf:5:89: `friction` of a `planar` joint is not supported
@@ -115,10 +97,7 @@ fn a_follower_follows_unless_independent() {
         ("prismatic", "<mimic joint='j4' multiplier='-3' offset='5'/>"),
         ("revolute", ""),
     ];
-    let inputs = UrdfOptions {
-        inputs: true,
-        ..defaults()
-    };
+    let inputs = UrdfOptions { inputs: true, ..defaults() };
     check_chain(
         &inputs,
         &joints,
@@ -128,10 +107,7 @@ fn a_follower_follows_unless_independent() {
          Pin j4: l3 -> l4 about [1, 0, 0] driven",
     );
     check_chain(
-        &UrdfOptions {
-            follow_mimic: false,
-            ..inputs
-        },
+        &UrdfOptions { follow_mimic: false, ..inputs },
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] driven
          Weld j2: l1 -> l2
@@ -189,10 +165,7 @@ fn a_follower_needs_somebody_to_follow() {
 
 #[test]
 fn a_locked_joint_is_a_weld() {
-    let options = UrdfOptions {
-        inputs: true,
-        ..locked(&["j1", "j3", "j4"])
-    };
+    let options = UrdfOptions { inputs: true, ..locked(&["j1", "j3", "j4"]) };
     check_chain(
         &options,
         &[
@@ -227,10 +200,7 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
                 "<origin rpy='0 0 1'/><axis xyz='0 -2 0'/><mimic joint='j6' multiplier='3' offset='0.5'/>",
             ),
             ("revolute", "<axis xyz='3 0 4'/><mimic joint='j6' offset='0.5'/>"),
-            (
-                "prismatic",
-                "<origin xyz='1 0 0'/><axis xyz='0 0 1e-200'/><mimic joint='j1' multiplier='2'/>",
-            ),
+            ("prismatic", "<origin xyz='1 0 0'/><axis xyz='0 0 1e-200'/><mimic joint='j1' multiplier='2'/>"),
             ("revolute", "<mimic joint='j6' multiplier='3'/>"),
             ("prismatic", follow),
             ("revolute", ""),
@@ -244,10 +214,7 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
     );
     check_chain(
         &defaults(),
-        &[
-            ("revolute", "<mimic joint='j2' multiplier='0' offset='1'/>"),
-            ("revolute", ""),
-        ],
+        &[("revolute", "<mimic joint='j2' multiplier='0' offset='1'/>"), ("revolute", "")],
         "Weld j1: l0.rotated(x(1)) -> l1
          Pin j2: l1 -> l2 about [1, 0, 0]",
     );
@@ -259,12 +226,8 @@ fn a_locked_slide_moves_along_the_turned_axis() {
     let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
     let text = chain(&[("prismatic", inside), ("revolute", "")]);
     let imported = import_urdf(&text, &locked(&["j2"]), &mut Diagnostics::new());
-    let at = imported
-        .and_then(|imported| imported.joints[1].parent.at.clone())
-        .map(|at| at.kind);
-    let Some(ExprKind::Array(items)) = at else {
-        panic!("a moved end")
-    };
+    let at = imported.and_then(|imported| imported.joints[1].parent.at.clone()).map(|at| at.kind);
+    let Some(ExprKind::Array(items)) = at else { panic!("a moved end") };
     let ((s1, c1), (s2, c2), (s3, c3)) = (1f64.sin_cos(), 2f64.sin_cos(), 3f64.sin_cos());
     let expected = [c1 * s2 * c3 + s1 * s3, s1 * s2 * c3 - c1 * s3, c2 * c3];
     for (item, expected) in items.iter().zip(expected) {
@@ -299,10 +262,7 @@ fn a_joint_says_what_it_joins_and_how() {
            r.urdf:4:54: empty `link` of `<child>`"#,
     );
     check(
-        &chain(&[
-            ("ball", "<axes xyz='0 0 1'/>"),
-            ("revolute", "<mimic joint='j1' multipler='2'/>"),
-        ]),
+        &chain(&[("ball", "<axes xyz='0 0 1'/>"), ("revolute", "<mimic joint='j1' multipler='2'/>")]),
         "r.urdf:3:24: unknown joint type `ball`
          = help: expected `revolute`, `continuous`, `prismatic`, `fixed`, `floating` or `planar`
          r.urdf:3:67: unknown element `<axes>`

@@ -5,10 +5,7 @@ use super::*;
 const INERTIA: &str = r#"<inertia ixx="1" ixy="2" ixz="3" iyy="4" iyz="5" izz="6"/>"#;
 
 fn check_inertial(inside: &str, expected: &str) {
-    check_robot(
-        &format!("<link name=\"a\"><inertial>{inside}</inertial></link>"),
-        expected,
-    );
+    check_robot(&format!("<link name=\"a\"><inertial>{inside}</inertial></link>"), expected);
 }
 
 #[test]
@@ -45,10 +42,7 @@ fn zeros_are_as_good_as_nothing() {
     let inside = format!(r#"<origin xyz="1 0 0" rpy="1 0 0"/><mass value="0"/>{zeros}"#);
     check_inertial(&inside, "body a\nWeld root_joint: ground -> a");
     let inside = format!(r#"<origin xyz="1 0 0" rpy="1 0 0"/><mass value="1"/>{zeros}"#);
-    check_inertial(
-        &inside,
-        "body a mass=1 com=[1, 0, 0]\nWeld root_joint: ground -> a",
-    );
+    check_inertial(&inside, "body a mass=1 com=[1, 0, 0]\nWeld root_joint: ground -> a");
 }
 
 #[test]
@@ -56,21 +50,13 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
     let text =
         format!("<robot><link name='a'>\n <inertial><mass value='-1'/>{INERTIA}</inertial></link></robot>");
     let imported = import_urdf(&text, &defaults(), &mut Diagnostics::new());
-    let at = imported
-        .and_then(|i| i.bodies[0].mass.clone())
-        .and_then(|mass| mass.place.file);
-    assert_eq!(
-        at.map(|at| (at.file.to_string(), at.line, at.column)),
-        Some(("r.urdf".to_string(), 2, 25))
-    );
+    let at = imported.and_then(|i| i.bodies[0].mass.clone()).and_then(|mass| mass.place.file);
+    assert_eq!(at.map(|at| (at.file.to_string(), at.line, at.column)), Some(("r.urdf".to_string(), 2, 25)));
 }
 
 #[test]
 fn an_inertia_may_be_trusted() {
-    let options = UrdfOptions {
-        trust_inertia: true,
-        ..defaults()
-    };
+    let options = UrdfOptions { trust_inertia: true, ..defaults() };
     let expected = "body a trusted\nWeld root_joint: ground -> a";
     check_with(&options, "<robot><link name='a'/></robot>", expected);
 }
@@ -186,8 +172,5 @@ fn every_bad_number_has_its_own_place() {
 #[test]
 fn long_nonsense_is_shortened() {
     let expected = format!("r.urdf:2:39: `{}`… is not a number", "x".repeat(60));
-    check_inertial(
-        &format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)),
-        &expected.replace("`…", "…`"),
-    );
+    check_inertial(&format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)), &expected.replace("`…", "…`"));
 }

@@ -5,51 +5,24 @@ use super::*;
 #[test]
 fn malformed_xml_has_a_place() {
     for (text, expected) in [
-        (
-            "<robot>\n<link></robot>",
-            "r.urdf:2:7: malformed XML: expected `</link>`, found `</robot>`",
-        ),
+        ("<robot>\n<link></robot>", "r.urdf:2:7: malformed XML: expected `</link>`, found `</robot>`"),
         (
             "<robot>\n <link name='a'>\n  <inertial/>",
             "r.urdf:2:2: malformed XML: this element is never closed",
         ),
-        (
-            "<robot>\n <link name='a",
-            "r.urdf:2:2: malformed XML: this element is never closed",
-        ),
-        (
-            "<robot>\n</robot",
-            "r.urdf:2:8: malformed XML: the file ends in the middle of a tag",
-        ),
-        (
-            "<robot>\n <link ",
-            "r.urdf:2:2: malformed XML: this element is never closed",
-        ),
-        (
-            "<robot a='1'\n a='2'/>",
-            "r.urdf:2:2: malformed XML: attribute `a` is given twice",
-        ),
-        (
-            "<robot a='&x;'/>",
-            "r.urdf:1:11: malformed XML: unknown entity `&x;`",
-        ),
+        ("<robot>\n <link name='a", "r.urdf:2:2: malformed XML: this element is never closed"),
+        ("<robot>\n</robot", "r.urdf:2:8: malformed XML: the file ends in the middle of a tag"),
+        ("<robot>\n <link ", "r.urdf:2:2: malformed XML: this element is never closed"),
+        ("<robot a='1'\n a='2'/>", "r.urdf:2:2: malformed XML: attribute `a` is given twice"),
+        ("<robot a='&x;'/>", "r.urdf:1:11: malformed XML: unknown entity `&x;`"),
         (
             "<robot a='& b'/>",
             "r.urdf:1:11: malformed XML: this `&` begins no entity\n= help: write `&amp;` for `&`",
         ),
-        (
-            "<robot a:b='1'/>",
-            "r.urdf:1:8: malformed XML: unknown namespace prefix `a`",
-        ),
-        (
-            "<robot a='<'/>",
-            "r.urdf:1:11: malformed XML: expected ``` not `<`",
-        ),
+        ("<robot a:b='1'/>", "r.urdf:1:8: malformed XML: unknown namespace prefix `a`"),
+        ("<robot a='<'/>", "r.urdf:1:11: malformed XML: expected ``` not `<`"),
         ("<robot/><robot/>", "r.urdf:1:9: malformed XML: unknown token"),
-        (
-            "<robot><!-- -- --></robot>",
-            "r.urdf:1:8: malformed XML: comment contains `--`",
-        ),
+        ("<robot><!-- -- --></robot>", "r.urdf:1:8: malformed XML: comment contains `--`"),
     ] {
         check(text, expected);
     }
@@ -58,14 +31,8 @@ fn malformed_xml_has_a_place() {
 #[test]
 fn what_is_no_xml_is_shown_some() {
     let help = "= help: a URDF file is XML: `<robot name=\"…\"> … </robot>`";
-    check(
-        "",
-        &format!("r.urdf:1:1: malformed XML: there is no element\n{help}"),
-    );
-    check(
-        "solid cube",
-        &format!("r.urdf:1:1: malformed XML: unknown token\n{help}"),
-    );
+    check("", &format!("r.urdf:1:1: malformed XML: there is no element\n{help}"));
+    check("solid cube", &format!("r.urdf:1:1: malformed XML: unknown token\n{help}"));
 }
 
 #[test]
@@ -120,16 +87,10 @@ fn deep_nesting_is_refused() {
     check(&deep, expected);
     check(&(deep + &"</a>".repeat(100_000)), expected);
     // What looks like markup in comments, instructions, character data and attributes is none.
-    let quiet = [
-        ("<!-- ", "-->"),
-        ("<?p ", "?>"),
-        ("<![CDATA[", "]]>"),
-        ("<a b='", "'/>"),
-        ("<a b=\"", "\"/>"),
-    ];
-    let inside: String = quiet
-        .map(|(open, close)| open.to_string() + &"/><a>".replace('<', "") + close)
-        .concat();
+    let quiet =
+        [("<!-- ", "-->"), ("<?p ", "?>"), ("<![CDATA[", "]]>"), ("<a b='", "'/>"), ("<a b=\"", "\"/>")];
+    let inside: String =
+        quiet.map(|(open, close)| open.to_string() + &"/><a>".replace('<', "") + close).concat();
     let text = format!("<robot><link name='a'/>{}</robot>", inside.repeat(100));
     check(&text, "body a\nWeld root_joint: ground -> a");
     let markup = "<a>".repeat(100);
@@ -147,24 +108,15 @@ fn deep_nesting_is_refused() {
 #[test]
 fn crowds_of_markup_are_refused() {
     let attributes: String = (0..100).map(|k| format!(" a{k}=''")).collect();
-    check(
-        &format!("<robot{attributes}/>"),
-        "r.urdf:1:1: element with more than 64 attributes",
-    );
+    check(&format!("<robot{attributes}/>"), "r.urdf:1:1: element with more than 64 attributes");
     let crowd = "r.urdf:1:1: the file has too many elements, attributes or namespaces for a robot";
-    check(
-        &format!("<robot>{}</robot>", "<a xmlns:a='b'/>".repeat(300)),
-        crowd,
-    );
+    check(&format!("<robot>{}</robot>", "<a xmlns:a='b'/>".repeat(300)), crowd);
     check(&"<".repeat(2_000_000), crowd);
 }
 
 #[test]
 fn a_huge_file_is_refused() {
-    check(
-        &" ".repeat((16 << 20) + 1),
-        "`r.urdf` has 17 MiB, expected at most 16 MiB",
-    );
+    check(&" ".repeat((16 << 20) + 1), "`r.urdf` has 17 MiB, expected at most 16 MiB");
 }
 
 #[test]

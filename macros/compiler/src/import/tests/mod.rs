@@ -13,10 +13,7 @@ mod malformed;
 mod names;
 
 fn name(text: &str) -> Name {
-    Name {
-        text: text.to_string(),
-        place: Span::call_site().into(),
-    }
+    Name { text: text.to_string(), place: Span::call_site().into() }
 }
 
 /// The options that the attribute has when nothing is said.
@@ -33,10 +30,7 @@ fn defaults() -> UrdfOptions {
 }
 
 fn locked(joints: &[&str]) -> UrdfOptions {
-    UrdfOptions {
-        lock: joints.iter().map(|joint| name(joint)).collect(),
-        ..defaults()
-    }
+    UrdfOptions { lock: joints.iter().map(|joint| name(joint)).collect(), ..defaults() }
 }
 
 /// Compares what `text` gives with `expected`, the indentation of lines and empty lines apart.
@@ -46,10 +40,7 @@ fn check_with(options: &UrdfOptions, text: &str, expected: &str) {
         lines.map(|line| format!("{line}\n")).collect()
     };
     let actual = run(options, text);
-    assert!(
-        trim(&actual) == trim(expected),
-        "expected\n{expected}\nfound\n{actual}"
-    );
+    assert!(trim(&actual) == trim(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
 fn check(text: &str, expected: &str) {
@@ -65,11 +56,7 @@ fn check_robot(inside: &str, expected: &str) {
 fn run(options: &UrdfOptions, text: &str) -> String {
     let mut cx = Diagnostics::new();
     let imported = import_urdf(text, options, &mut cx);
-    assert_eq!(
-        imported.is_some(),
-        cx.is_empty(),
-        "nothing is given just when there is a mistake"
-    );
+    assert_eq!(imported.is_some(), cx.is_empty(), "nothing is given just when there is a mistake");
     match imported {
         Some(imported) => render(&imported),
         None => cx.messages().join("\n"),
@@ -84,11 +71,7 @@ fn render(imported: &Imported) -> String {
 
 fn render_body(body: &Body) -> String {
     let mut line = format!("body {}", body.name.text);
-    for (word, value) in [
-        ("mass", &body.mass),
-        ("com", &body.com),
-        ("inertia", &body.inertia),
-    ] {
+    for (word, value) in [("mass", &body.mass), ("com", &body.com), ("inertia", &body.inertia)] {
         if let Some(value) = value {
             line += &format!(" {word}={}", render_expr(value));
         }
@@ -104,10 +87,7 @@ fn render_joint(joint: &Joint) -> String {
             line += &format!(" {word} {}", render_expr(axis));
         }
     }
-    assert_eq!(
-        joint.normalise_axis,
-        !(joint.about.is_empty() && joint.along.is_empty())
-    );
+    assert_eq!(joint.normalise_axis, !(joint.about.is_empty() && joint.along.is_empty()));
     if let Some(mimic) = &joint.mimic {
         line += &format!(" = {} {} + {}", mimic.multiplier, mimic.joint.text, mimic.offset);
     }
@@ -131,21 +111,13 @@ fn render_list(list: &[Expr]) -> String {
 }
 
 fn render_expr(expr: &Expr) -> String {
-    assert!(
-        expr.place.file.is_some(),
-        "every expression has its place in the file"
-    );
+    assert!(expr.place.file.is_some(), "every expression has its place in the file");
     match &expr.kind {
         ExprKind::Number(value) => value.to_string(),
         ExprKind::Array(items) => format!("[{}]", render_list(items)),
         ExprKind::Call(function, arguments) => format!("{}({})", function.text, render_list(arguments)),
         ExprKind::Method(object, method, arguments) => {
-            format!(
-                "{}.{}({})",
-                render_expr(object),
-                method.text,
-                render_list(arguments)
-            )
+            format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
         }
         other => unreachable!("{other:?}"),
     }
@@ -169,11 +141,8 @@ fn chain(joints: &[(&str, &str)]) -> String {
     let mut text = link("l0");
     for (k, (kind, inside)) in joints.iter().enumerate() {
         let (parent, child) = (format!("l{k}"), format!("l{}", k + 1));
-        text += &format!(
-            "\n{}\n{}",
-            link(&child),
-            joint(&format!("j{}", k + 1), kind, &parent, &child, inside)
-        );
+        text +=
+            &format!("\n{}\n{}", link(&child), joint(&format!("j{}", k + 1), kind, &parent, &child, inside));
     }
     format!("<robot name=\"r\">{text}</robot>")
 }

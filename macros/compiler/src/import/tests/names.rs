@@ -28,11 +28,7 @@ fn joints_come_depth_first_in_alphabetical_order() {
 
 #[test]
 fn the_root_is_held_or_free() {
-    let free = UrdfOptions {
-        base: Base::Free,
-        inputs: true,
-        ..defaults()
-    };
+    let free = UrdfOptions { base: Base::Free, inputs: true, ..defaults() };
     check_with(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
@@ -65,11 +61,7 @@ fn what_is_not_mechanics_is_ignored() {
 #[test]
 fn names_are_given_once() {
     let text = [link("a"), link("b"), link("a")].join("\n");
-    let joints = [
-        joint("j", "fixed", "a", "b", ""),
-        joint("j", "fixed", "b", "a", ""),
-    ]
-    .join("\n");
+    let joints = [joint("j", "fixed", "a", "b", ""), joint("j", "fixed", "b", "a", "")].join("\n");
     check_robot(
         &format!("{text}\n{joints}"),
         "r.urdf:4:13: second link with the name `a`
@@ -94,21 +86,14 @@ fn names_are_given_once() {
 
 #[test]
 fn joints_join_links_that_are_there() {
-    let joints = [
-        joint("j", "fixed", "base", "arms", ""),
-        joint("k", "fixed", "arm", "arm", ""),
-    ]
-    .join("\n");
+    let joints = [joint("j", "fixed", "base", "arms", ""), joint("k", "fixed", "arm", "arm", "")].join("\n");
     check_robot(
         &format!("{}{}\n{joints}", link("base"), link("arm")),
         "r.urdf:3:64: unknown link `arms`
          = help: did you mean `arm`?
          r.urdf:4:63: joint `k` joins a link to itself",
     );
-    check(
-        "<robot/>",
-        "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`",
-    );
+    check("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
 }
 
 #[test]
@@ -172,15 +157,9 @@ fn a_long_chain_needs_no_stack() {
 fn a_crowd_is_refused() {
     let crowd: String = (0..2000).map(|k| link(&format!("l{k}"))).collect();
     let column = 1 + (0..1024).map(|k| link(&format!("l{k}")).len()).sum::<usize>();
-    check_robot(
-        &crowd,
-        &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"),
-    );
+    check_robot(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));
     let crowd = "<joint/>".repeat(2000);
     let messages = run(&defaults(), &format!("<robot>{crowd}</robot>"));
     assert_eq!(messages.matches("r.urdf:1:").count(), 32);
-    assert!(
-        messages.ends_with("`r.urdf` has more mistakes; these are the first 32"),
-        "{messages}"
-    );
+    assert!(messages.ends_with("`r.urdf` has more mistakes; these are the first 32"), "{messages}");
 }

@@ -24,11 +24,7 @@ pub(super) fn assemble(
     let mut joints = vec![root];
     for (joint, child) in &order.joints {
         bodies.extend(links[*child].take());
-        joints.extend(
-            given[*joint]
-                .take()
-                .map(|(joint, motion)| build_joint(joint, motion, options, cx)),
-        );
+        joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
     Imported { bodies, joints }
 }
@@ -36,13 +32,7 @@ pub(super) fn assemble(
 /// The joint that holds the root, which no URDF file names.
 fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
-    let names = || {
-        robot
-            .joints
-            .iter()
-            .map(|j| &j.name.text)
-            .chain(robot.links.iter().map(|l| &l.name.text))
-    };
+    let names = || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
     let mut text = "root_joint".to_string();
     for k in 2.. {
         if names().all(|name| *name != text) {
@@ -50,10 +40,7 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
         }
         text = format!("root_joint{k}");
     }
-    let name = |text: &str| Name {
-        text: text.to_string(),
-        place: link.place.clone(),
-    };
+    let name = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
@@ -63,11 +50,7 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
 
 /// A body's own origin.
 fn end_at(body: Name) -> Endpoint {
-    Endpoint {
-        body,
-        at: None,
-        rotated: Vec::new(),
-    }
+    Endpoint { body, at: None, rotated: Vec::new() }
 }
 
 fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) -> Joint {
@@ -89,11 +72,8 @@ fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) ->
 }
 
 fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut Cx<'_>) -> Joint {
-    let mut parent = Endpoint {
-        body: given.parent.clone(),
-        at: given.origin.at(),
-        rotated: given.origin.rotated(),
-    };
+    let mut parent =
+        Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() };
     if let Motion::Frozen(coordinate) = motion {
         move_end(&mut parent, &given, coordinate, cx);
         return bare_joint(given.name, JointKind::Weld, parent, end_at(given.child));

@@ -63,28 +63,11 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     let moves = kind != JointKind::Weld;
     let has_axis = moves && kind != JointKind::Free;
     let axis = read_axis(axis.filter(|_| has_axis), node, cx);
-    let [damping, friction] = read_dynamics(
-        dynamics.filter(|_| moves && options.honour_passive),
-        word,
-        kind,
-        cx,
-    );
-    let mimic = mimic
-        .filter(|_| moves && options.follow_mimic)
-        .and_then(|mimic| read_mimic(mimic, cx));
+    let [damping, friction] =
+        read_dynamics(dynamics.filter(|_| moves && options.honour_passive), word, kind, cx);
+    let mimic = mimic.filter(|_| moves && options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));
     let (name, parent, child) = (joint?, parent?, child?);
-    Some(FileJoint {
-        name,
-        kind,
-        word,
-        parent,
-        child,
-        origin,
-        axis,
-        mimic,
-        damping,
-        friction,
-    })
+    Some(FileJoint { name, kind, word, parent, child, origin, axis, mimic, damping, friction })
 }
 
 fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
@@ -93,9 +76,7 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     if known.is_none() {
         let place = cx.place(found.range_value().start);
         let message = format!("unknown joint type {}", quote(found.value()));
-        cx.error(&place, message, |d| {
-            d.suggest(found.value(), TYPES.map(|(word, _)| word))
-        });
+        cx.error(&place, message, |d| d.suggest(found.value(), TYPES.map(|(word, _)| word)));
     }
     known.copied()
 }
@@ -109,10 +90,7 @@ fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>)
 
 /// The axis; URDF's default is x.
 fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
-    let default = |place: Place| Placed {
-        value: [1.0, 0.0, 0.0],
-        place,
-    };
+    let default = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
         return default(place(node, cx));
     };
@@ -149,9 +127,5 @@ fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_attributes(node, &["joint"], &["multiplier", "offset"], cx);
     let multiplier = number(node, "multiplier", cx).map_or(1.0, |found| found.value);
     let offset = number(node, "offset", cx).map_or(0.0, |found| found.value);
-    Some(Mimic {
-        joint: name(node, "joint", cx)?,
-        multiplier,
-        offset,
-    })
+    Some(Mimic { joint: name(node, "joint", cx)?, multiplier, offset })
 }

@@ -14,13 +14,8 @@ pub(super) fn read_link(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) 
     check_attributes(node, &["name"], &[], cx);
     let name = name(node, "name", cx);
     let [inertial] = children(node, ["inertial"], cx);
-    let mut body = Body {
-        name: name?,
-        mass: None,
-        com: None,
-        inertia: None,
-        trust_inertia: options.trust_inertia,
-    };
+    let mut body =
+        Body { name: name?, mass: None, com: None, inertia: None, trust_inertia: options.trust_inertia };
     if let Some(inertial) = inertial {
         read_inertial(inertial, &mut body, cx);
     }
@@ -61,25 +56,13 @@ fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr
         None => Expr::number(0.0, &whole),
     });
     let rows = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
-    let rows = rows.map(|row| Expr {
-        kind: ExprKind::Array(row.into()),
-        place: whole.clone(),
-    });
-    let matrix = Expr {
-        kind: ExprKind::Array(rows.into()),
-        place: whole,
-    };
+    let rows = rows.map(|row| Expr { kind: ExprKind::Array(row.into()), place: whole.clone() });
+    let matrix = Expr { kind: ExprKind::Array(rows.into()), place: whole };
     let turns = origin.rotated();
     if turns.is_empty() {
         return Some(matrix);
     }
     let place = origin.rpy.place.clone();
-    let method = Name {
-        text: "rotated".to_string(),
-        place: place.clone(),
-    };
-    Some(Expr {
-        kind: ExprKind::Method(Box::new(matrix), method, turns),
-        place,
-    })
+    let method = Name { text: "rotated".to_string(), place: place.clone() };
+    Some(Expr { kind: ExprKind::Method(Box::new(matrix), method, turns), place })
 }

@@ -65,10 +65,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
 
 fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
-    let mut robot = Robot {
-        links: Vec::new(),
-        joints: Vec::new(),
-    };
+    let mut robot = Robot { links: Vec::new(), joints: Vec::new() };
     for child in elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
@@ -80,11 +77,7 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
         };
         counts[kind] += 1;
         if counts[kind] > MOST {
-            cx.error(
-                &place(child, cx),
-                format!("more than {MOST} elements {}", tag(child)),
-                |d| d,
-            );
+            cx.error(&place(child, cx), format!("more than {MOST} elements {}", tag(child)), |d| d);
             return None;
         }
         match kind {
@@ -93,9 +86,7 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
         }
     }
     if counts[0] == 0 && !cx.failed() {
-        cx.error(&place(node, cx), "robot without a link", |d| {
-            d.help("expected `<link name=\"…\"/>`")
-        });
+        cx.error(&place(node, cx), "robot without a link", |d| d.help("expected `<link name=\"…\"/>`"));
     }
     Some(robot)
 }

@@ -17,23 +17,14 @@ pub(super) enum Motion {
 
 /// Finds out what moves each joint. Locks come first: what follows a locked joint stands still as well.
 pub(super) fn resolve_motions(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) -> Option<Vec<Motion>> {
-    let index: BTreeMap<&str, usize> = joints
-        .iter()
-        .enumerate()
-        .map(|(k, joint)| (joint.name.text.as_str(), k))
-        .collect();
+    let index: BTreeMap<&str, usize> =
+        joints.iter().enumerate().map(|(k, joint)| (joint.name.text.as_str(), k)).collect();
     let mut locked = vec![false; joints.len()];
     for lock in locks.iter().filter_map(|lock| index.get(lock.text.as_str())) {
         locked[*lock] = true;
     }
     let leaders: Vec<Option<usize>> = (0..joints.len())
-        .map(|k| {
-            if locked[k] {
-                None
-            } else {
-                find_leader(&joints[k], joints, &index, cx)
-            }
-        })
+        .map(|k| if locked[k] { None } else { find_leader(&joints[k], joints, &index, cx) })
         .collect();
     report_circles(joints, &leaders, cx);
     // The chains end only if there are no circles.
@@ -57,10 +48,8 @@ fn find_leader(
     let mimic = joint.mimic.as_ref()?;
     let place = &mimic.joint.place;
     let Some(leader) = index.get(mimic.joint.text.as_str()).copied() else {
-        let names = joints
-            .iter()
-            .filter(|other| other.has_coordinate())
-            .map(|other| other.name.text.as_str());
+        let names =
+            joints.iter().filter(|other| other.has_coordinate()).map(|other| other.name.text.as_str());
         let message = format!("unknown joint {}", quote(&mimic.joint.text));
         cx.error(place, message, |d| d.suggest(&mimic.joint.text, names));
         return None;
@@ -127,13 +116,6 @@ fn follow(
     if locked[at] || factor == 0.0 {
         return Motion::Frozen(offset);
     }
-    let joint = Name {
-        text: joints[at].name.text.clone(),
-        place: mimic.joint.place.clone(),
-    };
-    Motion::Follows(Mimic {
-        joint,
-        multiplier: factor,
-        offset,
-    })
+    let joint = Name { text: joints[at].name.text.clone(), place: mimic.joint.place.clone() };
+    Motion::Follows(Mimic { joint, multiplier: factor, offset })
 }

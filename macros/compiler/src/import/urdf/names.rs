@@ -12,9 +12,7 @@ pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
     for link in robot.links.iter().filter(|link| link.name.text == "ground") {
         let message = "a link cannot be called `ground`: the fixed frame has this name";
-        cx.error(&link.name.place, message, |d| {
-            d.help("give the link another name")
-        });
+        cx.error(&link.name.place, message, |d| d.help("give the link another name"));
     }
 }
 
@@ -23,9 +21,7 @@ fn check_unique<'a>(names: impl Iterator<Item = &'a Name>, what: &str, cx: &mut 
     for name in names {
         if let Some(first) = seen.get(name.text.as_str()).copied() {
             let message = format!("second {what} with the name {}", quote(&name.text));
-            cx.error(&name.place, message, |d| {
-                d.help(format!("the first is at {}", position(first)))
-            });
+            cx.error(&name.place, message, |d| d.help(format!("the first is at {}", position(first))));
         } else {
             seen.insert(name.text.as_str(), &name.place);
         }
@@ -41,9 +37,7 @@ pub(super) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
         for end in [&joint.parent, &joint.child] {
             if !known.contains_key(end.text.as_str()) {
                 let message = format!("unknown link {}", quote(&end.text));
-                cx.error(&end.place, message, |d| {
-                    d.suggest(&end.text, links.iter().copied())
-                });
+                cx.error(&end.place, message, |d| d.suggest(&end.text, links.iter().copied()));
             }
         }
         if joint.parent.text == joint.child.text {
@@ -58,27 +52,16 @@ pub(super) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
 }
 
 fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
-    let (link, a, b) = (
-        quote(&second.child.text),
-        quote(&first.name.text),
-        quote(&second.name.text),
-    );
-    cx.error(
-        &second.child.place,
-        format!("link {link} is the child of two joints, {a} and {b}"),
-        |d| {
-            d.help(format!("the first is at {}", position(&first.child.place)))
-                .help("the links of a URDF file form a tree; it has no closed loops")
-        },
-    );
+    let (link, a, b) = (quote(&second.child.text), quote(&first.name.text), quote(&second.name.text));
+    cx.error(&second.child.place, format!("link {link} is the child of two joints, {a} and {b}"), |d| {
+        d.help(format!("the first is at {}", position(&first.child.place)))
+            .help("the links of a URDF file form a tree; it has no closed loops")
+    });
 }
 
 /// Reports locked joints that are not there.
 pub(super) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
-    for lock in locks
-        .iter()
-        .filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text))
-    {
+    for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());
         let message = format!("unknown joint {} in `lock`", quote(&lock.text));
         cx.error(&lock.place, message, |d| d.suggest(&lock.text, names));

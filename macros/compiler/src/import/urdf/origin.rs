@@ -23,9 +23,7 @@ impl Origin {
     /// carried axes in the opposite order: `R = R_z(yaw) R_y(pitch) R_x(roll)`.
     pub(super) fn rotated(&self) -> Vec<Expr> {
         let [roll, pitch, yaw] = self.rpy.value;
-        let turns = [("z", yaw), ("y", pitch), ("x", roll)]
-            .into_iter()
-            .filter(|(_, angle)| *angle != 0.0);
+        let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);
         turns.map(|(axis, angle)| turn(axis, angle, self)).collect()
     }
 
@@ -45,23 +43,15 @@ fn turn(axis: &str, angle: f64, origin: &Origin) -> Expr {
 
 /// Reads the `<origin>` of `owner`; without one, the frames coincide.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
-    let zero = |node| Placed {
-        value: [0.0; 3],
-        place: place(node, cx),
-    };
+    let zero = |node| Placed { value: [0.0; 3], place: place(node, cx) };
     let Some(node) = node else {
-        return Origin {
-            xyz: zero(owner),
-            rpy: zero(owner),
-        };
+        return Origin { xyz: zero(owner), rpy: zero(owner) };
     };
     let (no_xyz, no_rpy) = (zero(node), zero(node));
     check_attributes(node, &[], &["xyz", "rpy"], cx);
     if let Some(found) = node.attribute_node("quat_xyzw") {
         let place = cx.place(found.range().start);
-        cx.error(&place, "`quat_xyzw` is not supported", |d| {
-            d.help("expected `rpy=\"roll pitch yaw\"`")
-        });
+        cx.error(&place, "`quat_xyzw` is not supported", |d| d.help("expected `rpy=\"roll pitch yaw\"`"));
     }
     let xyz = numbers(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = numbers(node, "rpy", cx).unwrap_or(no_rpy);

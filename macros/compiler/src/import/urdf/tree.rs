@@ -15,13 +15,8 @@ pub(super) struct Order {
 /// Orders the joints; `None` if the links do not form one tree. Their names are known to be good.
 pub(super) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
     let index = |(k, name): (usize, &str)| (name.to_string(), k);
-    let links: BTreeMap<String, usize> = robot
-        .links
-        .iter()
-        .map(|link| link.name.text.as_str())
-        .enumerate()
-        .map(index)
-        .collect();
+    let links: BTreeMap<String, usize> =
+        robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(index).collect();
     let ends: Option<Vec<(usize, usize)>> = robot
         .joints
         .iter()
@@ -34,10 +29,7 @@ pub(super) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
     }
     report_cycles(robot, &ends, &above, cx);
     let root = find_root(robot, &above, cx)?;
-    Some(Order {
-        root,
-        joints: depth_first(robot, root, &ends),
-    })
+    Some(Order { root, joints: depth_first(robot, root, &ends) })
 }
 
 /// The link without a parent. With none, a cycle has been reported.
@@ -84,14 +76,9 @@ fn report_cycle(
         return;
     };
     let rest = std::iter::successors(up(&link), up).take_while(|l| *l != link);
-    let links = std::iter::once(link)
-        .chain(rest)
-        .map(|l| robot.links[l].name.text.as_str());
+    let links = std::iter::once(link).chain(rest).map(|l| robot.links[l].name.text.as_str());
     let message = format!("links {} hang from one another", quote_all(links));
-    let help = format!(
-        "joint {} closes the circle; a tree has a root",
-        quote(&joint.name.text)
-    );
+    let help = format!("joint {} closes the circle; a tree has a root", quote(&joint.name.text));
     cx.error(&joint.parent.place, message, |d| d.help(help));
 }
 

@@ -1,0 +1,215 @@
+//! Two derivations of one mechanism agree: the recursive algorithms in link axes, and Lagrange's equations from
+//! energies written out in the ground frame. On random trees of every joint, with random bodies, parameters, springs,
+//! dashpots, inputs and states.
+
+mod random_tree;
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::diff::Derivative;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
+use linkwork_compiler::mechanics::regularity::random_configuration;
+use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
+use linkwork_compiler::model::{Direction, Input, LinkId, Model, Quantity, build_model, sample};
+use linkwork_compiler::{lower, read};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use random_tree::{Tree, trees};
+use std::path::Path;
+
+/// Relative to the largest entry of the reference.
+const TOLERANCE: f64 = 1e-10;
+
+fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
+    let (arguments, item) = tree.source();
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
+    match model {
+        Some(model) => check(&model),
+        None => panic!("{}\n{item}", cx.messages().join("\n")),
+    }
+}
+
+/// Numbers for all symbols at a random state.
+fn values(model: &Model<'_>, seed: u64, e: &[Expr<'_>]) -> Vec<f64> {
+    let q = random_configuration(model, seed);
+    eval(e, &|s| match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        Quantity::Parameter(_) => sample(s, seed),
+        _ => 4.0 * (sample(s, seed) - 1.0),
+    })
+}
+
+fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
+    let (a, b) = (values(model, seed, a), values(model, seed, b));
+    let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for (k, (a, b)) in a.iter().zip(&b).enumerate() {
+        assert!((a - b).abs() <= TOLERANCE * scale, "{what}, entry {k}: {a} and {b} (seed {seed})");
+    }
+}
+
+/// `M x + h`.
+fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
+}
+
+fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+    m.iter().flatten().copied().collect()
+}
+
+fn check_dynamics(model: &Model<'_>, seed: u64) {
+    let joints = mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let reference = lagrange::derive(model, &joints);
+    let mass = crba::mass_matrix(model, &joints);
+    let bias = rnea::inverse_dynamics(model, &joints, &v, None);
+    let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
+    assert_close("mass matrix", model, seed, &flat(&mass), &flat(&reference.mass_matrix));
+    assert_close("bias", model, seed, &bias, &reference.bias);
+    assert_close("inverse dynamics", model, seed, &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
+    let kinetic = energy::kinetic_energy(model, &joints, &v);
+    let potential = energy::potential_energy(model, &joints);
+    assert_close("energies", model, seed, &[kinetic, potential], &[reference.kinetic, reference.potential]);
+    let p = momentum::generalized_momentum(model, &joints, &v);
+    let zero = vec![model.graph.zero(); model.nv()];
+    assert_close("momentum", model, seed, &p, &apply(&reference.mass_matrix, &v, &zero));
+    check_momentum_rate(model, &joints, &p, &bias, seed);
+    check_forward(model, &joints, &mass, &tau, &bias, &a, seed);
+    check_lowering(model, &tau, seed);
+}
+
+/// ṗ = Ṁ v + M a and τ = M a + h, so the rate without τ is Ṁ v − h: the derivative of `M v` along the motion.
+fn check_momentum_rate<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    p: &[Expr<'g>],
+    h: &[Expr<'g>],
+    seed: u64,
+) {
+    let rates = lagrange::configuration_rates(model);
+    let mut expected: Vec<Expr<'g>> = h.iter().map(|h| -*h).collect();
+    for (k, rate) in rates.iter().enumerate() {
+        let mut d = Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph);
+        for (sum, p) in expected.iter_mut().zip(p) {
+            *sum += d.of(*p) * *rate;
+        }
+    }
+    let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
+    assert_close("momentum rate", model, seed, &rate, &expected);
+}
+
+fn check_forward<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+    tau: &[Expr<'g>],
+    bias: &[Expr<'g>],
+    a: &[Expr<'g>],
+    seed: u64,
+) {
+    let r: Vec<Expr<'g>> = tau.iter().zip(bias).map(|(t, h)| *t - *h).collect();
+    let articulated = aba::accelerations(model, joints, &r).expect("no coordinate is coupled");
+    assert_close("articulated bodies", model, seed, &articulated, a);
+    let factorised = ldl::solve(mass.clone(), r, joints);
+    assert_close("factorisation", model, seed, &factorised, a);
+}
+
+/// The lowered program and its fused form compute what the graph says.
+fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
+    let q = random_configuration(model, seed);
+    let symbol = |s| match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        _ => sample(s, seed),
+    };
+    let direct = eval(tau, &symbol);
+    let program = lower::lower(tau);
+    let (plain, fused) = (program.run(&symbol), program.fused().run(&symbol));
+    let scale = direct.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for k in 0..direct.len() {
+        assert!((plain[k] - direct[k]).abs() <= 1e-13 * scale, "{} and {}", plain[k], direct[k]);
+        assert!((fused[k] - direct[k]).abs() <= 1e-12 * scale, "{} and {}", fused[k], direct[k]);
+    }
+}
+
+/// Generalized forces are the derivatives of the inputs' power by the velocities: the power of a force is its product
+/// with the velocity of its point, found here by differentiating the point's position in the ground frame.
+fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
+    let g = model.graph;
+    let joints = mechanics::joints(model);
+    let world = world_frames(&joints, g);
+    let mut power = g.zero();
+    for (k, (_, input)) in model.inputs.iter().enumerate() {
+        let u = Quantity::Input(k).expr(g);
+        power += u * match input {
+            Input::Coordinate(c) => mechanics::rate(model, c),
+            Input::Force { link, point, along } => {
+                let (r, p) = &world[link.0];
+                ground_vector(along, &world, g).dot(velocity(model, *p + *r * *point))
+            }
+            Input::Torque { link, about } => {
+                ground_vector(about, &world, g).dot(angular_velocity(model, &world[link.0].0))
+            }
+        };
+    }
+    let expected: Vec<Expr<'g>> = (0..model.nv())
+        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).of(power))
+        .collect();
+    assert_close("inputs", model, seed, &forces::generalized_forces(model, &joints), &expected);
+}
+
+fn world_frames<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Vec3<'g>)> {
+    let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
+    for joint in joints {
+        let (r, p) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |LinkId(p)| world[p]);
+        world.push((r * joint.rotation.matrix(), p + r * joint.translation));
+    }
+    world
+}
+
+fn ground_vector<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g Graph) -> Vec3<'g> {
+    d.iter().fold(Vec3::zero(g), |sum, (link, v)| sum + link.map_or(*v, |l| world[l.0].0 * *v))
+}
+
+fn along<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+    let rates = lagrange::configuration_rates(model);
+    rates.iter().enumerate().fold(model.graph.zero(), |sum, (k, rate)| {
+        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).of(e) * *rate
+    })
+}
+
+fn velocity<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
+    p.map(|c| along(model, c))
+}
+
+/// From `Ṙ Rᵀ = [ω]×`, in ground axes.
+fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
+    let rate = Mat3::from_fn(|i, j| along(model, r.0[i][j]));
+    let w = rate * r.transpose();
+    Vec3([w.0[2][1], w.0[0][2], w.0[1][0]])
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_261_120),
+        ..Default::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(config(60))]
+
+    #[test]
+    fn lagrange_and_the_recursions_agree(tree in trees(3), seed in 0_u64..1000) {
+        with_model(&tree, |model| check_dynamics(model, seed));
+    }
+
+    #[test]
+    fn inputs_do_the_work_of_their_forces(tree in trees(4), seed in 0_u64..1000) {
+        with_model(&tree, |model| check_inputs(model, seed));
+    }
+}

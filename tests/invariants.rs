@@ -1,0 +1,617 @@
+//! What every mechanism obeys, whatever its equations are.
+
+use linkwork::integrate::{DormandPrince, Rk4};
+use linkwork::nalgebra::{SMatrix, SVector, Vector3};
+use linkwork::{Mechanism, Real, frame, mechanism, simulate};
+use support::compare::{assert_close, assert_same_dynamics};
+use support::mechanisms::*;
+use support::random::Random;
+use support::robots::*;
+
+/// Derivative at zero by central differences of fourth order; for motions of order one good to about 1e-11.
+fn rate<const R: usize, const C: usize>(f: impl Fn(f64) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
+    let h = 1e-3;
+    ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+}
+
+/// The same for a number.
+fn slope(f: impl Fn(f64) -> f64) -> f64 {
+    rate(|s| SMatrix::<f64, 1, 1>::new(f(s)))[0]
+}
+
+/// Differences.
+const RATE: f64 = 1e-8;
+/// Identities between generated functions.
+const IDENTITY: f64 = 1e-11;
+
+/// What follows from the trait alone. `dissipation` is the power that dashpots take at velocity `v`.
+fn check<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    dissipation: impl Fn(&SVector<f64, NV>) -> f64,
+) where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(3);
+    for _ in 0..4 {
+        let q = random.configuration(m);
+        let (v, tau) = (random.vector(1.0), random.vector(1.0));
+        check_equation_of_motion(m, &q, &v, &tau);
+        check_energy(m, &q, &v, &tau, dissipation(&v));
+        check_configurations(m, &q, &v, &random.vector(1.0));
+    }
+}
+
+fn check_equation_of_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    tau: &SVector<f64, NV>,
+) where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mass_matrix = m.mass_matrix(q);
+    assert_eq!(mass_matrix, mass_matrix.transpose(), "both triangles of the mass matrix");
+    assert!(mass_matrix.cholesky().is_some(), "the mass matrix is positive definite");
+    let momentum = m.generalized_momentum(q, v);
+    assert_close("p = M v", momentum.as_slice(), (mass_matrix * v).as_slice(), IDENTITY);
+    let kinetic = m.kinetic_energy(q, v);
+    assert_close("T = ½ vᵀ M v", &[kinetic], &[v.dot(&momentum) / 2.0], IDENTITY);
+    let forces = mass_matrix * tau + m.bias_forces(q, v);
+    assert_close("τ = M a + h", m.inverse_dynamics(q, v, tau).as_slice(), forces.as_slice(), IDENTITY);
+    let acceleration = m.forward_dynamics(q, v, tau);
+    let back = m.inverse_dynamics(q, v, &acceleration);
+    assert_close("inverse of forward dynamics", back.as_slice(), tau.as_slice(), 1e-9);
+
+    let momentum_at = |s: f64| m.generalized_momentum(&m.integrate(q, &(v * s)), &(v + acceleration * s));
+    let expected = m.momentum_rate(q, v) + tau;
+    assert_close("ṗ", expected.as_slice(), rate(momentum_at).as_slice(), RATE);
+}
+
+fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    tau: &SVector<f64, NV>,
+    dissipation: f64,
+) where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let gradient = SVector::<f64, NV>::from_fn(|i, _| {
+        let mut direction = SVector::<f64, NV>::zeros();
+        direction[i] = 1.0;
+        slope(|s| m.potential_energy(&m.integrate(q, &(direction * s))))
+    });
+    let still = m.bias_forces(q, &SVector::zeros());
+    assert_close("h(q, 0) = ∂U/∂q", still.as_slice(), gradient.as_slice(), RATE);
+
+    let acceleration = m.forward_dynamics(q, v, tau);
+    let power = slope(|s| {
+        let q = m.integrate(q, &(v * s));
+        m.kinetic_energy(&q, &(v + acceleration * s)) + m.potential_energy(&q)
+    });
+    assert_close("d(T + U)/dt", &[power], &[v.dot(tau) - dissipation], RATE);
+}
+
+fn check_configurations<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    dv: &SVector<f64, NV>,
+) where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    assert_close("q ⊕ 0", m.integrate(q, &SVector::zeros()).as_slice(), q.as_slice(), 1e-15);
+    let (once, twice) = (m.integrate(q, &(v * 0.7)), m.integrate(&m.integrate(q, &(v * 0.4)), &(v * 0.3)));
+    assert_close("motion with constant velocity", twice.as_slice(), once.as_slice(), 1e-14);
+
+    let moved = m.integrate(q, dv);
+    let rate_of_dv = m.tangent_rate(dv, v);
+    let through_dv = rate(|s| m.integrate(q, &(dv + rate_of_dv * s)));
+    let directly = rate(|s| m.integrate(&moved, &(v * s)));
+    assert_close("tangent rate", through_dv.as_slice(), directly.as_slice(), RATE);
+    assert_close("difference", m.difference(q, &moved).as_slice(), dv.as_slice(), 1e-13);
+}
+
+/// Without dashpots, what depends on the velocity in the bias forces is quadratic in it.
+fn check_undamped<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    check(m, |_| 0.0);
+    let mut random = Random::new(4);
+    let q = random.configuration(m);
+    let v = random.vector(1.0);
+    let still = m.bias_forces(&q, &SVector::zeros());
+    let (single, double) = (m.bias_forces(&q, &v) - still, m.bias_forces(&q, &(v * 2.0)) - still);
+    assert_close("h(q, 2 v)", double.as_slice(), (single * 4.0).as_slice(), IDENTITY);
+}
+
+macro_rules! undamped {
+    ($($test:ident: $mechanism:expr,)*) => {
+        $(
+            #[test]
+            fn $test() {
+                check_undamped(&$mechanism);
+            }
+        )*
+    };
+}
+
+undamped! {
+    cart_pole_file: CartPole,
+    double_pendulum_file: DoublePendulum,
+    ur5: Ur5,
+    kinova: Kinova,
+    panda: Panda,
+    panda_mimic: PandaMimic,
+    panda_arm: PandaArm,
+    solo12: Solo12,
+    humanoid: Humanoid,
+    pin: OnPin {},
+    slanted_pin: OnSlantedPin {},
+    sleeve: OnSleeve {},
+    screw: OnScrew {},
+    screw_with_lead: OnScrewWithLead {},
+    collar: OnCollar {},
+    slot: OnSlot {},
+    universal: OnUniversal {},
+    ball: OnBall {},
+    planar: OnPlanar {},
+    stage: OnStage {},
+    stage3: OnStage3 {},
+    free: OnFree {},
+    weld: OnWeld {},
+    spacecraft: Spacecraft {},
+}
+
+/// Dashpots take `c v²`.
+#[test]
+fn dashpots() {
+    let m = workshop();
+    check(&m, |v| {
+        m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
+    });
+}
+
+// ---- Frames and the mechanism as a whole -------------------------------------------------------------------------
+
+/// Placement, velocity, acceleration and Jacobian of a frame, centre of mass and momentum: each is the rate of the
+/// one before it.
+macro_rules! check_kinematics {
+    ($mechanism:expr, $type:ident, $frame:literal) => {
+        let m = $mechanism;
+        let frame = frame!($type, $frame);
+        let mut random = Random::new(5);
+        for _ in 0..4 {
+            let q = random.configuration(&m);
+            let (v, a) = (random.vector(1.0), random.vector(1.0));
+            let at = |s: f64| (m.integrate(&q, &(v * s)), v + a * s);
+            let (velocity, turning) = {
+                let velocity = m.frame_velocity(frame, &q, &v);
+                (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned())
+            };
+
+            let through_jacobian = m.frame_jacobian(frame, &q) * v;
+            assert_close(
+                "J v",
+                through_jacobian.as_slice(),
+                m.frame_velocity(frame, &q, &v).as_slice(),
+                IDENTITY,
+            );
+            let moving = rate(|s| m.frame_placement(frame, &at(s).0).translation.vector);
+            assert_close("velocity", velocity.as_slice(), moving.as_slice(), RATE);
+            let rotation = m.frame_placement(frame, &q).rotation.into_inner();
+            let rotating = rate(|s| m.frame_placement(frame, &at(s).0).rotation.into_inner());
+            let expected = turning.cross_matrix() * rotation;
+            assert_close("angular velocity", expected.as_slice(), rotating.as_slice(), RATE);
+            let accelerating = rate(|s| m.frame_velocity(frame, &at(s).0, &at(s).1));
+            let acceleration = m.frame_acceleration(frame, &q, &v, &a);
+            assert_close("acceleration", acceleration.as_slice(), accelerating.as_slice(), RATE);
+
+            let momentum = m.momentum(&q, &v);
+            let drift = rate(|s| m.center_of_mass(&at(s).0)) * m.total_mass();
+            assert_close("momentum", &momentum.as_slice()[..3], drift.as_slice(), RATE);
+        }
+    };
+}
+
+#[test]
+fn frames_move_as_they_say() {
+    check_kinematics!(Panda, Panda, "panda_hand_tcp");
+    check_kinematics!(Solo12, Solo12, "HR_FOOT");
+    check_kinematics!(OnScrew {}, OnScrew, "carried");
+    check_kinematics!(OnSlot {}, OnSlot, "carried");
+    check_kinematics!(OnBall {}, OnBall, "carried");
+    check_kinematics!(OnPlanar {}, OnPlanar, "carried");
+    check_kinematics!(OnFree {}, OnFree, "carried");
+    check_kinematics!(OnWeld {}, OnWeld, "carried");
+    check_kinematics!(workshop(), Workshop, "tip");
+}
+
+/// A robot in the air: whatever its motors do, its momentum changes by its weight alone.
+#[test]
+fn motors_do_not_change_the_momentum() {
+    let mut random = Random::new(6);
+    for _ in 0..4 {
+        let q = random.configuration(&Solo12);
+        let (v, u) = (random.vector(1.0), random.vector(1.0));
+        let a = Solo12.forward_dynamics(&q, &v, &Solo12.generalized_forces(&q, &u));
+        let rate = rate(|s| Solo12.momentum(&Solo12.integrate(&q, &(v * s)), &(v + a * s)));
+        let expected = [0.0, 0.0, -9.81 * Solo12.total_mass(), 0.0, 0.0, 0.0];
+        assert_close("force and torque from outside", rate.as_slice(), &expected, RATE);
+    }
+}
+
+// ---- Inputs ------------------------------------------------------------------------------------------------------
+
+/// The power of an input is its force times the velocity of the point that it acts on.
+#[test]
+fn inputs_work_where_they_act() {
+    let m = workshop();
+    assert_eq!(Workshop::INPUTS, ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]);
+    assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
+    let mut random = Random::new(7);
+    for _ in 0..10 {
+        let q = random.configuration(&m);
+        let (v, u): (_, SVector<f64, 7>) = (random.vector(1.0), random.vector(1.0));
+        let tip = m.frame_velocity(frame!(Workshop, "tip"), &q, &v);
+        let carriage = m.frame_placement(frame!(Workshop, "carriage"), &q).rotation;
+        let (velocity, turning) =
+            (Vector3::new(tip[0], tip[1], tip[2]), Vector3::new(tip[3], tip[4], tip[5]));
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        let powers = [
+            v[0],
+            v[1],
+            v[2],
+            velocity.dot(&(carriage * x)),
+            velocity.dot(&y),
+            turning.dot(&(carriage * z)),
+            turning.dot(&(z * 0.6 - x * 0.8)),
+        ];
+        for (i, power) in powers.iter().enumerate() {
+            let mut one = SVector::zeros();
+            one[i] = u[i];
+            let done = v.dot(&m.generalized_forces(&q, &one));
+            assert_close(Workshop::INPUTS[i], &[done], &[power * u[i]], IDENTITY);
+        }
+        let all: f64 = powers.iter().zip(&u).map(|(p, u)| p * u).sum();
+        assert_close("all inputs", &[v.dot(&m.generalized_forces(&q, &u))], &[all], IDENTITY);
+    }
+}
+
+// ---- Joints ------------------------------------------------------------------------------------------------------
+
+#[test]
+fn names_of_coordinates() {
+    assert_eq!(OnPin::CONFIGURATION, ["pivot", "joint"]);
+    assert_eq!(OnSlot::CONFIGURATION, ["pivot", "joint.slide", "joint.turn"]);
+    assert_eq!(OnCollar::VELOCITIES, ["pivot", "joint.slide", "joint.turn"]);
+    assert_eq!(OnUniversal::CONFIGURATION, ["pivot", "joint.first", "joint.second"]);
+    assert_eq!(OnPlanar::CONFIGURATION, ["pivot", "joint.x", "joint.y", "joint.angle"]);
+    assert_eq!(OnStage::CONFIGURATION, ["pivot", "joint.x", "joint.y"]);
+    assert_eq!(OnStage3::VELOCITIES, ["pivot", "joint.x", "joint.y", "joint.z"]);
+    assert_eq!(OnBall::CONFIGURATION, ["pivot", "joint.qx", "joint.qy", "joint.qz", "joint.qw"]);
+    assert_eq!(OnBall::VELOCITIES, ["pivot", "joint.wx", "joint.wy", "joint.wz"]);
+    assert_eq!(
+        OnFree::CONFIGURATION,
+        ["pivot", "joint.x", "joint.y", "joint.z", "joint.qx", "joint.qy", "joint.qz", "joint.qw"]
+    );
+    assert_eq!(
+        OnFree::VELOCITIES,
+        ["pivot", "joint.vx", "joint.vy", "joint.vz", "joint.wx", "joint.wy", "joint.wz"]
+    );
+    assert_eq!(OnWeld::CONFIGURATION, ["pivot"]);
+}
+
+/// Coordinates come in the order in which joints are declared, whatever the order along the tree.
+#[test]
+fn joints_may_be_declared_in_any_order() {
+    macro_rules! arm {
+        ($name:ident: $($joints:tt)*) => {
+            #[mechanism(gravity = -9.81 * y)]
+            struct $name {
+                $($joints)*
+                #[body(mass = 1, com = 0.1 * x, inertia = diagonal(0.1, 0.2, 0.25))]
+                hand: Body,
+                #[body(mass = 3, com = 0.2 * x, inertia = diagonal(0.2, 0.3, 0.4))]
+                arm: Body,
+                #[body(mass = 2, com = 0.3 * y, inertia = diagonal(0.3, 0.1, 0.3))]
+                sail: Body,
+                #[acts(on = wrist)]
+                motor: Torque,
+                #[acts(on = shoulder, stiffness = 3)]
+                spring: Spring,
+            }
+        };
+    }
+    arm! { FromTheGround:
+        #[joint(ground -> arm, about = z)]
+        shoulder: Pin,
+        #[joint(arm.at(0.4 * x) -> hand, about = y)]
+        wrist: Pin,
+        #[joint(arm.at(0.1 * y) -> sail)]
+        mast: Ball,
+    }
+    arm! { FromTheHand:
+        #[joint(arm.at(0.1 * y) -> sail)]
+        mast: Ball,
+        #[joint(arm.at(0.4 * x) -> hand, about = y)]
+        wrist: Pin,
+        #[joint(ground -> arm, about = z)]
+        shoulder: Pin,
+    }
+    assert_eq!(FromTheHand::CONFIGURATION, ["mast.qx", "mast.qy", "mast.qz", "mast.qw", "wrist", "shoulder"]);
+    assert_eq!(FromTheHand::VELOCITIES, ["mast.wx", "mast.wy", "mast.wz", "wrist", "shoulder"]);
+    check_undamped(&FromTheHand {});
+
+    let (usual, turned) = (FromTheGround {}, FromTheHand {});
+    let turn_v = |v: &SVector<f64, 5>| SVector::from([v[2], v[3], v[4], v[1], v[0]]);
+    let mut random = Random::new(15);
+    let q = random.configuration(&usual);
+    let (v, a) = (random.vector(1.0), random.vector(1.0));
+    let turned_q = SVector::from([q[2], q[3], q[4], q[5], q[1], q[0]]);
+    let forces = turn_v(&usual.inverse_dynamics(&q, &v, &a));
+    let turned_forces = turned.inverse_dynamics(&turned_q, &turn_v(&v), &turn_v(&a));
+    assert_close("forces", turned_forces.as_slice(), forces.as_slice(), IDENTITY);
+    let motor = turn_v(&usual.generalized_forces(&q, &SVector::from([2.0])));
+    let turned_motor = turned.generalized_forces(&turned_q, &SVector::from([2.0]));
+    assert_close("motor", turned_motor.as_slice(), motor.as_slice(), IDENTITY);
+}
+
+/// A free joint moves by the exponential of SE(3), for small and for large motions.
+#[test]
+fn free_joint_moves_on_a_screw() {
+    let mut random = Random::new(16);
+    let frame = frame!(Spacecraft, "hub");
+    for size in [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.4, 0.6, 3.0, 10.0] {
+        let q = random.configuration(&Spacecraft {});
+        let mut dv: SVector<f64, 12> = random.vector(size);
+        dv.fixed_rows_mut::<6>(6).fill(0.0);
+        let (linear, angular) = (Vector3::new(dv[0], dv[1], dv[2]), Vector3::new(dv[3], dv[4], dv[5]));
+        let mut twist = SMatrix::<f64, 4, 4>::zeros();
+        twist.fixed_view_mut::<3, 3>(0, 0).copy_from(&angular.cross_matrix());
+        twist.fixed_view_mut::<3, 1>(0, 3).copy_from(&linear);
+        let expected = Spacecraft {}.frame_placement(frame, &q).to_homogeneous() * twist.exp();
+        let moved = Spacecraft {}.integrate(&q, &dv);
+        let actual = Spacecraft {}.frame_placement(frame, &moved).to_homogeneous();
+        assert_close(
+            format!("motion of size {size}"),
+            actual.as_slice(),
+            expected.as_slice(),
+            1e-14 * (10.0 + size),
+        );
+        assert_close("unit quaternion", &[moved.fixed_rows::<4>(3).norm()], &[1.0], 1e-15);
+    }
+}
+
+/// Joints with several coordinates are chains of pins and sleeves with nothing between them.
+#[test]
+fn joints_are_chains_of_pins_and_sleeves() {
+    assert_same_dynamics(&OnCollar {}, &ChainedCollar {}, 10, IDENTITY);
+    assert_same_dynamics(&OnSlot {}, &ChainedSlot {}, 10, IDENTITY);
+    assert_same_dynamics(&OnUniversal {}, &ChainedUniversal {}, 10, IDENTITY);
+    assert_same_dynamics(&OnPlanar {}, &ChainedPlanar {}, 10, IDENTITY);
+    assert_same_dynamics(&OnPlanarAlong {}, &ChainedPlanar {}, 10, IDENTITY);
+    assert_same_dynamics(&OnStage {}, &ChainedStage {}, 10, IDENTITY);
+    assert_same_dynamics(&OnStage3 {}, &ChainedStage3 {}, 10, IDENTITY);
+}
+
+/// A screw is a collar whose slide is the pitch times the turn.
+macro_rules! check_screw {
+    ($screw:expr, $pitch:expr) => {
+        let (screw, collar, pitch): (_, _, f64) = ($screw, OnCollar {}, $pitch);
+        let coupling = SMatrix::<f64, 3, 2>::new(1.0, 0.0, 0.0, pitch, 0.0, 1.0);
+        let mut random = Random::new(8);
+        for _ in 0..10 {
+            let (q, v, a) = (random.vector(2.0), random.vector(2.0), random.vector(2.0));
+            let (cq, cv, ca) = (coupling * q, coupling * v, coupling * a);
+            let mass_matrix = coupling.transpose() * collar.mass_matrix(&cq) * coupling;
+            assert_close("mass matrix", screw.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), IDENTITY);
+            let forces = coupling.transpose() * collar.inverse_dynamics(&cq, &cv, &ca);
+            assert_close(
+                "forces",
+                screw.inverse_dynamics(&q, &v, &a).as_slice(),
+                forces.as_slice(),
+                IDENTITY,
+            );
+            let acceleration = screw.forward_dynamics(&q, &v, &forces);
+            assert_close("forward dynamics", acceleration.as_slice(), a.as_slice(), IDENTITY);
+            let energies = [screw.kinetic_energy(&q, &v), screw.potential_energy(&q)];
+            let expected = [collar.kinetic_energy(&cq, &cv), collar.potential_energy(&cq)];
+            assert_close("energies", &energies, &expected, IDENTITY);
+        }
+    };
+}
+
+#[test]
+fn screw_is_a_collar_with_a_pitch() {
+    check_screw!(OnScrew {}, 0.05);
+    check_screw!(OnScrewWithLead {}, 0.3 / std::f64::consts::TAU);
+}
+
+/// The state and acceleration of a ball or free joint that moves as a chain does: found from the chain's frames.
+macro_rules! check_against_chain {
+    ($joint:ident, $chain:ident, $first:literal) => {
+        let (joint, chain) = ($joint {}, $chain {});
+        let (socket, last) = (frame!($chain, "socket"), frame!($chain, "last"));
+        let mut random = Random::new(9);
+        for _ in 0..10 {
+            let (q, v, a) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
+            let relative = chain.frame_placement(socket, &q).inv_mul(&chain.frame_placement(last, &q));
+            // Motion relative to the socket: that of the chain with the pivot at rest, in axes of the last body.
+            let (mut v_only, mut a_only) = (v, a);
+            (v_only[0], a_only[0]) = (0.0, 0.0);
+            let back = chain.frame_placement(last, &q).rotation.inverse();
+            let part = |x: &SVector<f64, 6>, k: usize| back * Vector3::new(x[k], x[k + 1], x[k + 2]);
+            let velocity = chain.frame_velocity(last, &q, &v_only);
+            let (v_linear, v_angular) = (part(&velocity, 0), part(&velocity, 3));
+            let acceleration = chain.frame_acceleration(last, &q, &v_only, &a_only);
+            let (a_linear, a_angular) = (part(&acceleration, 0) - v_angular.cross(&v_linear), part(&acceleration, 3));
+
+            let quaternion = linkwork::nalgebra::UnitQuaternion::from_rotation_matrix(&relative.rotation);
+            let position = [q[0]].into_iter().chain(relative.translation.vector.iter().copied());
+            let first = $first;
+            let mut positions: Vec<f64> = position.take(first).collect();
+            positions.extend(quaternion.coords.iter());
+            let jq = SVector::from_column_slice(&positions);
+            let stack = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
+                let all: Vec<f64> = [pivot].iter().chain(&linear).take(first).chain(&angular).copied().collect();
+                SVector::from_column_slice(&all)
+            };
+            let (jv, ja) = (stack(v[0], v_linear, v_angular), stack(a[0], a_linear, a_angular));
+
+            let energies = [joint.kinetic_energy(&jq, &jv), joint.potential_energy(&jq)];
+            let expected = [chain.kinetic_energy(&q, &v), chain.potential_energy(&q)];
+            assert_close("energies", &energies, &expected, IDENTITY);
+            let placement = joint.frame_placement(frame!($joint, "carried"), &jq);
+            let expected = chain.frame_placement(frame!($chain, "carried"), &q);
+            let error = (placement.to_homogeneous() - expected.to_homogeneous()).amax();
+            assert!(error < IDENTITY, "placement: {error:e}");
+            let pivot = joint.inverse_dynamics(&jq, &jv, &ja)[0];
+            assert_close("torque at the pivot", &[pivot], &[chain.inverse_dynamics(&q, &v, &a)[0]], IDENTITY);
+            let power = joint.inverse_dynamics(&jq, &jv, &ja).dot(&jv);
+            assert_close("power", &[power], &[chain.inverse_dynamics(&q, &v, &a).dot(&v)], IDENTITY);
+        }
+    };
+}
+
+#[test]
+fn ball_is_three_pins() {
+    check_against_chain!(OnBall, ChainedBall, 1);
+}
+
+#[test]
+fn free_is_a_stage_and_three_pins() {
+    check_against_chain!(OnFree, ChainedFree, 4);
+}
+
+/// What is welded together is one body, here with its mass in three particles at the same places as a triangle's.
+#[test]
+fn welded_bodies_are_one() {
+    #[mechanism(gravity = -9.81 * y)]
+    struct Welded {
+        #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.02, 0.03, 0.04))]
+        first: Body,
+        #[body(mass = 3, com = 0.2 * y, inertia = diagonal(0.05, 0.06, 0.07))]
+        second: Body,
+        #[joint(ground -> first, about = z)]
+        pin: Pin,
+        #[joint(first.at(0.5 * x).rotated(z(0.5)) -> second.rotated(z(0.5)))]
+        weld: Weld,
+    }
+    // The second body has the axes of the first; its centre is at (0.5, 0.2).
+    let inertia = 0.04 + 2.0 * 0.1 * 0.1 + 0.07 + 3.0 * (0.5 * 0.5 + 0.2 * 0.2);
+    let (q, v) = (SVector::from([0.3]), SVector::from([1.0]));
+    assert_close("inertia about the pin", Welded {}.mass_matrix(&q).as_slice(), &[inertia], IDENTITY);
+    let (x, y) = (2.0 * 0.1 + 3.0 * 0.5, 3.0 * 0.2);
+    let height = 0.3_f64.sin() * x + 0.3_f64.cos() * y;
+    assert_close("potential energy", &[Welded {}.potential_energy(&q)], &[9.81 * height], IDENTITY);
+    let lever = 0.3_f64.cos() * x - 0.3_f64.sin() * y;
+    assert_close("gravity", Welded {}.bias_forces(&q, &v).as_slice(), &[9.81 * lever], IDENTITY);
+}
+
+// ---- Motion ------------------------------------------------------------------------------------------------------
+
+/// Without anything outside that acts on it, a mechanism keeps its momentum and its energy, and its centre of mass
+/// moves straight on.
+#[test]
+fn spacecraft_keeps_momentum_and_energy() {
+    let m = Spacecraft {};
+    let mut random = Random::new(17);
+    let q = random.configuration(&m);
+    let v = random.vector(1.0);
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let (momentum, start) = (m.momentum(&q, &v), energy(&q, &v));
+    let method = DormandPrince::new().tolerance(1e-13, 1e-13);
+    for sample in simulate(&m).from(q, v).duration(5.0).sample_every(0.5).method(method) {
+        let sample = sample.expect("the integrator goes on");
+        let now = m.momentum(&sample.q, &sample.v);
+        assert_close("momentum", now.as_slice(), momentum.as_slice(), 1e-10);
+        assert_close("energy", &[energy(&sample.q, &sample.v)], &[start], 1e-10);
+        let expected = m.center_of_mass(&q) + momentum.fixed_rows::<3>(0) / m.total_mass() * sample.t;
+        assert_close("centre of mass", m.center_of_mass(&sample.q).as_slice(), expected.as_slice(), 1e-10);
+    }
+}
+
+/// Along a driven and damped motion the energy changes by the work of the inputs less what the dashpots take.
+#[test]
+fn workshop_balances_its_energy() {
+    let m = workshop();
+    let input = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
+    let power = |t: f64, q: &_, v: &SVector<f64, 3>| {
+        v.dot(&m.generalized_forces(q, &input(t)))
+            - (m.shoulder_damping * v[0] * v[0]
+                + m.slide_damping * v[1] * v[1]
+                + m.turn_damping * v[2] * v[2])
+    };
+    let run = simulate(&m)
+        .from([0.2, 0.1, -0.3], [1.0, 0.0, 2.0])
+        .inputs(|t, _, _| input(t))
+        .duration(2.0)
+        .sample_every(1e-3)
+        .method(Rk4::step(1e-3));
+    let samples: Vec<_> = run.map(|sample| sample.expect("the integrator goes on")).collect();
+    assert_eq!(samples.len(), 2001);
+    let energy =
+        |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
+    // Simpson's rule.
+    let weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
+    let work: f64 =
+        samples.iter().enumerate().map(|(k, s)| weight(k) * power(s.t, &s.q, &s.v)).sum::<f64>() / 3e3;
+    assert_close("energy", &[energy(2000) - energy(0)], &[work], 1e-9);
+}
+
+// ---- Scalars -----------------------------------------------------------------------------------------------------
+
+/// One struct for every scalar type.
+#[mechanism(gravity = -g * y)]
+struct Robot<T> {
+    g: T,
+    m: T,
+    l: T,
+    k: T,
+    c: T,
+    #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))]
+    arm: Body,
+    #[body(mass = m / 2, inertia = sphere(m / 2, l / 4))]
+    head: Body,
+    #[joint(ground -> arm, about = z)]
+    shoulder: Pin,
+    #[joint(arm.at(l * x) -> head)]
+    neck: Ball,
+    #[acts(on = shoulder, stiffness = k)]
+    spring: Spring,
+    #[acts(on = shoulder, damping = c)]
+    dashpot: Dashpot,
+    #[acts(on = head.at(l / 4 * y), along = ground.x)]
+    push: Force,
+}
+
+fn robot<T: Real>() -> Robot<T> {
+    let [g, m, l, k, c] = [9.81, 1.3, 0.7, 5.0, 0.2].map(linkwork::nalgebra::convert);
+    Robot { g, m, l, k, c }
+}
+
+#[test]
+fn scalar_types_agree() {
+    let (single, double) = (robot::<f32>(), robot::<f64>());
+    check(&double, |v| 0.2 * v[0] * v[0]);
+    let mut random = Random::new(10);
+    for _ in 0..10 {
+        let q = random.configuration(&double);
+        let [v, a] = [random.vector::<4>(2.0), random.vector::<4>(2.0)];
+        let (q32, v32, a32) = (q.cast::<f32>(), v.cast::<f32>(), a.cast::<f32>());
+        let same = |what: &str, a: &[f32], b: &[f64]| {
+            assert_close(what, &a.iter().copied().map(f64::from).collect::<Vec<_>>(), b, 2e-5);
+        };
+        same("mass matrix", single.mass_matrix(&q32).as_slice(), double.mass_matrix(&q).as_slice());
+        let forces = single.inverse_dynamics(&q32, &v32, &a32);
+        same("inverse dynamics", forces.as_slice(), double.inverse_dynamics(&q, &v, &a).as_slice());
+        let acceleration = single.forward_dynamics(&q32, &v32, &a32);
+        same("forward dynamics", acceleration.as_slice(), double.forward_dynamics(&q, &v, &a).as_slice());
+        let push = single.generalized_forces(&q32, &SVector::from([2.0]));
+        same("inputs", push.as_slice(), double.generalized_forces(&q, &SVector::from([2.0])).as_slice());
+        let moved = single.integrate(&q32, &v32);
+        same("integrate", moved.as_slice(), double.integrate(&q, &v).as_slice());
+    }
+}

@@ -1,0 +1,131 @@
+//! Generated functions and integrators never allocate.
+#![expect(unsafe_code, reason = "a global allocator is unsafe to implement")]
+
+use linkwork::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
+use linkwork::nalgebra::SVector;
+use linkwork::simulate::Crossing;
+use linkwork::{Mechanism, frame, simulate};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+use support::mechanisms::*;
+use support::random::Random;
+use support::robots::*;
+
+/// The system's allocator, counting what each thread asks of it.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count() {
+    // A thread that is ending has nothing left to count.
+    let _ = COUNT.try_with(|count| count.set(count.get() + 1));
+}
+
+// SAFETY: every call is handed on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count();
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// How often the heap is touched while `f` runs.
+fn heap_calls<T>(f: impl FnOnce() -> T) -> usize {
+    let before = COUNT.get();
+    black_box(f());
+    COUNT.get() - before
+}
+
+#[test]
+fn heap_calls_are_seen() {
+    assert_eq!(heap_calls(|| drop(black_box(vec![1]))), 2);
+    assert_eq!(heap_calls(|| black_box([1])), 0);
+}
+
+/// Everything in the trait `Mechanism`, and every integrator.
+fn check<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(11);
+    let q = &random.configuration(m);
+    let [v, a, dv] = [1.0, 1.0, 0.1].map(|bound| random.vector(bound));
+    let (v, a, dv): (&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NV>) = (&v, &a, &dv);
+    let u = &random.vector(1.0);
+
+    assert_eq!(heap_calls(|| m.neutral()), 0, "neutral");
+    assert_eq!(heap_calls(|| m.integrate(q, dv)), 0, "integrate");
+    assert_eq!(heap_calls(|| m.tangent_rate(dv, v)), 0, "tangent_rate");
+    assert_eq!(heap_calls(|| m.mass_matrix(q)), 0, "mass_matrix");
+    assert_eq!(heap_calls(|| m.bias_forces(q, v)), 0, "bias_forces");
+    assert_eq!(heap_calls(|| m.inverse_dynamics(q, v, a)), 0, "inverse_dynamics");
+    assert_eq!(heap_calls(|| m.forward_dynamics(q, v, a)), 0, "forward_dynamics");
+    assert_eq!(heap_calls(|| m.generalized_forces(q, u)), 0, "generalized_forces");
+    assert_eq!(heap_calls(|| m.kinetic_energy(q, v)), 0, "kinetic_energy");
+    assert_eq!(heap_calls(|| m.potential_energy(q)), 0, "potential_energy");
+    assert_eq!(heap_calls(|| m.generalized_momentum(q, v)), 0, "generalized_momentum");
+    assert_eq!(heap_calls(|| m.momentum_rate(q, v)), 0, "momentum_rate");
+    assert_eq!(heap_calls(|| m.difference(q, &m.integrate(q, dv))), 0, "difference");
+
+    let run = || simulate(m).from(*q, *v).duration(0.01);
+    assert_eq!(heap_calls(|| run().finish()), 0, "DormandPrince");
+    assert_eq!(heap_calls(|| run().method(Rk4::step(2e-3)).finish()), 0, "Rk4");
+    assert_eq!(heap_calls(|| run().method(ImplicitMidpoint::step(2e-3)).finish()), 0, "ImplicitMidpoint");
+    assert_eq!(heap_calls(|| run().method(SemiImplicitEuler::step(2e-3)).finish()), 0, "SemiImplicitEuler");
+    let driven = || {
+        run().control_every(5e-3, |_, _, _| *u).sample_every(3e-3).event(Crossing::Either, |t, _, _| t - 4e-3)
+    };
+    assert_eq!(heap_calls(|| driven().count()), 0, "control, samples and events");
+}
+
+/// What is not in the trait.
+macro_rules! check_kinematics {
+    ($mechanism:expr, $type:ident, $frame:literal) => {
+        let m = $mechanism;
+        let frame = frame!($type, $frame);
+        let q = &Random::new(12).configuration(&m);
+        let (v, a) = (&Random::new(13).vector(1.0), &Random::new(14).vector(1.0));
+        assert_eq!(heap_calls(|| m.center_of_mass(q)), 0, "center_of_mass");
+        assert_eq!(heap_calls(|| m.total_mass()), 0, "total_mass");
+        assert_eq!(heap_calls(|| m.momentum(q, v)), 0, "momentum");
+        assert_eq!(heap_calls(|| m.frame_placements(q)), 0, "frame_placements");
+        assert_eq!(heap_calls(|| m.frame_placement(frame, q)), 0, "frame_placement");
+        assert_eq!(heap_calls(|| m.frame_velocity(frame, q, v)), 0, "frame_velocity");
+        assert_eq!(heap_calls(|| m.frame_acceleration(frame, q, v, a)), 0, "frame_acceleration");
+        assert_eq!(heap_calls(|| m.frame_jacobian(frame, q)), 0, "frame_jacobian");
+    };
+}
+
+#[test]
+fn generated_functions() {
+    check(&CartPole);
+    check(&Kinova);
+    check(&Panda);
+    check(&PandaMimic);
+    check(&Solo12);
+    check(&Humanoid);
+    check(&workshop());
+    check(&Spacecraft {});
+    check(&OnScrew {});
+    check(&OnUniversal {});
+    check(&OnPlanar {});
+    check(&OnFree {});
+    check_kinematics!(Panda, Panda, "panda_hand_tcp");
+    check_kinematics!(Solo12, Solo12, "HR_FOOT");
+    check_kinematics!(Humanoid, Humanoid, "r_wrist");
+    check_kinematics!(workshop(), Workshop, "tip");
+    check_kinematics!(Spacecraft {}, Spacecraft, "weight");
+}

@@ -1,0 +1,44 @@
+//! Generated code needs no standard library and no allocator, and there is no way to a panic in it: the program in
+//! `no_std/` has a panic handler that cannot be linked.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Builds the program in release mode with these features.
+fn build(features: &str) -> Output {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("no_std/Cargo.toml");
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
+    let cargo = |network: &[&str]| {
+        Command::new(env!("CARGO"))
+            .args(["build", "--release", "--features", features])
+            .args(network)
+            .arg("--manifest-path")
+            .arg(&manifest)
+            .arg("--target-dir")
+            .arg(&target)
+            .output()
+            .expect("cargo starts")
+    };
+    let offline = cargo(&["--offline"]);
+    let text = String::from_utf8_lossy(&offline.stderr);
+    // A crate that nothing else of the workspace needs may not have been fetched yet.
+    if offline.status.success() || !text.contains("--offline") { offline } else { cargo(&[]) }
+}
+
+#[test]
+fn control_step_has_no_way_to_panic() {
+    let output = build("");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std/release/linkwork-no-std");
+    let status = Command::new(program).status().expect("the program starts");
+    assert!(status.success(), "the arm arrives, and everything agrees: {status}");
+}
+
+#[test]
+fn a_way_to_panic_would_be_seen() {
+    let output = build("panic");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success(), "a program that can panic was linked");
+    assert!(text.contains("linkwork_panic_path_reached"), "{text}");
+}

@@ -1,0 +1,113 @@
+//! A computed-torque controller of a seven-axis arm with the arm that it moves, and a body in flight with every
+//! integrator, without the standard library, without an allocator and without any way to panic: the panic handler
+//! calls a function that does not exist, so that a program with a panic left in it cannot be linked.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+use core::panic::PanicInfo;
+use linkwork::frame;
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"])]
+struct Arm;
+
+type Joints = SVector<f64, { Arm::NV }>;
+
+/// Torques that bring the arm from `q`, `v` towards `target`.
+fn control(q: &Joints, v: &Joints, target: &Joints) -> Joints {
+    let acceleration = (target - q) * 25.0 - v * 10.0;
+    Arm.inverse_dynamics(q, v, &acceleration)
+}
+
+/// The arm a millisecond later.
+fn step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
+    let v = v + Arm.forward_dynamics(q, v, &Arm.generalized_forces(q, u)) * 1e-3;
+    (Arm.integrate(q, &(v * 1e-3)), v)
+}
+
+/// Whether everything that is computed here agrees with itself.
+fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
+    let mass_matrix = Arm.mass_matrix(q);
+    let forces = mass_matrix * a + Arm.bias_forces(q, v);
+    let kinetic = v.dot(&(mass_matrix * v)) / 2.0;
+    let tool = frame!(Arm, "panda_hand_tcp");
+    let velocity = Arm.frame_jacobian(tool, q) * v;
+    let height = Arm.frame_placement(tool, q).translation.vector.z + Arm.center_of_mass(q).z;
+    (forces - Arm.inverse_dynamics(q, v, a)).norm() < 1e-9
+        && (kinetic - Arm.kinetic_energy(q, v)).abs() < 1e-9
+        && (velocity - Arm.frame_velocity(tool, q, v)).norm() < 1e-9
+        && (Arm.generalized_momentum(q, v) - mass_matrix * v).norm() < 1e-9
+        && Arm.momentum(q, v).norm() + Arm.momentum_rate(q, v).norm() + height + Arm.potential_energy(q) < 1e9
+}
+
+/// A body in the air with a pendulum on a ball joint.
+#[mechanism(gravity = -9.81 * z)]
+struct Flight {
+    mass: f64,
+    #[body(mass = 2, inertia = diagonal(0.1, 0.2, 0.25))]
+    hull: Body,
+    #[body(mass = mass, com = -0.2 * z, inertia = cylinder(mass, 0.05, 0.4, z))]
+    pendulum: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[joint(hull.at(-0.1 * z) -> pendulum)]
+    hanger: Ball,
+    #[acts(on = hull.at(0.3 * x), along = z)]
+    thruster: Force,
+}
+
+/// Whether all integrators see the same flight.
+fn flies(mass: f64) -> bool {
+    let flight = Flight { mass };
+    let v = SVector::from([1.0, 0.0, 3.0, 0.1, 0.2, 0.3, -0.5, 0.4, 0.3]);
+    let run = || simulate(&flight).from(flight.neutral(), v).duration(0.1);
+    let driven = || run().control_every(0.03, |t, _, _| SVector::from([t]));
+    let (Ok(precise), Ok(driven)) = (run().finish(), driven().finish()) else { return false };
+    let fixed = [
+        run().method(Rk4::step(1e-3)).finish(),
+        run().method(ImplicitMidpoint::step(1e-3)).finish(),
+        run().method(SemiImplicitEuler::step(1e-3)).finish(),
+    ];
+    let close = |end: &_| match end {
+        Ok(Sample { q, .. }) => flight.difference(&precise.q, q).norm() < 1e-2,
+        Err(_) => false,
+    };
+    driven.t == precise.t && fixed.iter().all(close)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
+    let _ = arguments;
+    let mut q: Joints = black_box(Joints::from([0.1, -0.5, 0.2, -1.9, 0.1, 1.5, 0.7]));
+    let mut v: Joints = black_box(Joints::zeros());
+    let target: Joints = black_box(Joints::from([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8]));
+    #[cfg(feature = "panic")]
+    {
+        q[arguments as usize] = 0.0;
+    }
+    let mut sound = true;
+    let mut remaining = 3000;
+    while remaining > 0 {
+        let u = control(&q, &v, &target);
+        sound &= consistent(&q, &v, &u);
+        (q, v) = step(&q, &v, &u);
+        remaining -= 1;
+    }
+    let arrived = (q - target).norm() < 1e-3;
+    i32::from(!(sound && arrived && flies(black_box(0.5))))
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    unsafe extern "C" {
+        fn linkwork_panic_path_reached() -> !;
+    }
+    // SAFETY: the program cannot be linked with this call in it, so it is never made.
+    unsafe { linkwork_panic_path_reached() }
+}
+
+// The C library starts the program.
+#[link(name = "c")]
+unsafe extern "C" {}

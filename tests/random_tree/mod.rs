@@ -1,0 +1,161 @@
+//! Random mechanisms in the words of the language.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use std::fmt::Write;
+
+/// A joint with its child body.
+#[derive(Clone, Debug)]
+struct Limb {
+    kind: usize,
+    parent: usize,
+    /// Numbers that decide axes, places, masses.
+    numbers: Vec<f64>,
+    /// Axes are coordinate axes, as in most machines, or general directions.
+    plain_axes: bool,
+    /// Masses and lengths are parameters instead of numbers.
+    symbolic: bool,
+}
+
+/// A random tree of bodies.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    limbs: Vec<Limb>,
+    gravity: [f64; 3],
+}
+
+/// Trees with up to `joints` joints of any kind.
+pub fn trees(joints: usize) -> impl Strategy<Value = Tree> {
+    let limb = (0..KINDS.len(), 0_usize..8, vec(-1.0..1.0_f64, 24), any::<bool>(), any::<bool>()).prop_map(
+        |(kind, parent, numbers, plain_axes, symbolic)| Limb { kind, parent, numbers, plain_axes, symbolic },
+    );
+    (vec(limb, 1..=joints), [-10.0..10.0_f64, -10.0..10.0_f64, -10.0..10.0_f64])
+        .prop_map(|(limbs, gravity)| Tree { limbs, gravity })
+}
+
+const KINDS: [&str; 11] =
+    ["Pin", "Sleeve", "Screw", "Collar", "Slot", "Universal", "Ball", "Planar", "Stage", "Free", "Weld"];
+
+/// Coordinates of each kind that a spring or an input can act on, with true for an angle.
+fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
+    match kind {
+        "Pin" | "Screw" => &[("", true)],
+        "Sleeve" => &[("", false)],
+        "Collar" | "Slot" => &[(".slide", false), (".turn", true)],
+        "Universal" => &[(".first", true), (".second", true)],
+        "Planar" => &[(".x", false), (".y", false), (".angle", true)],
+        "Stage" => &[(".x", false), (".z", false)],
+        _ => &[],
+    }
+}
+
+impl Tree {
+    /// The attribute's arguments and the struct.
+    pub fn source(&self) -> (String, String) {
+        let mut fields = String::new();
+        // The first joint moves, so that there is something to do.
+        for (k, limb) in self.limbs.iter().enumerate() {
+            limb.write(k, &mut fields);
+        }
+        let [x, y, z] = self.gravity;
+        (format!("gravity = [{x:?}, {y:?}, {z:?}]"), format!("pub struct Random {{\n{fields}}}"))
+    }
+}
+
+impl Limb {
+    fn number(&self, k: usize) -> f64 {
+        self.numbers[k % self.numbers.len()]
+    }
+
+    fn vector(&self, k: usize) -> String {
+        format!("[{:?}, {:?}, {:?}]", self.number(k), self.number(k + 1), self.number(k + 2))
+    }
+
+    fn axis(&self, k: usize) -> String {
+        if self.plain_axes {
+            let sign = if self.number(k) < 0.0 { "-" } else { "" };
+            format!("{sign}{}", ["x", "y", "z"][(self.number(k + 1).abs() * 3.0) as usize % 3])
+        } else {
+            format!("unit([{:?}, {:?}, 1.5])", self.number(k), self.number(k + 1))
+        }
+    }
+
+    fn write(&self, k: usize, out: &mut String) {
+        let kind = KINDS[self.kind];
+        let mass = if self.symbolic {
+            let _ = writeln!(out, "mass{k}: f64, length{k}: f64,");
+            (format!("mass{k}"), format!("length{k}"))
+        } else {
+            (format!("{:?}", 1.5 + self.number(0)), format!("{:?}", 1.2 + self.number(1)))
+        };
+        let (m, l) = mass;
+        let _ = writeln!(
+            out,
+            "#[body(mass = {m}, com = {l} * {}, inertia = cuboid({m}, {l}, 0.7, 0.4).rotated(z({:?}), x({:?})))] body{k}: Body,",
+            self.vector(2),
+            self.number(5),
+            self.number(6)
+        );
+        let parent = if k == 0 { "ground".to_string() } else { format!("body{}", self.parent % k) };
+        // A joint off its parent's centre, turned on both sides; sometimes plainly placed.
+        let parent_end = match self.plain_axes {
+            true => format!("{parent}.at({l} * x)"),
+            false => format!(
+                "{parent}.at({}).rotated(y({:?}), x({:?}))",
+                self.vector(7),
+                self.number(8),
+                self.number(9)
+            ),
+        };
+        let child_end = match self.symbolic {
+            true => format!("body{k}.at(-{l} * z).rotated(z({:?}))", self.number(10)),
+            false => format!("body{k}"),
+        };
+        let _ = writeln!(out, "#[joint({parent_end} -> {child_end}{})] joint{k}: {kind},", self.axes(kind));
+        self.write_actions(k, kind, out);
+    }
+
+    fn axes(&self, kind: &str) -> String {
+        let (a, b) = (self.axis(11), self.axis(14));
+        match kind {
+            "Pin" => format!(", about = {a}"),
+            "Sleeve" => format!(", along = {a}"),
+            "Screw" => format!(", about = {a}, pitch = {:?}", self.number(13)),
+            "Collar" => format!(", about = {a}"),
+            "Slot" => format!(", along = {a}, about = {b}"),
+            "Universal" => ", about = (x, y)".to_string(),
+            "Planar" => format!(", about = {a}"),
+            "Stage" => ", along = (x, unit(x + y), z)".to_string(),
+            _ => String::new(),
+        }
+    }
+
+    fn write_actions(&self, k: usize, kind: &str, out: &mut String) {
+        for (c, (coordinate, angle)) in coordinates(kind).iter().enumerate() {
+            let on = format!("joint{k}{coordinate}");
+            let free = if *angle { "free_angle" } else { "free_length" };
+            let input = if *angle { "Torque" } else { "Force" };
+            let _ = writeln!(
+                out,
+                "#[acts(on = {on}, stiffness = {:?}, {free} = {:?})] spring{k}_{c}: Spring,
+                 #[acts(on = {on}, damping = {:?})] dashpot{k}_{c}: Dashpot,
+                 #[acts(on = {on})] drive{k}_{c}: {input},",
+                10.0 * self.number(16),
+                self.number(17),
+                self.number(18).abs()
+            );
+        }
+        // What hangs on the ground by welds alone does not move, and the language refuses to push it.
+        if kind == "Weld" {
+            return;
+        }
+        let _ = writeln!(
+            out,
+            "#[acts(on = body{k}.at({}), along = {} + ground.z)] push{k}: Force,
+             #[acts(on = body{k}, about = {} - 0.5 * ground.x)] twist{k}: Torque,",
+            self.vector(19),
+            self.vector(20),
+            self.vector(21)
+        );
+    }
+}

@@ -1,0 +1,224 @@
+//! Published robots against the reference values of `data/robots` (Pinocchio 4.1.0), and against themselves.
+
+use linkwork::Mechanism;
+use linkwork::frame;
+use support::compare::assert_close;
+use support::robots::*;
+use support::table::Record;
+
+/// Mass matrix, bias forces, inverse dynamics, energies.
+const DYNAMICS: f64 = 1e-11;
+/// Forward dynamics: the condition of the mass matrix enters.
+const FORWARD: f64 = 1e-9;
+/// Frames, Jacobians, velocities.
+const KINEMATICS: f64 = 1e-12;
+
+fn table(robot: &str) -> Record {
+    Record::load(&format!("robots/{robot}.json"))
+}
+
+/// Everything of the trait `Mechanism` that the tables hold.
+fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    for (i, case) in table(name).records("cases").iter().enumerate() {
+        let of = |what: &str| format!("{name}, case {i}: {what}");
+        let (q, v, a, tau) = (&case.vector(&"q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
+        let mass_matrix = case.symmetric::<NV>("M");
+
+        assert_close(of("mass matrix"), robot.mass_matrix(q).as_slice(), mass_matrix.as_slice(), DYNAMICS);
+        let bias = robot.bias_forces(q, v);
+        assert_close(of("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
+        let inverse = robot.inverse_dynamics(q, v, a);
+        assert_close(of("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
+        let forward = robot.forward_dynamics(q, v, tau);
+        assert_close(of("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
+        let energies = [robot.kinetic_energy(q, v), robot.potential_energy(q)];
+        let expected = [case.number("kinetic_energy"), case.number("potential_energy")];
+        assert_close(of("energies"), &energies, &expected, DYNAMICS);
+        let momentum = robot.generalized_momentum(q, v);
+        assert_close(of("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
+    }
+}
+
+/// The names and the effect of the inputs: one for every moving joint, in the order of the reference.
+fn check_inputs<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let joints = table(name).strings("velocities");
+    let joints = &joints[joints.len() - NU..];
+    assert_eq!(M::INPUTS[..], *joints);
+    assert_eq!(M::VELOCITIES[NV - NU..], *joints);
+    assert_eq!(M::CONFIGURATION[NQ - NU..], *joints);
+
+    let u = linkwork::nalgebra::SVector::from_fn(|i, _| i as f64 + 0.5);
+    let forces = robot.generalized_forces(&robot.neutral(), &u);
+    for (i, force) in forces.iter().enumerate() {
+        let expected = if i < NV - NU { 0.0 } else { u[i - (NV - NU)] };
+        assert_eq!(*force, expected, "{name}: force on velocity {i}");
+    }
+}
+
+/// Placements of all links, in whatever order the robot has them.
+macro_rules! check_frames {
+    ($robot:ident, $name:literal) => {
+        for (i, case) in table($name).records("cases").iter().enumerate() {
+            let placements = $robot.frame_placements(&case.vector("q"));
+            for (link, expected) in case.named("frames") {
+                let index = $robot::FRAMES.iter().position(|frame| *frame == link);
+                let placement = placements[index.unwrap_or_else(|| panic!("no frame `{link}`"))];
+                let rotation = placement.rotation.matrix().transpose();
+                let actual = [rotation.as_slice(), placement.translation.vector.as_slice()].concat();
+                assert_close(format!("{}, case {i}: {link}", $name), &actual, &expected, KINEMATICS);
+            }
+        }
+    };
+}
+
+/// Motion of the last link, and of the robot as a whole.
+macro_rules! check_kinematics {
+    ($robot:ident, $name:literal, $last:literal) => {
+        assert_eq!(table($name).string("last_link"), $last);
+        let last = frame!($robot, $last);
+        for (i, case) in table($name).records("cases").iter().enumerate() {
+            let of = |what: &str| format!("{}, case {i}: {what}", $name);
+            let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
+
+            let velocity = $robot.frame_velocity(last, q, v);
+            assert_close(of("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
+            let acceleration = $robot.frame_acceleration(last, q, v, a);
+            assert_close(
+                of("acceleration"),
+                acceleration.as_slice(),
+                &case.numbers("a_last_classical"),
+                KINEMATICS,
+            );
+            let jacobian = $robot.frame_jacobian(last, q);
+            let expected = case.matrix::<6, { $robot::NV }>("J_last");
+            assert_close(of("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
+
+            let center = $robot.center_of_mass(q);
+            assert_close(of("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
+            let momentum = $robot.momentum(q, v);
+            assert_close(of("momentum"), momentum.as_slice(), &case.numbers("centroidal_momentum"), DYNAMICS);
+        }
+    };
+}
+
+macro_rules! robot {
+    ($module:ident, $robot:ident, $name:literal, $last:literal) => {
+        mod $module {
+            use super::*;
+
+            #[test]
+            fn dynamics() {
+                check_dynamics(&$robot, $name);
+            }
+
+            #[test]
+            fn inputs() {
+                check_inputs(&$robot, $name);
+            }
+
+            #[test]
+            fn frames() {
+                check_frames!($robot, $name);
+            }
+
+            #[test]
+            fn kinematics() {
+                check_kinematics!($robot, $name, $last);
+            }
+        }
+    };
+}
+
+robot!(cartpole, CartPole, "cartpole", "pole");
+robot!(double_pendulum, DoublePendulum, "double_pendulum", "link3");
+robot!(ur5, Ur5, "ur5", "tool0");
+robot!(kinova, Kinova, "kinova", "j2s6s200_link_finger_tip_2");
+robot!(panda, Panda, "panda", "panda_rightfinger");
+robot!(solo12, Solo12, "solo12", "HR_FOOT");
+robot!(simple_humanoid, Humanoid, "simple_humanoid", "r_wrist");
+
+/// One finger follows the other: one coordinate less.
+mod panda_mimic {
+    use super::*;
+
+    #[test]
+    fn dynamics() {
+        let robot = PandaMimic;
+        for (i, case) in table("panda_mimic").records("cases").iter().enumerate() {
+            let of = |what: &str| format!("panda with mimic, case {i}: {what}");
+            let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
+            let mass_matrix = case.symmetric::<{ PandaMimic::NV }>("M");
+            assert_close(
+                of("mass matrix"),
+                robot.mass_matrix(q).as_slice(),
+                mass_matrix.as_slice(),
+                DYNAMICS,
+            );
+            assert_close(
+                of("bias forces"),
+                robot.bias_forces(q, v).as_slice(),
+                &case.numbers("nle"),
+                DYNAMICS,
+            );
+            let forces = robot.inverse_dynamics(q, v, a);
+            assert_close(of("inverse dynamics"), forces.as_slice(), &case.numbers("rnea"), DYNAMICS);
+            let acceleration = robot.forward_dynamics(q, v, &case.vector("rnea"));
+            assert_close(of("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
+        }
+    }
+
+    #[test]
+    fn inputs() {
+        check_inputs(&PandaMimic, "panda_mimic");
+    }
+
+    #[test]
+    fn frames() {
+        check_frames!(PandaMimic, "panda_mimic");
+    }
+
+    /// The second finger is an independent joint that moves as the first.
+    #[test]
+    fn following_is_moving_alike() {
+        for case in table("panda_mimic").records("cases") {
+            let (q, v) = (case.vector::<8>("q"), case.vector::<8>("v"));
+            let (q_free, v_free) = (q.insert_row(8, q[7]), v.insert_row(8, v[7]));
+            let energies = [PandaMimic.kinetic_energy(&q, &v), PandaMimic.potential_energy(&q)];
+            let expected = [Panda.kinetic_energy(&q_free, &v_free), Panda.potential_energy(&q_free)];
+            assert_close("energies", &energies, &expected, DYNAMICS);
+            let momentum = PandaMimic.momentum(&q, &v);
+            assert_close(
+                "momentum",
+                momentum.as_slice(),
+                Panda.momentum(&q_free, &v_free).as_slice(),
+                DYNAMICS,
+            );
+        }
+    }
+}
+
+/// Frozen joints stay at zero: what is left are the rows and columns of the others.
+#[test]
+fn locked_joints_stay_at_zero() {
+    for case in table("panda").records("cases") {
+        let [q, v, a] = ["q", "v", "a"].map(|key| case.vector::<9>(key).fixed_rows::<7>(0).into_owned());
+        let still = |x: linkwork::nalgebra::SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let [q_free, v_free, a_free] =
+            [q, v, a].map(|x| linkwork::nalgebra::SVector::from_fn(|i, _| still(x)[i]));
+
+        let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
+        assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);
+        let forces = Panda.inverse_dynamics(&q_free, &v_free, &a_free).fixed_rows::<7>(0).into_owned();
+        assert_close("forces", PandaArm.inverse_dynamics(&q, &v, &a).as_slice(), forces.as_slice(), DYNAMICS);
+        let hand = PandaArm.frame_placement(frame!(PandaArm, "panda_rightfinger"), &q);
+        let expected = Panda.frame_placement(frame!(Panda, "panda_rightfinger"), &q_free);
+        let error = hand.to_homogeneous() - expected.to_homogeneous();
+        assert!(error.amax() <= KINEMATICS, "{error}");
+    }
+}

@@ -1,0 +1,58 @@
+//! Comparing numbers with references.
+
+use linkwork::Mechanism;
+use linkwork::nalgebra::SVector;
+use std::fmt::Display;
+
+use crate::random::Random;
+
+/// Fails unless every `|actual − expected| ≤ tolerance · (1 + |expected|)`. Not-a-number fails.
+#[track_caller]
+pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(actual.len(), expected.len(), "{what}: number of entries");
+    for (i, (a, e)) in actual.iter().zip(expected).enumerate() {
+        let error = (a - e).abs() / (1.0 + e.abs());
+        assert!(
+            error <= tolerance,
+            "{what}, entry {i} (column by column): {a:e} is not {e:e}; relative error {error:.2e}, allowed {tolerance:.0e}"
+        );
+    }
+}
+
+/// Fails unless two mechanisms with the same coordinates have the same equations of motion and energies, to
+/// `tolerance`, at `states` random states.
+#[track_caller]
+pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: usize, const NB: usize>(
+    one: &A,
+    other: &B,
+    states: usize,
+    tolerance: f64,
+) where
+    A: Mechanism<NQ, NV, NA, Scalar = f64>,
+    B: Mechanism<NQ, NV, NB, Scalar = f64>,
+{
+    assert_close("neutral", one.neutral().as_slice(), other.neutral().as_slice(), 0.0);
+    let mut random = Random::new(1);
+    for _ in 0..states {
+        let q = random.configuration(one);
+        let [v, a, tau, dv] =
+            [random.vector(2.0), random.vector(2.0), random.vector(5.0), random.vector(0.5)];
+        let close = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, tolerance);
+        let same =
+            |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| close(what, a.as_slice(), b.as_slice());
+
+        close("mass matrix", one.mass_matrix(&q).as_slice(), other.mass_matrix(&q).as_slice());
+        same("bias forces", one.bias_forces(&q, &v), other.bias_forces(&q, &v));
+        same("inverse dynamics", one.inverse_dynamics(&q, &v, &a), other.inverse_dynamics(&q, &v, &a));
+        // The condition of M enters: what is compared is the force that the difference stands for.
+        let acceleration = other.forward_dynamics(&q, &v, &tau);
+        same("forward dynamics", one.inverse_dynamics(&q, &v, &acceleration), tau);
+        same("forward dynamics", one.forward_dynamics(&q, &v, &one.inverse_dynamics(&q, &v, &a)), a);
+        same("momentum", one.generalized_momentum(&q, &v), other.generalized_momentum(&q, &v));
+        same("momentum rate", one.momentum_rate(&q, &v), other.momentum_rate(&q, &v));
+        same("tangent rate", one.tangent_rate(&dv, &v), other.tangent_rate(&dv, &v));
+        close("kinetic energy", &[one.kinetic_energy(&q, &v)], &[other.kinetic_energy(&q, &v)]);
+        close("potential energy", &[one.potential_energy(&q)], &[other.potential_energy(&q)]);
+        close("integrate", one.integrate(&q, &dv).as_slice(), other.integrate(&q, &dv).as_slice());
+    }
+}

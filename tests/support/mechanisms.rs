@@ -1,0 +1,298 @@
+//! Mechanisms in the struct language: one for every joint, the same from pins and sleeves alone, one with every
+//! element that acts, and one that floats.
+
+use linkwork::mechanism;
+
+/// Two bodies: a carrier on a pin, and one carried on the joint in question. Nothing is aligned with anything.
+macro_rules! carried {
+    ($(#[$doc:meta])* $name:ident: $joint:ident $(, $argument:ident = $value:tt)*) => {
+        $(#[$doc])*
+        #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z)]
+        pub struct $name {
+            #[body(
+                mass = 1.3,
+                com = 0.1 * x - 0.2 * y + 0.05 * z,
+                inertia = [[0.03, 0.002, -0.001], [0.002, 0.04, 0.003], [-0.001, 0.003, 0.05]]
+            )]
+            carrier: Body,
+            #[body(
+                mass = 0.7,
+                com = [0.02, 0.15, -0.1],
+                inertia = diagonal(0.011, 0.017, 0.013).rotated(z(0.3), x(0.7))
+            )]
+            carried: Body,
+            #[joint(ground.at(0.2 * x + 0.1 * z).rotated(x(0.2)) -> carrier.at(0.3 * y), about = y)]
+            pivot: Pin,
+            #[joint(
+                carrier.at([0.1, 0.2, 0.3]).rotated(z(0.4), x(-0.3))
+                    -> carried.at(-0.1 * x + 0.05 * y).rotated(y(0.5), z(1.1))
+                $(, $argument = $value)*
+            )]
+            joint: $joint,
+        }
+    };
+}
+
+/// The same two bodies with massless bodies between them, the last of which is called `last`.
+macro_rules! chained {
+    ($(#[$doc:meta])* $name:ident: $($between:tt)*) => {
+        $(#[$doc])*
+        #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z)]
+        pub struct $name {
+            #[body(
+                mass = 1.3,
+                com = 0.1 * x - 0.2 * y + 0.05 * z,
+                inertia = [[0.03, 0.002, -0.001], [0.002, 0.04, 0.003], [-0.001, 0.003, 0.05]]
+            )]
+            carrier: Body,
+            #[body]
+            socket: Body,
+            #[body]
+            last: Body,
+            #[body(
+                mass = 0.7,
+                com = [0.02, 0.15, -0.1],
+                inertia = diagonal(0.011, 0.017, 0.013).rotated(z(0.3), x(0.7))
+            )]
+            carried: Body,
+            #[joint(ground.at(0.2 * x + 0.1 * z).rotated(x(0.2)) -> carrier.at(0.3 * y), about = y)]
+            pivot: Pin,
+            #[joint(carrier.at([0.1, 0.2, 0.3]).rotated(z(0.4), x(-0.3)) -> socket)]
+            seat: Weld,
+            $($between)*
+            #[joint(last -> carried.at(-0.1 * x + 0.05 * y).rotated(y(0.5), z(1.1)))]
+            plug: Weld,
+        }
+    };
+}
+
+carried! {
+    /// Carried on a pin.
+    OnPin: Pin, about = x
+}
+carried! {
+    /// Carried on a pin about a slanted axis.
+    OnSlantedPin: Pin, about = [0.6, 0, -0.8]
+}
+carried! {
+    /// Carried on a sleeve.
+    OnSleeve: Sleeve, along = y
+}
+carried! {
+    /// Carried on a screw that advances 0.05 m per radian.
+    OnScrew: Screw, about = z, pitch = 0.05
+}
+carried! {
+    /// Carried on a screw that advances 0.3 m per turn.
+    OnScrewWithLead: Screw, along = z, lead = 0.3
+}
+carried! {
+    /// Carried on a collar.
+    OnCollar: Collar, about = z
+}
+carried! {
+    /// Carried on a slot.
+    OnSlot: Slot, along = x, about = z
+}
+carried! {
+    /// Carried on a universal joint.
+    OnUniversal: Universal, about = (x, y)
+}
+carried! {
+    /// Carried on a ball joint.
+    OnBall: Ball
+}
+carried! {
+    /// Carried on a planar joint, given by its normal.
+    OnPlanar: Planar, about = z
+}
+carried! {
+    /// Carried on a planar joint, given by its two directions of sliding.
+    OnPlanarAlong: Planar, along = (x, y)
+}
+carried! {
+    /// Carried on a stage with two axes.
+    OnStage: Stage, along = (x, y)
+}
+carried! {
+    /// Carried on a stage with three axes.
+    OnStage3: Stage, along = (x, y, z)
+}
+carried! {
+    /// Free to leave its carrier.
+    OnFree: Free
+}
+carried! {
+    /// Welded to its carrier.
+    OnWeld: Weld
+}
+
+chained! {
+    /// A collar from a sleeve and a pin.
+    ChainedCollar:
+    #[body] slider: Body,
+    #[joint(socket -> slider, along = z)] slide: Sleeve,
+    #[joint(slider -> last, about = z)] turn: Pin,
+}
+chained! {
+    /// A slot from a sleeve and a pin.
+    ChainedSlot:
+    #[body] slider: Body,
+    #[joint(socket -> slider, along = x)] slide: Sleeve,
+    #[joint(slider -> last, about = z)] turn: Pin,
+}
+chained! {
+    /// A universal joint from two pins.
+    ChainedUniversal:
+    #[body] cross: Body,
+    #[joint(socket -> cross, about = x)] first: Pin,
+    #[joint(cross -> last, about = y)] second: Pin,
+}
+chained! {
+    /// A planar joint from two sleeves and a pin.
+    ChainedPlanar:
+    #[body] slide1: Body,
+    #[body] slide2: Body,
+    #[joint(socket -> slide1, along = x)] sx: Sleeve,
+    #[joint(slide1 -> slide2, along = y)] sy: Sleeve,
+    #[joint(slide2 -> last, about = z)] angle: Pin,
+}
+chained! {
+    /// A stage from two sleeves.
+    ChainedStage:
+    #[body] slide1: Body,
+    #[joint(socket -> slide1, along = x)] sx: Sleeve,
+    #[joint(slide1 -> last, along = y)] sy: Sleeve,
+}
+chained! {
+    /// A stage from three sleeves.
+    ChainedStage3:
+    #[body] slide1: Body,
+    #[body] slide2: Body,
+    #[joint(socket -> slide1, along = x)] sx: Sleeve,
+    #[joint(slide1 -> slide2, along = y)] sy: Sleeve,
+    #[joint(slide2 -> last, along = z)] sz: Sleeve,
+}
+chained! {
+    /// A ball joint from three pins.
+    ChainedBall:
+    #[body] ring1: Body,
+    #[body] ring2: Body,
+    #[joint(socket -> ring1, about = z)] yaw: Pin,
+    #[joint(ring1 -> ring2, about = y)] pitch: Pin,
+    #[joint(ring2 -> last, about = x)] roll: Pin,
+}
+chained! {
+    /// All motions from a stage and three pins.
+    ChainedFree:
+    #[body] table: Body,
+    #[body] ring1: Body,
+    #[body] ring2: Body,
+    #[joint(socket -> table, along = (x, y, z))] stage: Stage,
+    #[joint(table -> ring1, about = z)] yaw: Pin,
+    #[joint(ring1 -> ring2, about = y)] pitch: Pin,
+    #[joint(ring2 -> last, about = x)] roll: Pin,
+}
+
+/// Springs and dashpots on every kind of coordinate, inputs on joints, bodies and points of bodies.
+#[mechanism(gravity = -g * y)]
+pub struct Workshop {
+    /// Gravity.
+    pub g: f64,
+    /// Mass of the arm.
+    pub m: f64,
+    /// Length of the arm.
+    pub l: f64,
+    /// Stiffness and rest of the spring in the shoulder.
+    pub shoulder_stiffness: f64,
+    /// Angle at which that spring is slack.
+    pub shoulder_rest: f64,
+    /// Damping in the shoulder.
+    pub shoulder_damping: f64,
+    /// Stiffness of the spring along the track.
+    pub track_stiffness: f64,
+    /// Its free length.
+    pub track_length: f64,
+    /// Damping of sliding along the track.
+    pub slide_damping: f64,
+    /// Damping of turning on the track.
+    pub turn_damping: f64,
+
+    #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))]
+    arm: Body,
+    #[body(mass = m / 2, com = 0.02 * z, inertia = cuboid(m / 2, 0.2, 0.1, 0.3))]
+    carriage: Body,
+    #[particle(mass = m / 4, at = carriage.at(0.1 * y + 0.05 * z))]
+    tip: Particle,
+    #[joint(ground -> arm, about = z)]
+    shoulder: Pin,
+    #[joint(arm.at(l * x).rotated(y(0.4)) -> carriage, along = x, about = y)]
+    track: Slot,
+
+    #[acts(on = shoulder, stiffness = shoulder_stiffness, free_angle = shoulder_rest)]
+    shoulder_spring: Spring,
+    #[acts(on = track.slide, stiffness = track_stiffness, free_length = track_length)]
+    track_spring: Spring,
+    #[acts(on = shoulder, damping = shoulder_damping)]
+    shoulder_dashpot: Dashpot,
+    #[acts(on = track.slide, damping = slide_damping)]
+    slide_dashpot: Dashpot,
+    #[acts(on = track.turn, damping = turn_damping)]
+    turn_dashpot: Dashpot,
+
+    #[acts(on = shoulder)]
+    motor: Torque,
+    #[acts(on = track.slide)]
+    drive: Force,
+    #[acts(on = track.turn)]
+    spin: Torque,
+    #[acts(on = carriage.at(0.1 * y + 0.05 * z), along = x)]
+    thrust: Force,
+    #[acts(on = carriage.at(0.1 * y + 0.05 * z), along = ground.y)]
+    lift: Force,
+    #[acts(on = carriage, about = z)]
+    wheel: Torque,
+    #[acts(on = carriage, about = 0.6 * ground.z - 0.8 * ground.x)]
+    gust: Torque,
+}
+
+/// A workshop with no two numbers alike.
+pub fn workshop() -> Workshop {
+    Workshop {
+        g: 9.7,
+        m: 1.7,
+        l: 0.8,
+        shoulder_stiffness: 12.0,
+        shoulder_rest: 0.3,
+        shoulder_damping: 0.4,
+        track_stiffness: 90.0,
+        track_length: 0.15,
+        slide_damping: 1.1,
+        turn_damping: 0.05,
+    }
+}
+
+/// A free base with a pin, a ball and a slot, without gravity; a spring inside.
+#[mechanism]
+pub struct Spacecraft {
+    #[body(mass = 3, inertia = cuboid(3, 0.4, 0.3, 0.5))]
+    hub: Body,
+    #[body(mass = 0.4, com = 0.3 * x, inertia = rod(0.4, 0.6, x))]
+    boom: Body,
+    #[body(mass = 0.6, com = 0.1 * z - 0.05 * x, inertia = disk(0.6, 0.2, z))]
+    mirror: Body,
+    #[body(mass = 0.3, com = 0.02 * y, inertia = sphere(0.3, 0.05))]
+    weight: Body,
+    #[joint(ground -> hub)]
+    pose: Free,
+    #[joint(hub.at(0.2 * x) -> boom, about = z)]
+    hinge: Pin,
+    #[joint(hub.at(-0.15 * y) -> mirror.at(0.02 * y))]
+    bearing: Ball,
+    #[joint(boom.at(0.6 * x) -> weight, along = y, about = x)]
+    rail: Slot,
+    #[acts(on = hinge, stiffness = 2, free_angle = 0.5)]
+    strut: Spring,
+    #[acts(on = hinge)]
+    motor: Torque,
+}

@@ -1,0 +1,17 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    post: Body,
+    #[joint(ground -> post)]
+    footing: Weld,
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[acts(on = post, along = x)]
+    acting: Force,
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, stiffness = x)]
+    acting: Spring,
+}
+
+fn main() {}

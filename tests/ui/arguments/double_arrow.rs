@@ -1,0 +1,11 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground => cart, along = x)]
+    rail: Sleeve,
+}
+
+fn main() {}

@@ -1,0 +1,11 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1, com = y)]
+    arm: Body,
+    #[joint(ground.rotated(pi / 2) -> arm, about = z)]
+    hinge: Pin,
+}
+
+fn main() {}

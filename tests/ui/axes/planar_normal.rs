@@ -1,0 +1,11 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1, com = x, inertia = sphere(1, 1))]
+    block: Body,
+    #[joint(ground -> block, along = (x, y), about = y)]
+    table: Planar,
+}
+
+fn main() {}

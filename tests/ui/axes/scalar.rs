@@ -1,0 +1,11 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1, com = x + y + z)]
+    arm: Body,
+    #[joint(ground -> arm, about = 1)]
+    hinge: Pin,
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    l: f64,
+    #[body(mass = 1, com = cross(l, x))]
+    arm: Body,
+    #[joint(ground -> arm, about = z)]
+    hinge: Pin,
+}
+
+fn main() {}

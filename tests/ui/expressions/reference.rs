@@ -1,0 +1,12 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    m: f64,
+    #[body(mass = &m)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+}
+
+fn main() {}

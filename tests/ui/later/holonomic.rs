@@ -1,0 +1,13 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[constraint(rail)]
+    thing: Holonomic,
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[point(on = cart, at = x)]
+    thing: Point,
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[constraint(rolls(cart.circle(1, y), ground.plane(z)))]
+    thing: Rolling,
+}
+
+fn main() {}

@@ -1,0 +1,11 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1, inertia = rod(1, 1, x).rotate(z(1)))]
+    arm: Body,
+    #[joint(ground -> arm, about = z)]
+    hinge: Pin,
+}
+
+fn main() {}

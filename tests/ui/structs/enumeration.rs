@@ -1,0 +1,9 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+enum Machine {
+    Cart,
+    Pole,
+}
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+fn machine() {}
+
+fn main() {}

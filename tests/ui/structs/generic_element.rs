@@ -1,0 +1,12 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    tool: Body<f64>,
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+}
+
+fn main() {}

@@ -1,0 +1,8 @@
+use linkwork::prelude::*;
+
+struct Machine;
+
+#[mechanism]
+impl Machine {}
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine;
+
+fn main() {}

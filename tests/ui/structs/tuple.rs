@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine(f64, f64);
+
+fn main() {}

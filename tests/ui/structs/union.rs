@@ -1,0 +1,9 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+union Machine {
+    a: f64,
+    b: f64,
+}
+
+fn main() {}

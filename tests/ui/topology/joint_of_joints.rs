@@ -1,0 +1,15 @@
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Machine {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[body(mass = 1, com = y)]
+    pole: Body,
+    #[joint(rail -> pole, about = z)]
+    hinge: Pin,
+}
+
+fn main() {}

@@ -1,0 +1,196 @@
+//! What a URDF file can say, and the options of `#[mechanism(urdf = …)]`, against the same in the struct language.
+
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{frame, mechanism};
+use support::compare::{assert_close, assert_same_dynamics};
+use support::random::Random;
+
+const TOLERANCE: f64 = 1e-13;
+
+/// Every joint moves alone, nothing resists, other gravity.
+#[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z)]
+struct Everything;
+
+#[mechanism(gravity = x - 9 * z)]
+struct Written {
+    #[body(mass = 7, inertia = diagonal(1, 1, 1))]
+    root: Body,
+    #[body(
+        mass = 0.9,
+        com = [0.01, 0.02, 0.03],
+        inertia = [[0.02, 0, 0.001], [0, 0.03, 0], [0.001, 0, 0.04]]
+    )]
+    drone: Body,
+    #[body(
+        mass = 1.5,
+        com = [0.05, -0.02, 0.2],
+        inertia = [[0.03, 0.001, -0.002], [0.001, 0.04, 0.003], [-0.002, 0.003, 0.05]]
+            .rotated(z(1.1), y(0.2), x(-0.3))
+    )]
+    arm: Body,
+    #[body(mass = 0.6, com = 0.1 * x, inertia = diagonal(0.01, 0.01, 0.01))]
+    follower: Body,
+    #[body(mass = 0.4, com = 0.1 * z, inertia = diagonal(0.01, 0.02, 0.025))]
+    slider: Body,
+    #[body(mass = 0.5, com = 0.1 * x, inertia = diagonal(0.003, 0.003, 0.005))]
+    puck: Body,
+    #[body(mass = 0.2, com = 0.2 * y, inertia = diagonal(0.001, 0.002, 0.0015))]
+    plate: Body,
+
+    #[joint(ground -> root)]
+    base: Weld,
+    #[joint(root.at(z).rotated(z(0.5)) -> drone)]
+    a_fly: Free,
+    #[joint(
+        root.at([0.1, 0.2, 0.3]).rotated(z(0.6), y(-0.5), x(0.4)) -> arm,
+        about = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0]
+    )]
+    b_turn: Pin,
+    #[joint(arm.at(0.3 * y).rotated(x(0.7)) -> follower, about = z)]
+    c_follow: Pin,
+    #[joint(arm.at(0.1 * x - 0.2 * z).rotated(y(0.3)) -> slider, along = -y)]
+    z_slide: Sleeve,
+    #[joint(root.at(y).rotated(x(0.2)) -> puck, about = z)]
+    d_skate: Planar,
+    #[joint(puck.at(0.1 * y + 0.1 * z).rotated(y(1.2)) -> plate)]
+    e_fix: Weld,
+}
+
+/// Depth first, the joints of a link in alphabetical order, whatever the order in the file.
+#[test]
+fn order_of_joints() {
+    assert_eq!(Everything::INPUTS, ["b_turn", "c_follow", "z_slide"]);
+    assert_eq!(Everything::VELOCITIES, Written::VELOCITIES);
+    assert_eq!(Everything::CONFIGURATION, Written::CONFIGURATION);
+    assert_eq!(
+        Everything::VELOCITIES[6..],
+        ["b_turn", "c_follow", "z_slide", "d_skate.x", "d_skate.y", "d_skate.angle"]
+    );
+}
+
+#[test]
+fn file_and_struct_say_the_same() {
+    assert_same_dynamics(&Everything, &Written {}, 20, TOLERANCE);
+    let q = Random::new(18).configuration(&Everything);
+    for (name, placement) in Everything::FRAMES.iter().zip(Everything.frame_placements(&q)) {
+        let k = Written::FRAMES.iter().position(|frame| frame == name).expect("the same names");
+        let expected = Written {}.frame_placements(&q)[k].to_homogeneous();
+        assert_close(name, placement.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);
+    }
+}
+
+/// Damping `c v` and friction `f tanh(v / friction_speed)` of the file.
+#[test]
+fn passive_forces_are_honoured() {
+    #[mechanism(
+        urdf = "data/urdf/everything.urdf",
+        mimic = independent,
+        gravity = x - 9 * z,
+        friction_speed = 0.02
+    )]
+    struct Passive;
+
+    let mut random = Random::new(19);
+    for speed in [0.0, 0.01, 1.0] {
+        let q = random.configuration(&Passive);
+        let v = random.vector(speed);
+        let mut expected = Everything.bias_forces(&q, &v);
+        expected[6] += 0.3 * v[6] + 0.1 * (v[6] / 0.02).tanh();
+        expected[8] += 2.0 * v[8];
+        assert_close("bias forces", Passive.bias_forces(&q, &v).as_slice(), expected.as_slice(), TOLERANCE);
+        let acceleration = Passive.forward_dynamics(&q, &v, &expected);
+        assert_close("at rest", acceleration.as_slice(), &[0.0; 12], 1e-11);
+    }
+}
+
+/// `c_follow = 0.2 − 0.5 b_turn`: the equations of the independent joints, seen through that relation.
+#[test]
+fn follower_with_factor_and_offset() {
+    #[mechanism(urdf = "data/urdf/everything.urdf", passive = ignore, gravity = x - 9 * z)]
+    struct Following;
+
+    // How each velocity of the independent joints depends on those that are left.
+    let relation = SMatrix::<f64, 12, 11>::from_fn(|i, j| match (i, j) {
+        (7, 6) => -0.5,
+        (i, j) if i < 7 && i == j || i > 7 && i == j + 1 => 1.0,
+        _ => 0.0,
+    });
+    assert_eq!(Following::INPUTS, ["b_turn", "z_slide"]);
+    let mut random = Random::new(20);
+    for _ in 0..10 {
+        let q = random.configuration(&Following);
+        let (v, a) = (random.vector(1.0), random.vector(1.0));
+        // Seven numbers of the free joint, then b_turn.
+        let q_free = q.insert_row(8, 0.2 - 0.5 * q[7]);
+        let (v_free, a_free) = (relation * v, relation * a);
+        let mass_matrix = relation.transpose() * Everything.mass_matrix(&q_free) * relation;
+        assert_close("mass matrix", Following.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), TOLERANCE);
+        let forces = relation.transpose() * Everything.inverse_dynamics(&q_free, &v_free, &a_free);
+        assert_close(
+            "forces",
+            Following.inverse_dynamics(&q, &v, &a).as_slice(),
+            forces.as_slice(),
+            TOLERANCE,
+        );
+        let acceleration = Following.forward_dynamics(&q, &v, &forces);
+        assert_close("forward dynamics", acceleration.as_slice(), a.as_slice(), 1e-11);
+        let energies = [Following.kinetic_energy(&q, &v), Following.potential_energy(&q)];
+        let expected = [Everything.kinetic_energy(&q_free, &v_free), Everything.potential_energy(&q_free)];
+        assert_close("energies", &energies, &expected, TOLERANCE);
+        let momentum = relation.transpose() * Everything.generalized_momentum(&q_free, &v_free);
+        assert_close("p", Following.generalized_momentum(&q, &v).as_slice(), momentum.as_slice(), TOLERANCE);
+
+        let (link, link_free) = (frame!(Following, "follower"), frame!(Everything, "follower"));
+        let jacobian = Following.frame_jacobian(link, &q);
+        let expected = Everything.frame_jacobian(link_free, &q_free) * relation;
+        assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
+        let acceleration = Following.frame_acceleration(link, &q, &v, &a);
+        let expected = Everything.frame_acceleration(link_free, &q_free, &v_free, &a_free);
+        assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
+        let push = Following.generalized_forces(&q, &SVector::from([2.0, 3.0]));
+        let expected =
+            relation.transpose() * Everything.generalized_forces(&q_free, &SVector::from([2.0, 0.0, 3.0]));
+        assert_close("inputs", push.as_slice(), expected.as_slice(), TOLERANCE);
+    }
+}
+
+#[test]
+fn free_base_without_inputs() {
+    #[mechanism(
+        urdf = "data/urdf/everything.urdf",
+        base = free,
+        inputs = none,
+        lock = ["b_turn", "z_slide"]
+    )]
+    struct Floating;
+
+    // The follower stands still with the joint that it follows, at its offset.
+    assert_eq!((Floating::NQ, Floating::NV, Floating::NU), (7 + 7 + 3, 6 + 6 + 3, 0));
+    assert_close("mass", &[Floating.total_mass()], &[7.0 + 0.9 + 1.5 + 0.6 + 0.4 + 0.5 + 0.2], TOLERANCE);
+    let q = Floating.neutral();
+    let mut q_free = Everything.neutral();
+    q_free[8] = 0.2;
+    let follower = Floating.frame_placement(frame!(Floating, "follower"), &q).to_homogeneous();
+    let expected = Everything.frame_placement(frame!(Everything, "follower"), &q_free).to_homogeneous();
+    assert_close("follower", follower.as_slice(), expected.as_slice(), TOLERANCE);
+}
+
+#[test]
+fn impossible_inertia_is_taken_on_trust() {
+    #[mechanism(urdf = "data/urdf/impossible.urdf", inertia = trust)]
+    struct Impossible;
+
+    assert_eq!(Impossible.mass_matrix(&Impossible.neutral())[0], 3.0);
+}
+
+#[test]
+fn single_precision() {
+    #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z, scalar = f32)]
+    struct Single;
+
+    let q = Random::new(21).configuration(&Everything);
+    let v = SVector::<f64, 12>::repeat(0.5);
+    let forces = Single.inverse_dynamics(&q.cast::<f32>(), &v.cast::<f32>(), &v.cast::<f32>());
+    let expected = Everything.inverse_dynamics(&q, &v, &v);
+    assert_close("forces", forces.cast::<f64>().as_slice(), expected.as_slice(), 1e-5);
+}
