@@ -2,11 +2,11 @@
 
 use crate::diag::Diagnostics;
 use crate::emit::frames::{FrameSteps, LinkSteps};
-use crate::emit::{Argument, Chart, Function, Output, Shape};
+use crate::emit::{Argument, Function, Output, Shape};
 use crate::expr::Expr;
 use crate::lower::{Program, lower};
 use crate::mechanics::{self, Joint, crba, energy, forces, frames, momentum, rnea};
-use crate::model::{Model, Motion, Quantity};
+use crate::model::{Chart, Model, Quantity};
 
 /// Up to how many velocities both algorithms of forward dynamics are derived and compared.
 const COMPARE: usize = 18;
@@ -29,7 +29,7 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
         frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
-        charts: charts(model),
+        charts: model.charts.clone(),
         equations: equations(model),
     })
 }
@@ -88,31 +88,14 @@ fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Ma
 fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut q = vec![g.zero(); model.nq()];
-    for chart in charts(model) {
+    for chart in &model.charts {
         match chart {
             Chart::Plain(..) => {}
-            Chart::Ball(k, _) => q[k + 3] = g.one(),
-            Chart::Free(k, _) => q[k + 6] = g.one(),
+            Chart::Ball(k, _) => q[*k + 3] = g.one(),
+            Chart::Free(k, _) => q[*k + 6] = g.one(),
         }
     }
     q
-}
-
-fn charts(model: &Model<'_>) -> Vec<Chart> {
-    let mut charts = Vec::new();
-    for link in &model.links {
-        let chart = match &link.motion {
-            Motion::Turn { coordinate: c, .. }
-            | Motion::Slide { coordinate: c, .. }
-            | Motion::Helix { coordinate: c, .. } => Chart::Plain(c.q, c.v),
-            Motion::Ball { q, v } => Chart::Ball(*q, *v),
-            Motion::Free { q, v } => Chart::Free(*q, *v),
-        };
-        if !charts.contains(&chart) {
-            charts.push(chart);
-        }
-    }
-    charts
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {

@@ -4,6 +4,7 @@ use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
 use super::scalar::ScalarSpelling;
+use crate::model::Chart;
 use crate::syntax::{ScalarType, Shell};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
@@ -39,17 +40,6 @@ pub struct Output {
     pub charts: Vec<Chart>,
     /// The equations of motion as text; empty for large mechanisms.
     pub equations: String,
-}
-
-/// A part of the configuration space.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Chart {
-    /// A plain coordinate: entries of `q` and `v`.
-    Plain(usize, usize),
-    /// A ball's quaternion.
-    Ball(usize, usize),
-    /// A free joint's position and quaternion.
-    Free(usize, usize),
 }
 
 /// Methods of the trait that are inherent functions of the same name.

@@ -7,6 +7,7 @@ pub mod graph;
 pub mod matrix;
 pub mod polynomial;
 pub mod print;
+pub mod replace;
 pub mod rotation;
 
 pub use graph::{Expr, Function, Graph, Id, Node, Symbol};

@@ -1,1 +1,361 @@
-//! Polynomial normal form over atoms, for reading.
+//! Polynomials over atoms, the form in which small expressions are read: sums of monomials with numbers as
+//! coefficients. An atom is a symbol, a sine or cosine, an inverse, or any other function, which is not looked into.
+//! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
+//! whatever grows beyond the limits is given up with `None`.
+
+use super::graph::{Function, Symbol};
+
+mod monomial;
+#[cfg(test)]
+mod tests;
+
+pub use monomial::{ATOMS, Monomial};
+
+/// Most terms of a polynomial.
+pub const TERMS: usize = 400;
+/// Most angles.
+pub const ANGLES: usize = 8;
+/// Most steps of a whole derivation, of about a microsecond each in an unoptimised build.
+const WORK: usize = 100_000;
+/// What remains of two numbers that cancel, relative to them, is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// A monomial with its coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// Product of powers of atoms.
+    pub monomial: Monomial,
+    /// Factor, not zero.
+    pub coefficient: f64,
+}
+
+/// A sum of terms in order of their monomials, each of which occurs once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Polynomial {
+    /// The terms.
+    pub terms: Vec<Term>,
+}
+
+/// The sine or cosine of a sum of whole multiples of the ring's angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Wave {
+    /// How often each angle is taken; the first that occurs is positive.
+    pub angle: [i8; ANGLES],
+    /// False for the cosine.
+    pub cosine: bool,
+}
+
+/// What a polynomial is made of.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it all")]
+pub enum Atom {
+    Symbol(Symbol),
+    Wave(Wave),
+    Inverse(Polynomial),
+    Call(Function, Polynomial),
+    Atan2(Polynomial, Polynomial),
+    Power(Polynomial, Polynomial),
+}
+
+/// Where an atom stands in a product that is read from left to right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rank {
+    /// Constant in time, and functions of such.
+    Parameter,
+    /// Variable in time.
+    Position,
+    /// A function of positions.
+    Function,
+    /// A rate, or a function of rates.
+    Rate,
+    /// A rate of a rate.
+    Acceleration,
+    /// Given from outside.
+    Input,
+}
+
+/// The atoms of a family of polynomials, and their rules.
+pub struct Ring {
+    /// The atoms; each is made of earlier ones.
+    pub atoms: Vec<Atom>,
+    /// By atom.
+    pub ranks: Vec<Rank>,
+    /// The angles that waves are made of: multiples of monomials.
+    pub angles: Vec<Term>,
+    rank: fn(Symbol) -> Rank,
+    /// Atoms whose squares are replaced, and by what.
+    squares: Vec<(usize, Polynomial)>,
+    /// The bits of powers above one of these atoms.
+    squared: Monomial,
+    /// Atoms whose product is one.
+    inverses: Vec<(usize, usize)>,
+    work: usize,
+}
+
+impl Polynomial {
+    /// A number.
+    pub fn number(value: f64) -> Polynomial {
+        Polynomial::single(Monomial::ONE, value)
+    }
+
+    /// One term.
+    pub fn single(monomial: Monomial, coefficient: f64) -> Polynomial {
+        let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
+        Polynomial { terms }
+    }
+
+    /// The sum of terms in any order.
+    pub fn sum(mut terms: Vec<Term>) -> Polynomial {
+        terms.sort_by_key(|t| t.monomial);
+        let mut sum: Vec<Term> = Vec::with_capacity(terms.len());
+        for term in terms {
+            match sum.last_mut() {
+                Some(last) if last.monomial == term.monomial => {
+                    last.coefficient = add(last.coefficient, term.coefficient);
+                }
+                _ => sum.push(term),
+            }
+        }
+        sum.retain(|t| t.coefficient != 0.0);
+        Polynomial { terms: sum }
+    }
+
+    /// The sum.
+    pub fn plus(&self, other: &Polynomial) -> Polynomial {
+        let (a, b) = (&self.terms, &other.terms);
+        let mut terms = Vec::with_capacity(a.len() + b.len());
+        let (mut i, mut j) = (0, 0);
+        while i < a.len() && j < b.len() {
+            let (s, t) = (a[i], b[j]);
+            if s.monomial == t.monomial {
+                let coefficient = add(s.coefficient, t.coefficient);
+                if coefficient != 0.0 {
+                    terms.push(Term { coefficient, ..s });
+                }
+                (i, j) = (i + 1, j + 1);
+            } else if s.monomial < t.monomial {
+                terms.push(s);
+                i += 1;
+            } else {
+                terms.push(t);
+                j += 1;
+            }
+        }
+        terms.extend_from_slice(&a[i..]);
+        terms.extend_from_slice(&b[j..]);
+        Polynomial { terms }
+    }
+
+    /// A multiple.
+    pub fn scaled(&self, factor: f64) -> Polynomial {
+        let scale = |t: &Term| Term { coefficient: t.coefficient * factor, ..*t };
+        Polynomial { terms: self.terms.iter().map(scale).collect() }
+    }
+
+    /// The product with one term. The order of monomials is the same before and after.
+    fn times(&self, factor: &Term) -> Option<Polynomial> {
+        let mut terms = Vec::with_capacity(self.terms.len());
+        for t in &self.terms {
+            let monomial = t.monomial.times(factor.monomial)?;
+            terms.push(Term { monomial, coefficient: t.coefficient * factor.coefficient });
+        }
+        Some(Polynomial { terms })
+    }
+}
+
+/// The sum, zero where only rounding is left of it.
+fn add(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    if sum.abs() <= ROUNDING * a.abs().max(b.abs()) { 0.0 } else { sum }
+}
+
+impl Ring {
+    /// No atoms yet; `rank` tells what a symbol is.
+    pub fn new(rank: fn(Symbol) -> Rank) -> Ring {
+        Ring {
+            atoms: Vec::new(),
+            ranks: Vec::new(),
+            angles: Vec::new(),
+            rank,
+            squares: Vec::new(),
+            squared: Monomial::ONE,
+            inverses: Vec::new(),
+            work: WORK,
+        }
+    }
+
+    /// Takes steps off what is left; `None` when nothing is.
+    pub fn spend(&mut self, steps: usize) -> Option<()> {
+        self.work = self.work.checked_sub(steps)?;
+        Some(())
+    }
+
+    /// An atom as a monomial.
+    pub fn atom(&mut self, atom: Atom) -> Option<Monomial> {
+        let known = self.atoms.iter().position(|a| *a == atom);
+        let index = match known {
+            Some(index) => index,
+            None => self.add_atom(atom)?,
+        };
+        Some(Monomial::atom(index))
+    }
+
+    fn add_atom(&mut self, atom: Atom) -> Option<usize> {
+        let index = self.atoms.len();
+        if index == ATOMS {
+            return None;
+        }
+        if let Atom::Call(Function::Sqrt, radicand) = &atom {
+            self.squares.push((index, radicand.clone()));
+            self.squared = self.squared.or(Monomial::above_one(index));
+        }
+        if let Atom::Inverse(p) = &atom
+            && let [term] = p.terms.as_slice()
+            && let Some(inverse) = term.monomial.factors().next()
+        {
+            self.inverses.push((inverse.0, index));
+        }
+        self.ranks.push(self.rank_of(&atom));
+        self.atoms.push(atom);
+        Some(index)
+    }
+
+    fn rank_of(&self, atom: &Atom) -> Rank {
+        let of_monomial = |m: Monomial| m.factors().map(|(k, _)| self.ranks[k]).max();
+        let of = |p: &Polynomial| p.terms.iter().filter_map(|t| of_monomial(t.monomial)).max();
+        let argument = match atom {
+            Atom::Symbol(s) => return (self.rank)(*s),
+            Atom::Inverse(p) => return of(p).unwrap_or(Rank::Parameter),
+            Atom::Wave(w) => {
+                let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
+                angles.filter_map(|(a, _)| of_monomial(a.monomial)).max()
+            }
+            Atom::Call(_, p) => of(p),
+            Atom::Atan2(p, q) | Atom::Power(p, q) => of(p).max(of(q)),
+        };
+        match argument {
+            None | Some(Rank::Parameter) => Rank::Parameter,
+            Some(Rank::Position | Rank::Function) => Rank::Function,
+            Some(_) => Rank::Rate,
+        }
+    }
+
+    /// An angle, by its index.
+    pub fn angle(&mut self, angle: Term) -> Option<usize> {
+        if let Some(index) = self.angles.iter().position(|a| *a == angle) {
+            return Some(index);
+        }
+        let index = self.angles.len();
+        if index == ANGLES {
+            return None;
+        }
+        self.angles.push(angle);
+        let sine = self.circle(index, false)?;
+        let cosine = self.circle(index, true)?;
+        let (sine, _) = sine.factors().next()?;
+        let rest = Polynomial::sum(vec![
+            Term { monomial: Monomial::ONE, coefficient: 1.0 },
+            Term { monomial: cosine.times(cosine)?, coefficient: -1.0 },
+        ]);
+        self.squares.push((sine, rest));
+        self.squared = self.squared.or(Monomial::above_one(sine));
+        Some(index)
+    }
+
+    /// Sine or cosine of an angle.
+    pub fn circle(&mut self, index: usize, cosine: bool) -> Option<Monomial> {
+        let mut angle = [0; ANGLES];
+        angle[index] = 1;
+        self.atom(Atom::Wave(Wave { angle, cosine }))
+    }
+
+    /// The sum, within the limits.
+    pub fn plus(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+        self.spend(a.terms.len() + b.terms.len())?;
+        let sum = a.plus(b);
+        (sum.terms.len() <= TERMS).then_some(sum)
+    }
+
+    /// The product.
+    pub fn times(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+        let (few, many) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
+        let mut product = Polynomial::default();
+        for (k, term) in few.terms.iter().enumerate() {
+            self.spend(many.terms.len())?;
+            let row = many.times(term)?;
+            product = if k == 0 { row } else { self.plus(&product, &row)? };
+        }
+        self.reduced(product)
+    }
+
+    /// Squares of sines and roots replaced, products with inverses made one.
+    fn reduced(&mut self, mut p: Polynomial) -> Option<Polynomial> {
+        loop {
+            let rewrites = |t: &Term| t.monomial.meets(self.squared) || self.cancels(t.monomial).is_some();
+            if !p.terms.iter().any(rewrites) {
+                return (p.terms.len() <= TERMS).then_some(p);
+            }
+            let mut terms = Vec::with_capacity(p.terms.len() + 4);
+            for term in &p.terms {
+                terms.extend(self.rewritten(term)?.terms);
+            }
+            self.spend(4 * terms.len())?;
+            p = Polynomial::sum(terms);
+        }
+    }
+
+    fn cancels(&self, m: Monomial) -> Option<Monomial> {
+        let pair = self.inverses.iter().find(|(a, b)| m.power(*a) > 0 && m.power(*b) > 0)?;
+        Monomial::atom(pair.0).times(Monomial::atom(pair.1))
+    }
+
+    /// A term after one rule.
+    fn rewritten(&self, term: &Term) -> Option<Polynomial> {
+        let Term { monomial, coefficient } = *term;
+        if let Some(one) = self.cancels(monomial) {
+            return Some(Polynomial::single(monomial.over(one), coefficient));
+        }
+        match self.squares.iter().find(|(atom, _)| monomial.power(*atom) > 1) {
+            Some((atom, square)) => {
+                let atom = Monomial::atom(*atom);
+                square.times(&Term { monomial: monomial.over(atom.times(atom)?), coefficient })
+            }
+            None => Some(Polynomial { terms: vec![*term] }),
+        }
+    }
+
+    /// The full powers of the atoms that a condition holds for.
+    pub fn mask(&self, holds: impl Fn(&Atom, Rank) -> bool) -> Monomial {
+        let atoms = self.atoms.iter().zip(&self.ranks).enumerate();
+        atoms.filter(|(_, (a, r))| holds(a, **r)).fold(Monomial::ONE, |m, (k, _)| m.or(Monomial::all_of(k)))
+    }
+
+    /// The value of a polynomial, given those of all symbols.
+    pub fn evaluate(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
+        let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
+        for atom in &self.atoms {
+            let of = |p: &Polynomial| value(p, &values);
+            values.push(match atom {
+                Atom::Symbol(s) => symbol(*s),
+                Atom::Wave(w) => {
+                    let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
+                    let angle = angles.map(|(a, n)| f64::from(n) * term_value(a, &values)).sum::<f64>();
+                    if w.cosine { angle.cos() } else { angle.sin() }
+                }
+                Atom::Inverse(p) => 1.0 / of(p),
+                Atom::Call(f, p) => f.apply(of(p)),
+                Atom::Atan2(y, x) => of(y).atan2(of(x)),
+                Atom::Power(a, b) => of(a).powf(of(b)),
+            });
+        }
+        value(p, &values)
+    }
+}
+
+fn value(p: &Polynomial, atoms: &[f64]) -> f64 {
+    p.terms.iter().map(|t| term_value(t, atoms)).sum()
+}
+
+fn term_value(t: &Term, atoms: &[f64]) -> f64 {
+    t.monomial.factors().fold(t.coefficient, |v, (k, n)| v * atoms[k].powi(i32::from(n)))
+}

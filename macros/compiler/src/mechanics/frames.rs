@@ -72,7 +72,7 @@ pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placeme
 
 /// Twist of a link from its parent's (6 given numbers, none for a root).
 pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
-    let own = joint.relative(model, v);
+    let own = joint.twist(model, v);
     match joint.parent {
         None => own,
         Some(_) => joint.twist_to_child(&given_spatial(model, 0)).plus(&own),
@@ -87,7 +87,10 @@ pub fn link_acceleration<'g>(
     v: &[Expr<'g>],
     a: &[Expr<'g>],
 ) -> Spatial<'g> {
-    let (rate, own) = (joint.relative(model, v), joint.relative(model, a));
+    let (rate, mut own) = (joint.twist(model, v), joint.relative(model, a));
+    if let Some(drift) = &joint.drift {
+        own = own.plus(&drift.acceleration);
+    }
     let turning = rate.angular.cross(rate.linear);
     if joint.parent.is_none() {
         return Spatial { linear: own.linear + turning, angular: own.angular };

@@ -7,7 +7,7 @@
 //! `w × L + v × P`.
 
 use super::crba::Matrix;
-use super::kinematics::{Joint, resistance};
+use super::kinematics::{Joint, configuration_rate, resistance};
 use super::{position, velocities};
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
@@ -27,43 +27,7 @@ pub struct Lagrange<'g> {
 
 /// Rate of every entry of `q`, as an expression of `q` and `v`.
 pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let g = model.graph;
-    let mut rates = vec![g.zero(); model.nq()];
-    let q = |k: usize| Quantity::Configuration(k).expr(g);
-    let v = |k: usize| Quantity::Velocity(k).expr(g);
-    for link in &model.links {
-        match &link.motion {
-            Motion::Turn { coordinate: c, .. }
-            | Motion::Slide { coordinate: c, .. }
-            | Motion::Helix { coordinate: c, .. } => rates[c.q] = v(c.v),
-            Motion::Ball { q: first, v: w } => {
-                quaternion_rates(&mut rates, *first, q, [v(*w), v(w + 1), v(w + 2)])
-            }
-            Motion::Free { q: first, v: w } => {
-                quaternion_rates(&mut rates, first + 3, q, [v(w + 3), v(w + 4), v(w + 5)]);
-                let quaternion = [q(first + 3), q(first + 4), q(first + 5), q(first + 6)];
-                let rotation = crate::expr::Rotation::quaternion(quaternion).matrix();
-                let linear = rotation * Vec3([v(*w), v(w + 1), v(w + 2)]);
-                rates[*first..first + 3].copy_from_slice(&linear.0);
-            }
-        }
-    }
-    rates
-}
-
-/// Rate of a quaternion x y z w with body-frame angular velocity: half of the product of both.
-fn quaternion_rates<'g>(
-    rates: &mut [Expr<'g>],
-    first: usize,
-    q: impl Fn(usize) -> Expr<'g>,
-    w: [Expr<'g>; 3],
-) {
-    let [x, y, z, s] = [q(first), q(first + 1), q(first + 2), q(first + 3)];
-    let [a, b, c] = w.map(|w| w * 0.5);
-    rates[first] = s * a + y * c - z * b;
-    rates[first + 1] = s * b + z * a - x * c;
-    rates[first + 2] = s * c + x * b - y * a;
-    rates[first + 3] = -(x * a + y * b + z * c);
+    (0..model.nq()).map(|k| configuration_rate(model, k)).collect()
 }
 
 /// Derives Lagrange's equations.
@@ -92,9 +56,9 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     Lagrange { kinetic, potential, mass_matrix, bias }
 }
 
-/// `Σ ∂e/∂q q̇`.
+/// `Σ ∂e/∂q q̇ + ∂e/∂t`.
 fn along<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
-    let mut sum = e.zero();
+    let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).of(e);
     for (rate, d) in rates.iter().zip(by_q) {
         sum += d.of(e) * *rate;
     }

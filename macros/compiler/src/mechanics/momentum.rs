@@ -60,6 +60,12 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         })
         .collect();
     let mut rate = project(model, joints, &wrenches);
+    // Where the subspace itself changes: Ṡᵀ F.
+    for (joint, momentum) in joints.iter().zip(&momenta) {
+        for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
+            rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
+        }
+    }
     for (rate, resistance) in rate.iter_mut().zip(resistance(model, true)) {
         *rate -= resistance;
     }

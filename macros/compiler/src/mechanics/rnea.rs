@@ -68,12 +68,16 @@ fn motion<'g>(
     let mut states: Vec<State<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map_or(ground, |p| states[p.0]);
-        let rate = joint.relative(model, v);
+        let rate = joint.twist(model, v);
         let w_parent = joint.rotation.to_child(parent.w);
         let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
         // The joint's translation: Coriolis acceleration, and the rotation of a velocity given in link axes.
         let mut origin = joint.rotation.to_child(parent.a + parent.u * joint.translation)
             + (w_parent + w_parent + rate.angular).cross(rate.linear);
+        if let Some(drift) = &joint.drift {
+            dw += drift.acceleration.angular;
+            origin += drift.acceleration.linear;
+        }
         if let Some(a) = a {
             let own = joint.relative(model, a);
             dw += own.angular;

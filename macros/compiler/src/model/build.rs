@@ -4,8 +4,7 @@ use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::resolve::Scope;
 use super::tree::{GROUND, Held, Order, find_tree};
-use super::{
-    Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame, Pose,
+use super::{Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame, Pose,
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};
@@ -118,6 +117,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             gravity: gravity.unwrap_or(Vec3::zero(graph)),
             friction_speed,
             links: Vec::new(),
+            charts: Vec::new(),
             configuration: Vec::new(),
             velocities: Vec::new(),
             inputs: Vec::new(),
@@ -137,6 +137,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             let (q, v) = (self.model.nq(), self.model.nv());
             let mut plain = Vec::new();
             if joint.mimic.is_none() {
+                self.model.charts.extend(charts(joint.kind, q, v, joint.along.len()));
                 let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
                 for name in names_q {
                     self.model.configuration.push(full_name(&joint.name.text, name));
@@ -426,6 +427,14 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Names of all joints.
     pub fn joint_names(&self) -> Vec<String> {
         self.description.joints.iter().map(|j| j.name.text.clone()).collect()
+    }
+}
+
+fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {
+    match kind {
+        JointKind::Ball => vec![Chart::Ball(q, v)],
+        JointKind::Free => vec![Chart::Free(q, v)],
+        _ => (0..coordinate_names(kind, along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect(),
     }
 }
 

@@ -11,6 +11,7 @@ mod axis;
 mod build;
 mod inertia;
 mod joint;
+pub mod kinematics;
 mod resolve;
 mod tree;
 
@@ -32,6 +33,8 @@ pub enum Quantity {
     Force(usize),
     /// An entry of `u`.
     Input(usize),
+    /// Time.
+    Time,
     /// An entry of an intermediate result that is handed to a generated function.
     Given(usize),
 }
@@ -48,7 +51,8 @@ impl Quantity {
             Quantity::Acceleration(k) => (3, k),
             Quantity::Force(k) => (4, k),
             Quantity::Input(k) => (5, k),
-            Quantity::Given(k) => (6, k),
+            Quantity::Time => (6, 0),
+            Quantity::Given(k) => (7, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -63,6 +67,7 @@ impl Quantity {
             3 => Quantity::Acceleration(index),
             4 => Quantity::Force(index),
             5 => Quantity::Input(index),
+            6 => Quantity::Time,
             _ => Quantity::Given(index),
         }
     }
@@ -188,6 +193,19 @@ pub enum Motion<'g> {
         /// First of six entries of `v`.
         v: usize,
     },
+    /// The link's placement is itself an expression of coordinates and time.
+    Placed,
+}
+
+/// A part of the configuration space: first entries of `q` and `v`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chart {
+    /// A plain coordinate.
+    Plain(usize, usize),
+    /// A ball's quaternion.
+    Ball(usize, usize),
+    /// A free joint's position and quaternion.
+    Free(usize, usize),
 }
 
 /// A moving frame of the tree, with everything that is fixed in it.
@@ -285,6 +303,8 @@ pub struct Model<'g> {
     pub friction_speed: Expr<'g>,
     /// Links, parents before children.
     pub links: Vec<Link<'g>>,
+    /// Parts of the configuration space, in the order of `v`.
+    pub charts: Vec<Chart>,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
     /// Name of every entry of `v`, and where the joint stands.

@@ -1,0 +1,125 @@
+//! Expressions → polynomials in normal form: products are multiplied out, sines and cosines of sums are written by
+//! those of their angles.
+
+use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
+use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
+
+const UNKNOWN: u32 = u32::MAX;
+/// Largest multiple of an angle that is written by sine and cosine of the angle itself.
+const MULTIPLE: f64 = 4.0;
+
+/// Normal forms of expressions of one graph; what was found once is kept.
+pub struct Normal<'g> {
+    graph: &'g Graph,
+    /// The atoms.
+    pub ring: Ring,
+    /// By node, index of its polynomial.
+    known: Vec<u32>,
+    polynomials: Vec<Polynomial>,
+}
+
+impl<'g> Normal<'g> {
+    /// No expression yet; `rank` tells what a symbol is.
+    pub fn new(graph: &'g Graph, rank: fn(Symbol) -> Rank) -> Normal<'g> {
+        Normal { graph, ring: Ring::new(rank), known: Vec::new(), polynomials: Vec::new() }
+    }
+
+    /// The normal form of `e`; `None` beyond the limits.
+    pub fn of(&mut self, e: Expr<'g>) -> Option<Polynomial> {
+        self.known.resize(self.known.len().max(e.id() as usize + 1), UNKNOWN);
+        // Operands before operations, without recursion: a deep chain must not exhaust the stack.
+        let mut todo = vec![e.id()];
+        while let Some(&id) = todo.last() {
+            if self.known[id as usize] != UNKNOWN {
+                todo.pop();
+                continue;
+            }
+            let before = todo.len();
+            self.graph.node(id).operands(|a| {
+                if self.known[a as usize] == UNKNOWN {
+                    todo.push(a);
+                }
+            });
+            if todo.len() == before {
+                self.ring.spend(1)?;
+                let polynomial = self.rule(id)?;
+                self.known[id as usize] = self.polynomials.len() as u32;
+                self.polynomials.push(polynomial);
+                todo.pop();
+            }
+        }
+        Some(self.polynomials[self.known[e.id() as usize] as usize].clone())
+    }
+
+    fn rule(&mut self, id: Id) -> Option<Polynomial> {
+        let at = |id: Id| &self.polynomials[self.known[id as usize] as usize];
+        let atom = match self.graph.node(id) {
+            Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
+            Node::Neg(a) => return Some(at(a).scaled(-1.0)),
+            Node::Add(a, b) => return self.ring.plus(at(a), at(b)),
+            Node::Sub(a, b) => return self.ring.plus(at(a), &at(b).scaled(-1.0)),
+            Node::Mul(a, b) => return self.ring.times(at(a), at(b)),
+            Node::Div(a, b) => {
+                let inverse = inverse(&mut self.ring, at(b))?;
+                return self.ring.times(at(a), &inverse);
+            }
+            Node::Call(Function::Sin, a) => return wave(&mut self.ring, at(a), false),
+            Node::Call(Function::Cos, a) => return wave(&mut self.ring, at(a), true),
+            Node::Symbol(s) => Atom::Symbol(s),
+            Node::Call(f, a) => Atom::Call(f, at(a).clone()),
+            Node::Atan2(a, b) => Atom::Atan2(at(a).clone(), at(b).clone()),
+            Node::Pow(a, b) => Atom::Power(at(a).clone(), at(b).clone()),
+        };
+        Some(Polynomial::single(self.ring.atom(atom)?, 1.0))
+    }
+}
+
+/// The sine or cosine of a sum of angles, multiplied out: the point on the unit circle turned angle by angle.
+fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
+    let (mut cos, mut sin) = (Polynomial::number(1.0), Polynomial::default());
+    for term in &argument.terms {
+        let size = term.coefficient.abs();
+        let whole = size.fract() == 0.0 && size <= MULTIPLE && term.monomial != Monomial::ONE;
+        let (scale, times) = if whole { (1.0, size as usize) } else { (size, 1) };
+        let angle = ring.angle(Term { coefficient: scale, ..*term })?;
+        let c = Polynomial::single(ring.circle(angle, true)?, 1.0);
+        let s = Polynomial::single(ring.circle(angle, false)?, term.coefficient.signum());
+        for _ in 0..times {
+            let (cc, ss) = (ring.times(&cos, &c)?, ring.times(&sin, &s)?);
+            let (cs, sc) = (ring.times(&cos, &s)?, ring.times(&sin, &c)?);
+            (cos, sin) = (ring.plus(&cc, &ss.scaled(-1.0))?, ring.plus(&cs, &sc)?);
+        }
+    }
+    Some(if cosine { cos } else { sin })
+}
+
+/// `1 / p`: factor by factor for a single term, else an atom of its own for what is left after common factors.
+fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
+    let first = *p.terms.first()?;
+    let common = p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial));
+    let mut product = Monomial::ONE;
+    for (atom, power) in common.factors() {
+        let inverse = inverse_atom(ring, atom)?;
+        for _ in 0..power {
+            product = product.times(inverse)?;
+        }
+    }
+    if p.terms.len() > 1 {
+        let rest = p.terms.iter().map(|t| Term {
+            monomial: t.monomial.over(common),
+            coefficient: t.coefficient / first.coefficient,
+        });
+        let rest = Polynomial { terms: rest.collect() };
+        product = product.times(ring.atom(Atom::Inverse(rest))?)?;
+    }
+    Some(Polynomial::single(product, 1.0 / first.coefficient))
+}
+
+fn inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
+    if let Some(Atom::Inverse(p)) = ring.atoms.get(atom)
+        && let [term] = p.terms.as_slice()
+    {
+        return Some(term.monomial);
+    }
+    ring.atom(Atom::Inverse(Polynomial::single(Monomial::atom(atom), 1.0)))
+}

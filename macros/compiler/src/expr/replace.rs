@@ -1,0 +1,49 @@
+//! Replacement of symbols by expressions.
+
+use super::graph::{Expr, Graph, Id, Node, Symbol};
+
+/// An expression with symbols replaced where `by` says so.
+pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
+    let graph = e.graph();
+    let mut known: Vec<Option<Id>> = vec![None; e.id() as usize + 1];
+    // Operands before operations, without recursion.
+    let mut todo = vec![e.id()];
+    while let Some(&id) = todo.last() {
+        if known[id as usize].is_some() {
+            todo.pop();
+            continue;
+        }
+        let before = todo.len();
+        graph.node(id).operands(|a| {
+            if known[a as usize].is_none() {
+                todo.push(a);
+            }
+        });
+        if todo.len() == before {
+            known[id as usize] = Some(rebuilt(graph, id, &known, by).id());
+            todo.pop();
+        }
+    }
+    known[e.id() as usize].map_or(e, |id| graph.expr(id))
+}
+
+fn rebuilt<'g>(
+    graph: &'g Graph,
+    id: Id,
+    known: &[Option<Id>],
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+) -> Expr<'g> {
+    let at = |a: Id| graph.expr(known[a as usize].unwrap_or(a));
+    match graph.node(id) {
+        Node::Const(_) => graph.expr(id),
+        Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
+        Node::Neg(a) => -at(a),
+        Node::Add(a, b) => at(a) + at(b),
+        Node::Sub(a, b) => at(a) - at(b),
+        Node::Mul(a, b) => at(a) * at(b),
+        Node::Div(a, b) => at(a) / at(b),
+        Node::Call(f, a) => at(a).call(f),
+        Node::Atan2(a, b) => at(a).atan2(at(b)),
+        Node::Pow(a, b) => at(a).pow(at(b)),
+    }
+}

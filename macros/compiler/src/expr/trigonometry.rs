@@ -1,0 +1,237 @@
+//! Fewer terms by trigonometric identities: `sin² + cos² = 1`, and products of sines and cosines against those of sums
+//! and differences of angles. Every step makes one term of two; it is tried from the products as they stand and from
+//! their Fourier sum, and the shorter end is kept.
+
+use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};
+
+/// More terms than these are left alone.
+const MOST: usize = 40;
+/// The highest product that is written as a Fourier sum.
+const DEGREE: u32 = 6;
+/// Relative difference of coefficients that are taken to be equal.
+const ROUNDING: f64 = 1e-11;
+
+/// A product of waves, in order, with a coefficient.
+#[derive(Clone, Debug, PartialEq)]
+struct Product {
+    waves: Vec<Wave>,
+    coefficient: f64,
+}
+
+/// The shortest form found.
+pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
+    let mask = ring.mask(|atom, _| matches!(atom, Atom::Wave(_)));
+    let mut terms = p.terms.clone();
+    terms.sort_by_key(|t| t.monomial.without(mask));
+    let mut out = Vec::with_capacity(terms.len());
+    for group in terms.chunk_by(|a, b| a.monomial.without(mask) == b.monomial.without(mask)) {
+        if group.len() == 1 || group.len() > MOST {
+            out.extend_from_slice(group);
+            continue;
+        }
+        for product in shortest(ring, group, mask)? {
+            let mut monomial = group[0].monomial.without(mask);
+            for wave in product.waves {
+                monomial = monomial.times(ring.atom(Atom::Wave(wave))?)?;
+            }
+            out.push(Term { monomial, coefficient: product.coefficient });
+        }
+    }
+    Some(Polynomial::sum(out))
+}
+
+fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Product>> {
+    let products: Vec<Product> = terms.iter().map(|t| product(ring, t, mask)).collect();
+    let degree = terms.iter().map(|t| t.monomial.only(mask).degree()).max();
+    let sum = if degree <= Some(DEGREE) { fourier(ring, &products)? } else { products.clone() };
+    let as_products = merged(ring, products)?;
+    let as_sum = merged(ring, sum)?;
+    Some(if length(&as_sum) < length(&as_products) { as_sum } else { as_products })
+}
+
+fn product(ring: &Ring, term: &Term, mask: Monomial) -> Product {
+    let mut waves = Vec::new();
+    for (atom, power) in term.monomial.only(mask).factors() {
+        if let Atom::Wave(wave) = &ring.atoms[atom] {
+            waves.extend((0..power).map(|_| *wave));
+        }
+    }
+    waves.sort_unstable();
+    Product { waves, coefficient: term.coefficient }
+}
+
+/// Terms; multiples of angles; factors. Less is better, in this order.
+fn length(products: &[Product]) -> (usize, usize, usize) {
+    let waves = || products.iter().flat_map(|p| &p.waves);
+    let multiples = waves().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
+    (products.len(), multiples, waves().count())
+}
+
+/// Makes one product of two as long as any two allow it.
+fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+    'again: loop {
+        for j in 1..products.len() {
+            for i in 0..j {
+                ring.spend(1)?;
+                let Some(both) = combined(&products[i], &products[j]) else { continue };
+                products.remove(j);
+                products.remove(i);
+                if both.coefficient != 0.0 {
+                    products.push(both);
+                }
+                continue 'again;
+            }
+        }
+        return Some(products);
+    }
+}
+
+/// The sum of two products, if it is one.
+fn combined(a: &Product, b: &Product) -> Option<Product> {
+    let ratio = b.coefficient / a.coefficient;
+    if a.waves == b.waves {
+        let coefficient = if near(ratio, -1.0) { 0.0 } else { a.coefficient + b.coefficient };
+        return Some(Product { waves: a.waves.clone(), coefficient });
+    }
+    if ![1.0, -1.0, -2.0, -0.5].iter().any(|r| near(ratio, *r)) {
+        return None;
+    }
+    let (mut common, x, y) = split(&a.waves, &b.waves)?;
+    let (sum, coefficient) = match rule(&x, &y, ratio) {
+        Some((sum, factor)) => (sum, factor * a.coefficient),
+        None => {
+            let (sum, factor) = rule(&y, &x, 1.0 / ratio)?;
+            (sum, factor * b.coefficient)
+        }
+    };
+    common.extend(sum);
+    common.sort_unstable();
+    Some(Product { waves: common, coefficient })
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * b.abs()
+}
+
+/// What two products have in common, and what is left of each: no more than two waves.
+fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
+    let (mut common, mut x, mut y) = (Vec::new(), Vec::new(), b.to_vec());
+    for wave in a {
+        match y.iter().position(|w| w == wave) {
+            Some(k) => common.push(y.remove(k)),
+            None => x.push(*wave),
+        }
+    }
+    (x.len() <= 2 && y.len() <= 2).then_some((common, x, y))
+}
+
+/// `x + ratio y` as a product of waves with a factor, if it is one.
+fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
+    let is = |r: f64| near(ratio, r);
+    match (x, y) {
+        ([], [a, b]) if a == b && is(-1.0) => Some((vec![Wave { cosine: !a.cosine, ..*a }; 2], 1.0)),
+        ([], [a, b]) if a == b && is(-2.0) => {
+            let sign = if a.cosine { -1.0 } else { 1.0 };
+            Some(made(true, sum(a, b, 1), sign))
+        }
+        ([], [a]) if a.cosine => halves(&Wave { angle: [0; ANGLES], cosine: true }, a, ratio),
+        ([a], [b]) if a.cosine == b.cosine => halves(a, b, ratio),
+        ([a, b], [c, d]) => angle_sum([a, b], [c, d], ratio),
+        _ => None,
+    }
+}
+
+/// `cos a cos b ± sin a sin b = cos(a ∓ b)`, `sin a cos b ± cos a sin b = sin(a ± b)`.
+fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
+    let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
+    let (first, second) = if a.angle == c.angle { (c, d) } else { (d, c) };
+    let opposite = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
+    if !opposite(a, first) || !opposite(b, second) {
+        return None;
+    }
+    match (a.cosine, b.cosine) {
+        (true, true) => Some(made(true, sum(a, b, -sign), 1.0)),
+        (false, true) => Some(made(false, sum(a, b, sign), 1.0)),
+        (true, false) => Some(made(false, sum(b, a, sign), 1.0)),
+        // Two sines in front: the rule is tried the other way round.
+        (false, false) => None,
+    }
+}
+
+/// `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` and its kin, where the halves are whole.
+fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
+    let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
+    let (up, down) = (sum(a, b, 1), sum(a, b, -1));
+    if up.iter().any(|n| n % 2 != 0) {
+        return None;
+    }
+    let half = |angle: [i8; ANGLES]| angle.map(|n| n / 2);
+    let ((first, up), (second, down), factor) = match (a.cosine, sign) {
+        (true, 1) => ((true, up), (true, down), 2.0),
+        (true, _) => ((false, up), (false, down), -2.0),
+        (false, 1) => ((false, up), (true, down), 2.0),
+        (false, _) => ((true, up), (false, down), 2.0),
+    };
+    let (mut waves, f) = made(first, half(up), factor);
+    let (more, f) = made(second, half(down), f);
+    waves.extend(more);
+    waves.sort_unstable();
+    Some((waves, f))
+}
+
+/// `a ± b`.
+fn sum(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
+    std::array::from_fn(|k| a.angle[k].saturating_add(sign * b.angle[k]))
+}
+
+/// A wave with a factor, its first angle made positive; one or zero for the angle zero.
+fn made(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
+    match angle.iter().find(|n| **n != 0) {
+        None => (Vec::new(), if cosine { factor } else { 0.0 }),
+        Some(n) if *n > 0 => (vec![Wave { angle, cosine }], factor),
+        Some(_) => (vec![Wave { angle: angle.map(|n| -n), cosine }], if cosine { factor } else { -factor }),
+    }
+}
+
+/// The same sum with one wave in every product.
+fn fourier(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
+    let mut sum: Vec<Product> = Vec::new();
+    for product in products {
+        let mut parts = vec![Product { waves: Vec::new(), coefficient: product.coefficient }];
+        for wave in &product.waves {
+            parts = parts.iter().flat_map(|p| times(p, wave)).collect();
+        }
+        ring.spend(parts.len())?;
+        for part in parts {
+            collect(&mut sum, part);
+        }
+        ring.spend(sum.len())?;
+    }
+    sum.retain(|p| p.coefficient != 0.0);
+    Some(sum)
+}
+
+fn collect(sum: &mut Vec<Product>, part: Product) {
+    match sum.iter_mut().find(|p| p.waves == part.waves) {
+        Some(p) if near(p.coefficient, -part.coefficient) => p.coefficient = 0.0,
+        Some(p) => p.coefficient += part.coefficient,
+        None => sum.push(part),
+    }
+}
+
+/// One wave, or none, times another: half the waves of the sum and the difference.
+fn times(p: &Product, b: &Wave) -> Vec<Product> {
+    let Some(a) = p.waves.first() else {
+        return vec![Product { waves: vec![*b], coefficient: p.coefficient }];
+    };
+    let (up, down) = (sum(a, b, 1), sum(a, b, -1));
+    let half = p.coefficient * 0.5;
+    let parts = match (a.cosine, b.cosine) {
+        (true, true) => [made(true, up, half), made(true, down, half)],
+        (false, false) => [made(true, up, -half), made(true, down, half)],
+        (false, true) => [made(false, up, half), made(false, down, half)],
+        (true, false) => [made(false, up, half), made(false, down, -half)],
+    };
+    let product = |(waves, coefficient)| Product { waves, coefficient };
+    parts.into_iter().map(product).filter(|p| p.coefficient != 0.0).collect()
+}

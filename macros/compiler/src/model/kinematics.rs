@@ -1,0 +1,338 @@
+//! Kinematics of the links: joint transforms, motion subspaces, velocities. A joint placed by expressions of
+//! coordinates and time has a subspace that depends on them, and may move by itself.
+
+use super::{Chart, Coordinate, LinkId, Model, Motion, Quantity};
+use crate::expr::diff::Derivative;
+use crate::expr::{Expr, Graph, Mat3, Node, Rotation, Symbol, Vec3};
+
+/// A spatial vector: linear part, angular part. A twist (velocity of the link's origin, angular velocity), or a wrench
+/// (force, moment about the link's origin).
+#[derive(Clone, Copy, Debug)]
+pub struct Spatial<'g> {
+    /// Velocity or force.
+    pub linear: Vec3<'g>,
+    /// Angular velocity or moment.
+    pub angular: Vec3<'g>,
+}
+
+impl<'g> Spatial<'g> {
+    /// Zero.
+    pub fn zero(model: &Model<'g>) -> Spatial<'g> {
+        Spatial { linear: Vec3::zero(model.graph), angular: Vec3::zero(model.graph) }
+    }
+
+    /// Twist dotted with wrench: a power.
+    pub fn dot(&self, other: &Spatial<'g>) -> Expr<'g> {
+        self.linear.dot(other.linear) + self.angular.dot(other.angular)
+    }
+
+    /// The sum.
+    pub fn plus(&self, other: &Spatial<'g>) -> Spatial<'g> {
+        Spatial { linear: self.linear + other.linear, angular: self.angular + other.angular }
+    }
+
+    /// All components multiplied.
+    pub fn times(&self, s: Expr<'g>) -> Spatial<'g> {
+        Spatial { linear: self.linear * s, angular: self.angular * s }
+    }
+}
+
+/// Value of a coordinate as an expression of `q`.
+pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+    let g = model.graph;
+    Quantity::Configuration(c.q).expr(g) * g.num(c.ratio) + g.num(c.offset)
+}
+
+/// Rate of a coordinate as an expression of `v`.
+pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+    Quantity::Velocity(c.v).expr(model.graph) * model.graph.num(c.ratio)
+}
+
+
+/// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there but for links
+/// that are placed by expressions.
+#[derive(Clone, Debug)]
+pub struct Dof<'g> {
+    /// Entry of `v`.
+    pub index: usize,
+    /// Joint rate per entry of `v`.
+    pub ratio: f64,
+    /// Twist of the link per unit of joint rate, in link axes.
+    pub subspace: Spatial<'g>,
+}
+
+/// A link's joint at a configuration: where the link is in its parent, and how it can move.
+#[derive(Clone, Debug)]
+pub struct Joint<'g> {
+    /// Parent link.
+    pub parent: Option<LinkId>,
+    /// Orientation of the link in the parent link.
+    pub rotation: Rotation<'g>,
+    /// Origin of the link in the parent link.
+    pub translation: Vec3<'g>,
+    /// Degrees of freedom, parent side first.
+    pub dofs: Vec<Dof<'g>>,
+    /// What a link placed by expressions adds.
+    pub drift: Option<Drift<'g>>,
+}
+
+/// Motion of a link that its coordinates' rates alone do not give, in link axes.
+#[derive(Clone, Debug)]
+pub struct Drift<'g> {
+    /// Twist at zero rates: the link is driven in time.
+    pub twist: Spatial<'g>,
+    /// Rate of the components of the joint's twist at constant `v`.
+    pub acceleration: Spatial<'g>,
+    /// Rate of the components of each degree of freedom's subspace.
+    pub subspace_rates: Vec<Spatial<'g>>,
+}
+
+impl<'g> Joint<'g> {
+    /// A wrench on the link, about the parent's origin in parent axes.
+    pub fn wrench_to_parent(&self, w: &Spatial<'g>) -> Spatial<'g> {
+        let force = self.rotation.to_parent(w.linear);
+        let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
+        Spatial { linear: force, angular: moment }
+    }
+
+    /// The parent's twist, at the link's origin in link axes.
+    pub fn twist_to_child(&self, parent: &Spatial<'g>) -> Spatial<'g> {
+        Spatial {
+            linear: self.rotation.to_child(parent.linear + parent.angular.cross(self.translation)),
+            angular: self.rotation.to_child(parent.angular),
+        }
+    }
+
+    /// The joint's own twist for given rates (by entry of `v`).
+    pub fn relative(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
+        let mut sum = Spatial::zero(model);
+        for dof in &self.dofs {
+            sum = sum.plus(&dof.subspace.times(rates[dof.index] * model.graph.num(dof.ratio)));
+        }
+        sum
+    }
+}
+
+impl<'g> Joint<'g> {
+    /// The joint's twist for rates `v`, what drives it in time included.
+    pub fn twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+        let relative = self.relative(model, v);
+        self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
+    }
+}
+
+/// The joints of all links, at the configuration `q`.
+pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
+    model.links.iter().map(|link| joint(model, link)).collect()
+}
+
+/// The joint of a link.
+pub fn joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
+    let g = model.graph;
+    let zero = Vec3::zero(g);
+    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let single = |c: &Coordinate, linear, angular| {
+        vec![Dof { index: c.v, ratio: c.ratio, subspace: Spatial { linear, angular } }]
+    };
+    let (motion, shift, dofs) = match &link.motion {
+        Motion::Turn { axis, coordinate } => {
+            (Rotation::eigenaxis(*axis, position(model, coordinate)), zero, single(coordinate, zero, *axis))
+        }
+        Motion::Slide { axis, coordinate } => {
+            (Rotation::identity(g), *axis * position(model, coordinate), single(coordinate, *axis, zero))
+        }
+        Motion::Helix { axis, pitch, coordinate } => {
+            let angle = position(model, coordinate);
+            let shift = *axis * (*pitch * angle);
+            (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
+        }
+        Motion::Ball { q: first, v } => {
+            let rotation = Rotation::quaternion([q(*first), q(first + 1), q(first + 2), q(first + 3)]);
+            let dofs = (0..3).map(|k| unit_dof(model, v + k, None, Some(k))).collect();
+            (rotation, zero, dofs)
+        }
+        Motion::Free { q: first, v } => {
+            let rotation = Rotation::quaternion([q(first + 3), q(first + 4), q(first + 5), q(first + 6)]);
+            let dofs = (0..6).map(|k| match k {
+                0..3 => unit_dof(model, v + k, Some(k), None),
+                _ => unit_dof(model, v + k, None, Some(k - 3)),
+            });
+            (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
+        }
+        Motion::Placed => return placed_joint(model, link),
+    };
+    Joint {
+        parent: link.parent,
+        translation: link.placement.point(shift),
+        rotation: link.placement.rotation.clone().then(&motion),
+        dofs,
+        drift: None,
+    }
+}
+
+/// The joint of a link whose placement is an expression of coordinates and time: its twist is the rate of the
+/// placement, and its subspace what each velocity adds to that.
+fn placed_joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
+    let place = &link.placement;
+    let twist = rate_of_placement(model, &place.rotation, place.translation);
+    let acceleration = map_spatial(&twist, |c| time_derivative(model, c));
+    let mut dofs = Vec::new();
+    let mut subspace_rates = Vec::new();
+    let mut drift = twist;
+    for index in velocities_in(model, &twist) {
+        let mut d = Derivative::with_respect_to(Quantity::Velocity(index).symbol(), model.graph);
+        let subspace = map_spatial(&twist, |c| d.of(c));
+        // The twist is linear in the velocities: what is left when all are taken away is what time does.
+        drift = map_spatial(&drift, |c| without(model.graph, c, index));
+        subspace_rates.push(map_spatial(&subspace, |c| time_derivative(model, c)));
+        dofs.push(Dof { index, ratio: 1.0, subspace });
+    }
+    Joint {
+        parent: link.parent,
+        rotation: place.rotation.clone(),
+        translation: place.translation,
+        dofs,
+        drift: Some(Drift { twist: drift, acceleration, subspace_rates }),
+    }
+}
+
+/// Twist of a frame from the rates of its placement, in the frame's axes: `Rᵀ ṗ`, and `[ω]× = Rᵀ Ṙ`.
+pub fn rate_of_placement<'g>(model: &Model<'g>, rotation: &Rotation<'g>, translation: Vec3<'g>) -> Spatial<'g> {
+    let matrix = rotation.matrix();
+    let rate = Mat3::from_fn(|i, j| time_derivative(model, matrix.0[i][j]));
+    let angular = Vec3([
+        matrix.column(2).dot(rate.column(1)),
+        matrix.column(0).dot(rate.column(2)),
+        matrix.column(1).dot(rate.column(0)),
+    ]);
+    Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(model, c))), angular }
+}
+
+/// Every component with a function applied.
+pub fn map_spatial<'g>(s: &Spatial<'g>, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Spatial<'g> {
+    Spatial { linear: s.linear.map(&mut f), angular: s.angular.map(&mut f) }
+}
+
+/// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
+pub fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+    let mut sum = e.zero();
+    for symbol in symbols_in(&[e]) {
+        let rate = match Quantity::of(symbol) {
+            Quantity::Configuration(k) => configuration_rate(model, k),
+            Quantity::Time => model.graph.one(),
+            _ => continue,
+        };
+        sum += Derivative::with_respect_to(symbol, model.graph).of(e) * rate;
+    }
+    sum
+}
+
+/// The symbols of expressions, in order.
+pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
+    let Some(first) = e.first() else { return Vec::new() };
+    let graph = first.graph();
+    let mut seen = vec![false; graph.len()];
+    let mut symbols = Vec::new();
+    let mut todo: Vec<u32> = e.iter().map(|e| e.id()).collect();
+    while let Some(id) = todo.pop() {
+        if std::mem::replace(&mut seen[id as usize], true) {
+            continue;
+        }
+        let node = graph.node(id);
+        if let Node::Symbol(s) = node {
+            symbols.push(s);
+        }
+        node.operands(|a| todo.push(a));
+    }
+    symbols.sort_unstable();
+    symbols
+}
+
+fn velocities_in(model: &Model<'_>, twist: &Spatial<'_>) -> Vec<usize> {
+    let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
+    let index = |s: Symbol| match Quantity::of(s) {
+        Quantity::Velocity(k) if k < model.velocities.len() => Some(k),
+        _ => None,
+    };
+    symbols_in(&all).into_iter().filter_map(index).collect()
+}
+
+/// An expression with one velocity set to zero.
+fn without<'g>(graph: &'g Graph, e: Expr<'g>, velocity: usize) -> Expr<'g> {
+    crate::expr::replace::replace(e, &|s| (s == Quantity::Velocity(velocity).symbol()).then(|| graph.zero()))
+}
+
+/// Rate of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain coordinates, half of the product of
+/// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint.
+pub fn configuration_rate<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
+    let g = model.graph;
+    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let v = |k: usize| Quantity::Velocity(k).expr(g);
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(a, b) if a == k => return v(b),
+            Chart::Ball(a, b) if (a..a + 4).contains(&k) => {
+                return quaternion_rate([q(a), q(a + 1), q(a + 2), q(a + 3)], [v(b), v(b + 1), v(b + 2)], k - a);
+            }
+            Chart::Free(a, b) if (a..a + 7).contains(&k) => {
+                let quaternion = [q(a + 3), q(a + 4), q(a + 5), q(a + 6)];
+                if k < a + 3 {
+                    let linear = Vec3([v(b), v(b + 1), v(b + 2)]);
+                    return Rotation::quaternion(quaternion).to_parent(linear)[k - a];
+                }
+                return quaternion_rate(quaternion, [v(b + 3), v(b + 4), v(b + 5)], k - a - 3);
+            }
+            _ => {}
+        }
+    }
+    g.zero()
+}
+
+fn quaternion_rate<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize) -> Expr<'g> {
+    let [x, y, z, s] = quaternion;
+    let [a, b, c] = w.map(|w| w * 0.5);
+    match entry {
+        0 => s * a + y * c - z * b,
+        1 => s * b + z * a - x * c,
+        2 => s * c + x * b - y * a,
+        _ => -(x * a + y * b + z * c),
+    }
+}
+
+fn unit_dof<'g>(model: &Model<'g>, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
+    let axis = |k: Option<usize>| k.map_or(Vec3::zero(model.graph), |k| Vec3::axis(model.graph, k));
+    Dof { index, ratio: 1.0, subspace: Spatial { linear: axis(linear), angular: axis(angular) } }
+}
+
+/// Twists of all links (velocity of the origin, angular velocity; link axes) for rates `v`.
+pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Spatial<'g>> {
+    let mut twists: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let own = joint.twist(model, v);
+        twists.push(match joint.parent {
+            None => own,
+            Some(p) => joint.twist_to_child(&twists[p.0]).plus(&own),
+        });
+    }
+    twists
+}
+
+/// Sum of the generalized forces of springs, dashpots and friction, with the sign of `h`: what resists motion is positive.
+pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let mut h = vec![g.zero(); model.nv()];
+    for spring in &model.springs {
+        let stretch = position(model, &spring.on) - spring.free;
+        h[spring.on.v] += spring.stiffness * stretch * g.num(spring.on.ratio);
+    }
+    if with_velocity {
+        for dashpot in &model.dashpots {
+            h[dashpot.on.v] += dashpot.damping * rate(model, &dashpot.on) * g.num(dashpot.on.ratio);
+        }
+        for dry in &model.frictions {
+            let slip = (rate(model, &dry.on) / model.friction_speed).call(crate::expr::Function::Tanh);
+            h[dry.on.v] += dry.friction * slip * g.num(dry.on.ratio);
+        }
+    }
+    h
+}
