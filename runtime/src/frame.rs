@@ -30,27 +30,33 @@ macro_rules! frame {
 }
 
 /// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
-/// its figures are reached through `frame_placement`, `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
+/// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`, `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
 pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
     /// Rotation matrix by rows (columns are the frame's axes in ground axes), then the position of the origin, m.
-    fn placement(&self, q: &SVector<Self::Scalar, NQ>) -> [Self::Scalar; 12];
+    fn placement(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> [Self::Scalar; 12];
 
     /// Velocity of the origin (m/s), then angular velocity (rad/s), in ground axes.
-    fn twist(&self, q: &SVector<Self::Scalar, NQ>, v: &SVector<Self::Scalar, NV>) -> [Self::Scalar; 6];
+    fn twist(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> [Self::Scalar; 6];
 
     /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), in ground axes, without gravity.
     fn acceleration(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         a: &SVector<Self::Scalar, NV>,
     ) -> [Self::Scalar; 6];
 
     /// Twist per unit of each velocity, 6 × `NV`.
-    fn jacobian(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
+    fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
 /// The index of a name in a list.

@@ -24,6 +24,7 @@ extern crate std;
 pub use frame::{FrameIndex, NamedFrame};
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
+pub use rheonomic::{At, Rheonomic, at};
 pub use nalgebra;
 pub use simulate::simulate;
 
@@ -33,6 +34,7 @@ pub mod integrate;
 mod lie;
 mod mechanism;
 mod private;
+mod rheonomic;
 pub mod simulate;
 
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
@@ -40,7 +42,7 @@ pub mod prelude {
     pub use crate::elements::*;
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, SemiImplicitEuler};
     pub use crate::simulate::{Crossing, Sample, simulate};
-    pub use crate::{Mechanism, Real, frame, mechanism};
+    pub use crate::{Mechanism, Real, at, frame, mechanism};
     pub use nalgebra::{SMatrix, SVector};
 }
 

@@ -63,7 +63,7 @@ fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
 }
 
 /// The unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
-fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
+pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
     let (factor, w) = if square < epsilon::<T>() {
         // The first neglected terms, θ⁴/3840 and θ⁴/384, are far below rounding.
@@ -81,7 +81,7 @@ fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
 }
 
 /// The rotation vector of shortest length of a quaternion of any length but zero.
-fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
+pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     let sign = if w < T::zero() { -T::one() } else { T::one() };
     let u = scale([x, y, z], sign);
     let w = w * sign;
@@ -159,7 +159,7 @@ fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5
 }
 
 /// `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` of `θ²`: the left Jacobian of SO(3) is `1 + a [φ]ₓ + b [φ]ₓ²`.
-fn left_jacobian<T: Real>(square: T) -> (T, T) {
+pub(crate) fn left_jacobian<T: Real>(square: T) -> (T, T) {
     if square < constant(0.05) {
         let polynomial = |terms: [f64; 6]| {
             terms

@@ -8,7 +8,9 @@ pub trait Real: RealField + Copy {}
 
 impl<T: RealField + Copy> Real for T {}
 
-/// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs: what `#[mechanism]` implements.
+/// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs, whose equations do not contain time
+/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`] instead, and is a
+/// `Mechanism` at every instant: `hoop.at(t)`.
 ///
 /// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball
 /// or a free joint holds a unit quaternion x y z w), `v` in its tangent space: body-frame velocities for ball and
@@ -83,10 +85,12 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Generalized forces `τ` of the inputs `u`.
+    /// Generalized forces `τ` of the inputs `u`. Few mechanisms need `v` here: those whose inputs act by way of the
+    /// velocity, such as the control surfaces of an aircraft.
     fn generalized_forces(
         &self,
         q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NV>;
 

@@ -8,7 +8,7 @@ pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Re
 use crate::integrate::{
     DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, positive,
 };
-use crate::{Mechanism, Real};
+use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 use run::Progress;
 
@@ -36,7 +36,7 @@ pub fn simulate<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
 ) -> Simulation<'_, M, M::Scalar, NoInputs, DormandPrince<M::Scalar>, NoEvents, NQ, NV, NU>
 where
-    M: Mechanism<NQ, NV, NU>,
+    M: Rheonomic<NQ, NV, NU>,
 {
     let start = State {
         t: nalgebra::zero(),
@@ -102,7 +102,7 @@ where
 impl<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
     Simulation<'m, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
     T: Real,
     S: Method<T>,
 {
@@ -352,7 +352,7 @@ where
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize> Iterator
     for Simulation<'_, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
     S: Method<T>,

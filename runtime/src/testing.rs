@@ -76,7 +76,7 @@ impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
     fn forward_dynamics(&self, q: &V<T, 1>, v: &V<T, 1>, tau: &V<T, 1>) -> V<T, 1> {
         (tau - self.bias_forces(q, v)) / self.inertia
     }
-    fn generalized_forces(&self, _q: &V<T, 1>, u: &V<T, 1>) -> V<T, 1> {
+    fn generalized_forces(&self, _q: &V<T, 1>, _v: &V<T, 1>, u: &V<T, 1>) -> V<T, 1> {
         *u
     }
     fn kinetic_energy(&self, _q: &V<T, 1>, v: &V<T, 1>) -> T {
@@ -129,7 +129,7 @@ impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
     fn forward_dynamics(&self, q: &V<T, 4>, v: &V<T, 3>, tau: &V<T, 3>) -> V<T, 3> {
         (tau - self.bias_forces(q, v)).component_div(&self.inertia)
     }
-    fn generalized_forces(&self, _q: &V<T, 4>, u: &V<T, 3>) -> V<T, 3> {
+    fn generalized_forces(&self, _q: &V<T, 4>, _v: &V<T, 3>, u: &V<T, 3>) -> V<T, 3> {
         *u
     }
     fn kinetic_energy(&self, _q: &V<T, 4>, v: &V<T, 3>) -> T {
@@ -200,7 +200,7 @@ impl Mechanism<7, 6, 0> for FreeBody {
     fn forward_dynamics(&self, q: &V<f64, 7>, v: &V<f64, 6>, tau: &V<f64, 6>) -> V<f64, 6> {
         (tau - self.bias_forces(q, v)).component_div(&self.mass_matrix(q).diagonal())
     }
-    fn generalized_forces(&self, _q: &V<f64, 7>, _u: &V<f64, 0>) -> V<f64, 6> {
+    fn generalized_forces(&self, _q: &V<f64, 7>, _v: &V<f64, 6>, _u: &V<f64, 0>) -> V<f64, 6> {
         SVector::zeros()
     }
     fn kinetic_energy(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> f64 {

@@ -21,7 +21,7 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
             .help("the mass matrix is singular: give mass or inertia to what the joint carries");
         return None;
     }
-    let mut functions = signatures(model.nv(), model.nq());
+    let mut functions = signatures(model.nq(), model.nv(), model.time, model.velocity_inputs);
     for f in &mut functions {
         f.program = program(model, &joints, &mass, &f.name);
     }
@@ -35,8 +35,14 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
 }
 
 /// The equations of motion in a line each; empty for mechanisms that are too large to be read.
-pub fn equations(_model: &Model<'_>) -> String {
-    String::new()
+pub fn equations(model: &Model<'_>) -> String {
+    if !mechanics::equations::is_small(model) {
+        return String::new();
+    }
+    let joints = mechanics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let equations = mechanics::equations::derive(model, &joints, &mass);
+    equations.map_or(String::new(), |e| mechanics::equations::text(model, &e))
 }
 
 fn done(outputs: &[Expr<'_>]) -> Program {
@@ -106,6 +112,7 @@ fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
     LinkSteps {
         parent: joint.parent.map(|p| p.0),
         velocities: joint.dofs.iter().map(|d| d.index).collect(),
+        driven: joint.drift.is_some(),
         placement: done(&frames::link_placement(model, joint).flat()),
         twist: done(&frames::flat(&frames::link_twist(model, joint, &v))),
         acceleration: done(&frames::flat(&frames::link_acceleration(model, joint, &v, &a))),
@@ -125,12 +132,15 @@ fn frame_steps<'g>(model: &Model<'g>, frame: &crate::model::NamedFrame<'g>) -> F
 }
 
 /// The public functions without their programs: names, arguments, results, documentation.
-pub fn signatures(nv: usize, nq: usize) -> Vec<Function> {
+pub fn signatures(nq: usize, nv: usize, time: bool, velocity_inputs: bool) -> Vec<Function> {
     use Argument::{A, Q, Tau, U, V};
     let function = |name: &str, arguments: &[Argument], shape, docs: &[&str]| Function {
         name: name.to_string(),
         docs: docs.iter().map(ToString::to_string).collect(),
-        arguments: arguments.to_vec(),
+        arguments: match name {
+            "neutral" | "total_mass" => Vec::new(),
+            _ => time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect(),
+        },
         shape,
         program: Program::default(),
     };
@@ -183,7 +193,7 @@ pub fn signatures(nv: usize, nq: usize) -> Vec<Function> {
         ),
         function(
             "generalized_forces",
-            &[Q, U],
+            if velocity_inputs { &[Q, V, U] } else { &[Q, U] },
             Shape::Vector(nv),
             &["What the inputs `u` contribute to `τ`, by virtual work."],
         ),

@@ -1,16 +1,25 @@
 //! Diagnostics: every stage adds to one list, and the pipeline stops between stages when the list is
 //! not empty. Knows no stage.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Literal, Span, TokenStream, TokenTree};
 use std::rc::Rc;
 
 /// Where something was said: a token of the user's source and, for an imported file, the line and column there.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// The token that an error is shown at; for an imported file, the token of its path.
+    /// The first token that an error is shown at; for an imported file, the token of its path.
     pub span: Span,
+    /// The last one.
+    pub end: Span,
     /// The position in the imported file, if the thing comes from one.
     pub file: Option<FilePosition>,
+}
+
+impl Place {
+    /// From the beginning of one place to the end of another.
+    pub fn to(&self, end: &Place) -> Place {
+        Place { end: end.end, ..self.clone() }
+    }
 }
 
 /// A position in an imported file, counted from one.
@@ -26,7 +35,7 @@ pub struct FilePosition {
 
 impl From<Span> for Place {
     fn from(span: Span) -> Place {
-        Place { span, file: None }
+        Place { span, end: span, file: None }
     }
 }
 
@@ -76,6 +85,14 @@ impl Diagnostic {
     }
 }
 
+/// What stands between the message and the help of an error that passes through syn.
+const HELP: &str = "\n\n= help: ";
+
+/// An error with a help line for those places where syn hands errors on.
+pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
+    syn::Error::new(span, format!("{message}{HELP}{help}"))
+}
+
 /// The mistakes found so far.
 #[derive(Default, Debug)]
 pub struct Diagnostics {
@@ -97,7 +114,12 @@ impl Diagnostics {
     /// Reports a mistake that syn found.
     pub fn syn(&mut self, error: syn::Error) {
         for one in error {
-            self.error(one.span(), one.to_string());
+            let text = one.to_string();
+            let (message, help) = text.split_once(HELP).unwrap_or((&text, ""));
+            let diagnostic = self.error(one.span(), message);
+            if !help.is_empty() {
+                diagnostic.help(help);
+            }
         }
     }
 
@@ -113,8 +135,20 @@ impl Diagnostics {
 
     /// One `compile_error!` for each mistake, at its token.
     pub fn into_tokens(self) -> TokenStream {
-        self.errors.iter().map(|e| syn::Error::new(e.place.span, e.text()).into_compile_error()).collect()
+        self.errors.iter().flat_map(|e| compile_error(&e.place, &e.text())).collect()
     }
+}
+
+/// `::core::compile_error! { "message" }`, shown from the first to the last token of the place.
+fn compile_error(place: &Place, message: &str) -> TokenStream {
+    let at = |mut token: TokenTree, span: Span| {
+        token.set_span(span);
+        token
+    };
+    let path = "::core::compile_error!".parse::<TokenStream>().unwrap_or_default();
+    let message = at(Literal::string(message).into(), place.end);
+    let braces = at(Group::new(Delimiter::Brace, message.into()).into(), place.end);
+    path.into_iter().map(|token| at(token, place.span)).chain([braces]).collect()
 }
 
 /// `a`, `a or b`, `a, b or c`.
@@ -126,13 +160,17 @@ pub fn one_of(list: &[String]) -> String {
     }
 }
 
-/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand.
+/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A letter
+/// in the other case is the smallest of slips; one letter alone is not near to another.
 pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = (name.chars().count().max(3) / 3).min(3);
+    let limit = match name.chars().count() {
+        0 | 1 => 0,
+        n => (n / 3).clamp(1, 3),
+    };
     candidates
         .iter()
-        .map(|c| (edit_distance(name, c), *c))
-        .filter(|(distance, c)| *distance <= limit || c.eq_ignore_ascii_case(name))
+        .map(|c| (if c.eq_ignore_ascii_case(name) { 0 } else { edit_distance(name, c) }, *c))
+        .filter(|(distance, _)| *distance <= limit)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c)
 }
@@ -167,5 +205,8 @@ mod tests {
         assert_eq!(nearest("abuot", &["about", "along"]), Some("about"));
         assert_eq!(nearest("pin", &["Pin", "Sleeve"]), Some("Pin"));
         assert_eq!(nearest("spaceship", &["Pin", "Sleeve"]), None);
+        assert_eq!(nearest("m1", &["m2", "M1"]), Some("M1"));
+        assert_eq!(nearest("Z", &["x", "y", "z"]), Some("z"));
+        assert_eq!(nearest("w", &["x", "y", "z"]), None);
     }
 }

@@ -44,7 +44,12 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Token
             let mut tokens = cx.into_tokens();
             tokens.extend(emit_failed(
                 &interface,
-                &derive::signatures(interface.velocities.len(), interface.configuration.len()),
+                &derive::signatures(
+                    interface.configuration.len(),
+                    interface.velocities.len(),
+                    false,
+                    false,
+                ),
             ));
             tokens
         }
@@ -145,6 +150,8 @@ impl Source {
             velocities,
             inputs,
             frames,
+            time: model.is_some_and(|m| m.time),
+            velocity_inputs: model.is_some_and(|m| m.velocity_inputs),
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }

@@ -56,7 +56,7 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     for iterations in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &(v * half));
         let rate = system.momentum_rate(start.t + half, &q, &v);
-        let next = system.velocity(&q, &(p + rate * half), &v);
+        let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
         if !is_finite(&next) {
             let diverged = Error::NotConverged { t, iterations };
             return Err(if iterations == 0 {
@@ -126,7 +126,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let half = h * constant(0.5);
         let p = memory
             .momentum
-            .unwrap_or_else(|| system.momentum(&start.q, &start.v));
+            .unwrap_or_else(|| system.momentum(start.t, &start.q, &start.v));
         let (q, v, rate) = solve(system, start, &p, half, start.v + memory.change)?;
         let change = v - start.v;
         let p = p + rate * h;
@@ -134,7 +134,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let end = State {
             t,
             q,
-            v: system.velocity(&q, &p, &(v + change)),
+            v: system.velocity(t, &q, &p, &(v + change)),
         };
         let end = end
             .finite()

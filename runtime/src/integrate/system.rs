@@ -1,6 +1,6 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
-use crate::{Mechanism, Real};
+use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 
 /// The inputs `u` of a mechanism over time. Implemented for what `simulate` accepts.
@@ -81,7 +81,7 @@ where
     }
 }
 
-/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in [`Mechanism`].
+/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in [`Mechanism`](crate::Mechanism).
 pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// `q ⊕ dv`.
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;
@@ -92,14 +92,21 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Generalized momentum `p = M(q) v`.
-    fn momentum(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+    /// Generalized momentum `p`.
+    fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// `ṗ` under the inputs at time `t`.
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// `M(q)⁻¹ p`, improved from the estimate `v`: exact up to rounding for any `v`, best for a near one.
-    fn velocity(&self, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+    /// The velocity with the generalized momentum `p`, improved from the estimate `v`: exact up to rounding for any
+    /// `v`, best for a near one.
+    fn velocity(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        p: &SVector<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV>;
 }
 
 /// A mechanism and its inputs.
@@ -128,20 +135,20 @@ impl<M, I, const NU: usize> System<'_, M, I, NU> {
         v: &SVector<T, NV>,
     ) -> SVector<T, NV>
     where
-        M: Mechanism<NQ, NV, NU, Scalar = T>,
+        M: Rheonomic<NQ, NV, NU, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
         if NU == 0 {
             return SVector::zeros();
         }
-        self.mechanism.generalized_forces(q, &self.inputs.at(t, q, v))
+        self.mechanism.generalized_forces(t, q, v, &self.inputs.at(t, q, v))
     }
 }
 
 impl<T, M, I, const NQ: usize, const NV: usize, const NU: usize> Dynamics<T, NQ, NV> for System<'_, M, I, NU>
 where
     T: Real,
-    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
     I: Inputs<T, NQ, NV, NU>,
 {
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ> {
@@ -154,20 +161,28 @@ where
 
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
         let tau = self.forces(t, q, v);
-        self.mechanism.forward_dynamics(q, v, &tau)
+        self.mechanism.forward_dynamics(t, q, v, &tau)
     }
 
-    fn momentum(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.generalized_momentum(q, v)
+    fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.generalized_momentum(t, q, v)
     }
 
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.momentum_rate(q, v) + self.forces(t, q, v)
+        self.mechanism.momentum_rate(t, q, v) + self.forces(t, q, v)
     }
 
-    fn velocity(&self, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        // With τ = p + (h − M v) the equation of motion M a + h = τ has the solution a = M⁻¹ p − v.
-        let tau = p + self.mechanism.inverse_dynamics(q, v, &-v);
-        v + self.mechanism.forward_dynamics(q, v, &tau)
+    fn velocity(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        p: &SVector<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the solution
+        // a = M⁻¹ (p − b) − v.
+        let missing = p - self.mechanism.generalized_momentum(t, q, v);
+        let tau = self.mechanism.bias_forces(t, q, v) + missing;
+        v + self.mechanism.forward_dynamics(t, q, v, &tau)
     }
 }

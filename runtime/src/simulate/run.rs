@@ -3,7 +3,7 @@
 use super::{Events, Flow, Hit, Sample, Simulation, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step};
 use crate::private::{constant, epsilon};
-use crate::{Mechanism, Real};
+use crate::{Real, Rheonomic};
 
 /// Parts into which every step is divided in the search for events.
 const SEARCHES: u8 = 4;
@@ -46,7 +46,7 @@ type Due<T, const NQ: usize, const NV: usize, const NU: usize> = Result<Option<S
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
     Simulation<'_, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Mechanism<NQ, NV, NU, Scalar = T>,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
     S: Method<T>,

@@ -127,6 +127,9 @@ impl Writer<'_> {
 
     fn symbol(&self, s: Symbol) -> String {
         let quantity = Quantity::of(s);
+        if quantity == Quantity::Time {
+            return "t".to_string();
+        }
         if let Quantity::Parameter(k) = quantity {
             return format!("self.{}", self.scalar.parameter(k));
         }
@@ -188,6 +191,7 @@ fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'
     }
     for argument in &f.arguments {
         let (n, given) = match argument {
+            Argument::T => continue,
             Argument::Q => (s.nq, false),
             Argument::V | Argument::A | Argument::Tau => (s.nv, false),
             Argument::U => (s.nu, false),

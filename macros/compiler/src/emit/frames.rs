@@ -10,6 +10,8 @@ pub struct LinkSteps {
     pub parent: Option<usize>,
     /// Entries of `v` of its degrees of freedom.
     pub velocities: Vec<usize>,
+    /// Its motion subspace depends on the configuration.
+    pub driven: bool,
     /// Placement from the parent's.
     pub placement: Program,
     /// Twist from the parent's.
@@ -47,7 +49,7 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
     };
     for (k, link) in links.iter().enumerate() {
         let from_parent = |arguments: &[Argument], given: Argument| {
-            let mut all = arguments.to_vec();
+            let mut all = s.timed(arguments);
             all.extend(link.parent.map(|_| given));
             all
         };
@@ -56,7 +58,8 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
         step(format!("__link{k}_twist"), twist, 6, &link.twist);
         let acceleration = from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", 0, 12));
         step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
-        let columns = vec![Argument::Given("p", 0, 12), Argument::Given("o", 12, 3)];
+        let mut columns = if link.driven { s.timed(&[Argument::Q]) } else { Vec::new() };
+        columns.extend([Argument::Given("p", 0, 12), Argument::Given("o", 12, 3)]);
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
@@ -67,6 +70,11 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
         step(format!("__frame{k}_twist"), given(18), 6, &frame.twist);
         step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
     }
+}
+
+/// Time as the first argument of a call, where functions take it.
+fn time(s: &Signature<'_>) -> &'static str {
+    if s.time { "t, " } else { "" }
 }
 
 /// The links from the ground to a link.
@@ -80,9 +88,10 @@ fn path(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
     path
 }
 
-fn write_link_placement(out: &mut String, k: usize, link: &LinkSteps) {
+fn write_link_placement(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+    let t = time(s);
     let parent = link.parent.map_or(String::new(), |p| format!(", &x{p}"));
-    let _ = writeln!(out, "let x{k} = self.__link{k}_placement(q{parent});");
+    let _ = writeln!(out, "let x{k} = self.__link{k}_placement({t}q{parent});");
 }
 
 fn frame_placement(k: usize, frame: &FrameSteps) -> String {
@@ -95,9 +104,9 @@ fn frame_placement(k: usize, frame: &FrameSteps) -> String {
 }
 
 /// Body of `frame_placements`: all frames at once, each link once.
-pub fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps]) {
+pub fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     for (k, link) in links.iter().enumerate() {
-        write_link_placement(out, k, link);
+        write_link_placement(out, k, link, s);
     }
     let list: Vec<String> = frames
         .iter()
@@ -118,21 +127,22 @@ pub fn write_frame_impl(
     let scalar = s.scalar.name();
     let path = path(links, frame.link);
     let method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
-        let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(arguments));
+        let all: Vec<Argument> = std::iter::once(Argument::T).chain(arguments.iter().copied()).collect();
+        let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(&all));
     };
     method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
     for link in &path {
-        write_link_placement(out, *link, &links[*link]);
+        write_link_placement(out, *link, &links[*link], s);
     }
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
     method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
-    write_motion(out, &path, links, false);
+    write_motion(out, &path, links, false, s);
     let last = path.last().map_or(String::new(), |l| format!("&::linkwork::__private::join(&x{l}, &w{l})"));
     let _ = writeln!(out, "self.__frame{k}_twist({last})\n}}");
 
     method(out, "acceleration", &[Argument::Q, Argument::V, Argument::A], &format!("[{scalar}; 6]"));
-    write_motion(out, &path, links, true);
+    write_motion(out, &path, links, true, s);
     let last = path.last().map_or(String::new(), |l| {
         let join = "::linkwork::__private::join";
         format!("&{join}(&{join}::<_, 12, 6, 18>(&x{l}, &w{l}), &a{l})")
@@ -141,16 +151,23 @@ pub fn write_frame_impl(
     write_jacobian(out, k, frame, links, &path, s);
 }
 
-fn write_motion(out: &mut String, path: &[usize], links: &[LinkSteps], accelerations: bool) {
+fn write_motion(
+    out: &mut String,
+    path: &[usize],
+    links: &[LinkSteps],
+    accelerations: bool,
+    s: &Signature<'_>,
+) {
+    let t = time(s);
     for &k in path {
-        write_link_placement(out, k, &links[k]);
+        write_link_placement(out, k, &links[k], s);
         let parent = links[k].parent.map_or(String::new(), |p| format!(", &w{p}"));
-        let _ = writeln!(out, "let w{k} = self.__link{k}_twist(q, v{parent});");
+        let _ = writeln!(out, "let w{k} = self.__link{k}_twist({t}q, v{parent});");
         if accelerations {
             let parent = links[k]
                 .parent
                 .map_or(String::new(), |p| format!(", &::linkwork::__private::join(&w{p}, &a{p})"));
-            let _ = writeln!(out, "let a{k} = self.__link{k}_acceleration(q, v, a{parent});");
+            let _ = writeln!(out, "let a{k} = self.__link{k}_acceleration({t}q, v, a{parent});");
         }
     }
 }
@@ -165,9 +182,9 @@ fn write_jacobian(
 ) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
-    let _ = writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::Q]));
+    let _ = writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
     for &link in path {
-        write_link_placement(out, link, &links[link]);
+        write_link_placement(out, link, &links[link], s);
     }
     if !path.is_empty() {
         let placement = frame_placement(k, frame);
@@ -178,9 +195,10 @@ fn write_jacobian(
     for &link in path {
         let velocities = &links[link].velocities;
         let names: Vec<String> = (0..velocities.len()).map(|c| format!("j{link}_{c}")).collect();
+        let state = if links[link].driven { format!("{}q, ", time(s)) } else { String::new() };
         let entries: Vec<String> =
             names.iter().map(|n| format!("{n}_0, {n}_1, {n}_2, {n}_3, {n}_4, {n}_5")).collect();
-        let _ = writeln!(out, "let [{}] = self.__link{link}_columns(&x{link}, &o);", entries.join(", "));
+        let _ = writeln!(out, "let [{}] = self.__link{link}_columns({state}&x{link}, &o);", entries.join(", "));
         for (name, v) in names.iter().zip(velocities) {
             columns[*v].push(name.clone());
         }

@@ -9,6 +9,8 @@ use std::fmt::Write;
 /// An argument of a generated function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
+    /// Time `t`.
+    T,
     /// Configuration `q`.
     Q,
     /// Velocity `v`.
@@ -27,6 +29,7 @@ impl Argument {
     /// The name in the signature.
     pub fn name(self) -> &'static str {
         match self {
+            Argument::T => "t",
             Argument::Q => "q",
             Argument::V => "v",
             Argument::A => "a",
@@ -89,12 +92,15 @@ pub struct Signature<'a> {
     pub nv: usize,
     /// `NU`.
     pub nu: usize,
+    /// Functions take time first.
+    pub time: bool,
 }
 
 impl Signature<'_> {
     /// The type of an argument.
     pub fn argument(&self, a: Argument) -> String {
         let n = match a {
+            Argument::T => return self.scalar.name().to_string(),
             Argument::Q => self.nq,
             Argument::V | Argument::A | Argument::Tau => self.nv,
             Argument::U => self.nu,
@@ -117,6 +123,11 @@ impl Signature<'_> {
             Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
         }
+    }
+
+    /// The arguments with time before them, where functions take it.
+    pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
+        self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
     /// `&self, q: …, v: …`.

@@ -26,6 +26,10 @@ pub struct Interface<'a> {
     pub frames: Vec<String>,
     /// A file whose change asks for another expansion.
     pub file: Option<String>,
+    /// The mechanism contains time: its functions take it first.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
 }
 
 /// What was derived.
@@ -42,19 +46,17 @@ pub struct Output {
     pub equations: String,
 }
 
-/// Methods of the trait that are inherent functions of the same name.
-const TRAIT_METHODS: [(&str, &[Argument]); 11] = [
-    ("neutral", &[]),
+/// Functions of the traits that depend on the state, with their arguments there.
+const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
     ("mass_matrix", &[Argument::Q]),
     ("bias_forces", &[Argument::Q, Argument::V]),
     ("inverse_dynamics", &[Argument::Q, Argument::V, Argument::A]),
     ("forward_dynamics", &[Argument::Q, Argument::V, Argument::Tau]),
-    ("generalized_forces", &[Argument::Q, Argument::U]),
+    ("generalized_forces", &[Argument::Q, Argument::V, Argument::U]),
     ("kinetic_energy", &[Argument::Q, Argument::V]),
     ("potential_energy", &[Argument::Q]),
     ("generalized_momentum", &[Argument::Q, Argument::V]),
     ("momentum_rate", &[Argument::Q, Argument::V]),
-    ("difference", &[]),
 ];
 
 const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
@@ -64,7 +66,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<Toke
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface);
+    write_constants(&mut methods, interface, &output.equations);
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
@@ -75,9 +77,9 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<Toke
     let _ = writeln!(
         methods,
         "/// Placements of all frames in the ground, in the order of `FRAMES`.\n#[inline]\n#[must_use]\npub fn frame_placements({}) -> {placements} {{",
-        s.parameters(&[Argument::Q])
+        s.parameters(&s.timed(&[Argument::Q]))
     );
-    write_all_placements(&mut methods, &output.links, &output.frames);
+    write_all_placements(&mut methods, &output.links, &output.frames, &s);
     methods.push_str("}\n");
     write_steps(&mut methods, &output.links, &output.frames, &s);
     let mut frames = Vec::new();
@@ -94,7 +96,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> TokenSt
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface);
+    write_constants(&mut methods, interface, "");
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
@@ -119,10 +121,11 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
         nq: interface.configuration.len(),
         nv: interface.velocities.len(),
         nu: interface.inputs.len(),
+        time: interface.time,
     }
 }
 
-fn write_constants(out: &mut String, i: &Interface<'_>) {
+fn write_constants(out: &mut String, i: &Interface<'_>, equations: &str) {
     let numbers = [
         ("NQ", i.configuration.len(), "configuration numbers"),
         ("NV", i.velocities.len(), "velocities"),
@@ -144,6 +147,11 @@ fn write_constants(out: &mut String, i: &Interface<'_>) {
             names.len()
         );
     }
+    let about = match equations {
+        "" => "Empty: the equations of this mechanism are too long to be read. Those of small ones stand here as text.",
+        _ => "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
+    };
+    let _ = writeln!(out, "/// {about}\npub const EQUATIONS: &'static str = {equations:?};");
     out.push_str(
         "/// Index in `FRAMES` of the frame with a name; `frame!` checks it at compile time.
         #[must_use]
@@ -259,62 +267,68 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     let bound = format!("where Self: ::linkwork::NamedFrame<I, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    // What is not driven in time has no use for it.
+    let (t, at) = match s.time {
+        true => (format!("t: {scalar}, "), "t".to_string()),
+        false => (String::new(), format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
+    };
     let _ = writeln!(
         out,
         "/// Placement of a frame in the ground: its axes and its origin.
         #[inline]\n#[must_use]
-        pub fn frame_placement<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {bound} {{
-            ::linkwork::__private::placement(&::linkwork::NamedFrame::<I, {nq}, {nv}>::placement(self, q))
+        pub fn frame_placement<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {bound} {{
+            ::linkwork::__private::placement(&::linkwork::NamedFrame::<I, {nq}, {nv}>::placement(self, {at}, q))
         }}
         /// Velocity of a frame: of its origin, then angular; relative to the ground, resolved in ground axes.
         #[inline]\n#[must_use]
-        pub fn frame_velocity<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}, v: &{v}) -> {six} {bound} {{
-            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::twist(self, q, v))
+        pub fn frame_velocity<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}, v: &{v}) -> {six} {bound} {{
+            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::twist(self, {at}, q, v))
         }}
         /// Acceleration of a frame: of its origin, then angular; relative to the ground, resolved in ground axes; without gravity.
         #[inline]\n#[must_use]
-        pub fn frame_acceleration<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}, v: &{v}, a: &{v}) -> {six} {bound} {{
-            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::acceleration(self, q, v, a))
+        pub fn frame_acceleration<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {bound} {{
+            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::acceleration(self, {at}, q, v, a))
         }}
         /// Jacobian of a frame: `frame_velocity` is this times `v`.
         #[inline]\n#[must_use]
-        pub fn frame_jacobian<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {bound} {{
-            ::linkwork::NamedFrame::<I, {nq}, {nv}>::jacobian(self, q)
+        pub fn frame_jacobian<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {bound} {{
+            ::linkwork::NamedFrame::<I, {nq}, {nv}>::jacobian(self, {at}, q)
         }}",
         nq = s.nq,
         nv = s.nv,
     );
 }
 
+/// The trait's functions, in terms of the inherent ones, which take only what they need.
 fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
     }
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    for (name, arguments) in TRAIT_METHODS.iter().filter(|(name, _)| *name != "difference") {
-        let result = match *name {
-            "neutral" => q.clone(),
+    for (name, arguments) in TRAIT_FUNCTIONS {
+        let result = match name {
             "mass_matrix" => s.shape(Shape::Square(s.nv)),
             "kinetic_energy" | "potential_energy" => s.scalar.name().to_string(),
             _ => v.clone(),
         };
-        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let own = |a: &&Argument| name != "generalized_forces" || **a != Argument::V || i.velocity_inputs;
+        let needed: Vec<Argument> = arguments.iter().filter(own).copied().collect();
+        let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
-            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self{}{}) }}",
-            s.parameters(arguments),
-            if names.is_empty() { "" } else { ", " },
+            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
+            s.parameters(&s.timed(arguments)),
             names.join(", ")
         );
     }
     let _ = writeln!(
         out,
-        "#[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
+        "#[inline]\nfn neutral(&self) -> {q} {{ Self::neutral(self) }}
+        #[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
         #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
         #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
     );
-    let _ = i;
 }
 
 /// Puts struct and implementations together.
@@ -366,8 +380,11 @@ fn assemble(
     let mut text = format!("{ALLOW}impl{impl_generics} {target} {where_clause} {{\n{methods}}}\n");
     let _ = writeln!(
         text,
-        "{ALLOW}impl{impl_generics} ::linkwork::Mechanism<{}, {}, {}> for {target} {where_clause} {{",
-        s.nq, s.nv, s.nu
+        "{ALLOW}impl{impl_generics} ::linkwork::{}<{}, {}, {}> for {target} {where_clause} {{",
+        if s.time { "Rheonomic" } else { "Mechanism" },
+        s.nq,
+        s.nv,
+        s.nu
     );
     write_trait(&mut text, i, s);
     text.push_str("}\n");

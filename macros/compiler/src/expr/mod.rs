@@ -3,12 +3,15 @@
 
 pub mod diff;
 pub mod eval;
+pub mod factor;
 pub mod graph;
 pub mod matrix;
+pub mod normal;
 pub mod polynomial;
 pub mod print;
 pub mod replace;
 pub mod rotation;
+pub mod trigonometry;
 
 pub use graph::{Expr, Function, Graph, Id, Node, Symbol};
 pub use matrix::{Mat3, Sym3, Vec3};

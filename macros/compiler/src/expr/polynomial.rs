@@ -7,7 +7,7 @@ use super::graph::{Function, Symbol};
 
 mod monomial;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use monomial::{ATOMS, Monomial};
 

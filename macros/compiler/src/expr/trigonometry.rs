@@ -4,6 +4,9 @@
 
 use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};
 
+#[cfg(test)]
+mod tests;
+
 /// More terms than these are left alone.
 const MOST: usize = 40;
 /// The highest product that is written as a Fourier sum.
@@ -45,7 +48,7 @@ fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Produ
     let degree = terms.iter().map(|t| t.monomial.only(mask).degree()).max();
     let sum = if degree <= Some(DEGREE) { fourier(ring, &products)? } else { products.clone() };
     let as_products = merged(ring, products)?;
-    let as_sum = merged(ring, sum)?;
+    let as_sum: Vec<Product> = merged(ring, sum)?.into_iter().map(unfolded).collect();
     Some(if length(&as_sum) < length(&as_products) { as_sum } else { as_products })
 }
 
@@ -177,6 +180,17 @@ fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     waves.extend(more);
     waves.sort_unstable();
     Some((waves, f))
+}
+
+/// `sin 2a` as `2 sin a cos a`, the company of `sin² a` and `cos² a`.
+fn unfolded(mut product: Product) -> Product {
+    let even = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
+    while let Some(k) = product.waves.iter().position(even) {
+        let angle = product.waves.remove(k).angle.map(|n| n / 2);
+        product.waves.extend([Wave { angle, cosine: false }, Wave { angle, cosine: true }]);
+        product.coefficient *= 2.0;
+    }
+    product
 }
 
 /// `a ± b`.

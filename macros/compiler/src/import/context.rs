@@ -48,7 +48,7 @@ impl<'a> Cx<'a> {
     /// The place at a line and a column, both from one.
     pub(super) fn place_at(&self, line: u32, column: u32) -> Place {
         let file = Some(FilePosition { file: self.path.clone(), line, column });
-        Place { span: self.span, file }
+        Place { span: self.span, end: self.span, file }
     }
 
     /// The place of the end of the file.

@@ -2,7 +2,7 @@
 
 use super::context::quote;
 use super::{LARGEST_FILE, UrdfOptions};
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, nearest};
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -78,8 +78,12 @@ fn report_unreadable(path: &Path, error: &std::io::Error, options: &UrdfOptions,
         }
         _ => {
             let neighbours = neighbours(path, written);
+            let near = nearest(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
             diagnostic.suggest(written, neighbours.iter().map(String::as_str));
-            diagnostic.help(format!("looked for `{}`", path.display()));
+            // Where it was looked for matters only if the name itself seems right.
+            if near.is_none() {
+                diagnostic.help(format!("looked for `{}`", path.display()));
+            }
         }
     }
 }

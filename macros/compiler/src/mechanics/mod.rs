@@ -8,6 +8,7 @@ use crate::model::{Model, Motion, Quantity};
 pub mod aba;
 pub mod crba;
 pub mod energy;
+pub mod equations;
 pub mod forces;
 pub mod frames;
 pub mod lagrange;

@@ -4,7 +4,7 @@ use super::build::Builder;
 use super::resolve::Axes;
 use super::tree::GROUND;
 use super::{Coordinate, Dashpot, Direction, Input, Spring};
-use crate::diag::{Diagnostics, Place};
+use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
 use crate::syntax::{Action, ActionKind, Expr, ExprKind};
 
@@ -21,22 +21,30 @@ impl<'g> Builder<'_, 'g> {
     pub fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
         let target = self.target(&action.on, cx);
         match &action.kind {
-            ActionKind::Spring { stiffness, free } => {
+            ActionKind::Spring { stiffness, free: given } => {
                 let stiffness = self.scope.scalar(stiffness, cx);
-                let free = match free {
-                    Some(free) => self.scope.scalar(free, cx),
+                let free = match given {
+                    Some((free, _)) => self.scope.scalar(free, cx),
                     None => Some(self.scope.graph.zero()),
                 };
+                if let (Some((free, is_angle)), Some(Target::Coordinate(_, angle))) = (given, &target)
+                    && is_angle != angle
+                {
+                    let (is, key) = if *angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+                    cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+                        .help(format!("write `{key} = …`"));
+                }
                 let on = self.coordinate_of(target, "Spring", &action.on.place, cx);
                 if let (Some(on), Some(stiffness), Some(free)) = (on, stiffness, free) {
                     self.model.springs.push(Spring { on, stiffness, free });
                 }
             }
             ActionKind::Dashpot { damping } => {
-                let damping = self.scope.scalar(damping, cx);
+                let written = damping;
+                let damping = self.scope.scalar(written, cx);
                 let on = self.coordinate_of(target, "Dashpot", &action.on.place, cx);
                 if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
-                    cx.error(action.on.place.clone(), format!("a damping cannot be negative, but it is {d}"));
+                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
                 }
                 if let (Some(on), Some(damping)) = (on, damping) {
                     self.model.dashpots.push(Dashpot { on, damping });
@@ -57,8 +65,8 @@ impl<'g> Builder<'_, 'g> {
         match target? {
             Target::Coordinate(c, _) => Some(c),
             Target::Body(..) => {
-                cx.error(place.clone(), format!("a {what} acts on the coordinate of a joint"))
-                    .help("between two bodies it is not yet supported");
+                cx.error(place.clone(), format!("a {what} acts on the coordinate of a joint, but this is a body"))
+                    .help("name a joint, as in `on = hinge`; between two bodies it is not yet supported");
                 None
             }
         }
@@ -152,20 +160,17 @@ impl<'g> Builder<'_, 'g> {
                         [(_, c, angle)] => Some(Target::Coordinate(*c, *angle)),
                         _ => {
                             let own: Vec<&str> = joint.iter().map(|(n, ..)| n.as_str()).collect();
-                            let d = cx.error(
-                                on.place.clone(),
-                                format!("`{name}` has {} coordinates to act on", own.len()),
-                            );
-                            if let Some(first) = own.first() {
-                                d.help(format!("name one, as in `{first}`"));
+                            let list: Vec<String> = own.iter().map(|c| format!("`on = {c}`")).collect();
+                            if list.is_empty() {
+                                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
+                                    .help("a force or a torque can act on a body that it joins, with a direction");
+                            } else {
+                                cx.error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
+                                    .help(format!("write {}", one_of(&list)));
                             }
                             None
                         }
                     };
-                }
-                if name == GROUND {
-                    cx.error(on.place.clone(), "nothing that acts on the ground has an effect");
-                    return None;
                 }
                 let body = self.body(name, &on.place, cx)?;
                 Some(Target::Body(body, Vec3::zero(self.scope.graph)))
@@ -176,6 +181,11 @@ impl<'g> Builder<'_, 'g> {
                     return None;
                 };
                 let Some(coordinates) = self.joint_coordinates(joint) else {
+                    if self.held_index(joint).is_some() {
+                        cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
+                            .help(format!("write `on = {joint}` and give a direction, or name a joint"));
+                        return None;
+                    }
                     let known = self.joint_names();
                     cx.error(inner.place.clone(), format!("unknown joint `{joint}`"))
                         .suggest(joint, known.iter().map(String::as_str));
@@ -211,7 +221,12 @@ impl<'g> Builder<'_, 'g> {
 
     fn body(&self, name: &str, place: &Place, cx: &mut Diagnostics) -> Option<usize> {
         let found = self.held_index(name);
-        if found.is_none() {
+        if name == GROUND {
+            cx.error(place.clone(), "nothing that acts on the ground has an effect");
+        } else if found.is_none() && let Some(what) = self.scope.what(name) {
+            cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
+                .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+        } else if found.is_none() {
             let mut known = self.joint_names();
             known.extend(self.held_names());
             cx.error(place.clone(), format!("unknown joint or body `{name}`"))

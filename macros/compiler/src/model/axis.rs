@@ -20,7 +20,7 @@ pub fn sample(symbol: Symbol, seed: u64) -> f64 {
 }
 
 /// True if an expression has a value at all samples (within the tolerance).
-fn always(e: Expr<'_>, value: f64) -> bool {
+pub fn always(e: Expr<'_>, value: f64) -> bool {
     (0..3).all(|seed| (eval_one(e, &|s| sample(s, seed)) - value).abs() <= TOLERANCE)
 }
 

@@ -52,6 +52,11 @@ pub fn build_model<'g>(
         cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"));
         return None;
     }
+    if description.bodies.is_empty() && description.particles.is_empty() {
+        cx.error(description.name.place.clone(), "a mechanism without a body")
+            .help("add one, as in `#[body(mass = 1)] cart: Body`, or read a file: `#[mechanism(urdf = \"robot.urdf\")]`");
+        return None;
+    }
     let mut builder = Builder::new(description, graph, cx);
     builder.number_coordinates(cx);
     if builder.model.nv() > MAX_VELOCITIES {
@@ -71,6 +76,7 @@ pub fn build_model<'g>(
     if order.is_some() {
         builder.add_actions(cx);
         builder.add_frames(cx);
+        builder.check_finite(cx);
     }
     builder.check_unused(cx);
     cx.is_empty().then_some(builder.model)
@@ -86,14 +92,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             .collect();
         let all =
             description.bodies.iter().map(|b| &b.name).chain(description.particles.iter().map(|p| &p.name));
-        let others =
-            description.joints.iter().map(|j| &j.name).chain(description.actions.iter().map(|a| &a.name));
+        
         let scope = Scope {
             graph,
             parameters: &description.parameters,
             used: vec![false; description.parameters.len()].into(),
             bodies: all.clone().map(|n| n.text.clone()).collect(),
-            others: others.map(|n| n.text.clone()).collect(),
+            joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
+            actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
         };
         for name in all.filter(|n| n.text == GROUND) {
             cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move");
@@ -117,6 +123,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             gravity: gravity.unwrap_or(Vec3::zero(graph)),
             friction_speed,
             links: Vec::new(),
+            time: false,
+            velocity_inputs: false,
             charts: Vec::new(),
             configuration: Vec::new(),
             velocities: Vec::new(),
@@ -287,7 +295,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
             && m < 0.0
         {
-            cx.error(e.place.clone(), format!("the mass of `{name}` is not positive: it is {m}"));
+            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"));
         }
         if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
             && !body.trust_inertia
@@ -313,13 +321,32 @@ impl<'a, 'g> Builder<'a, 'g> {
         sum.tensor = sum.tensor + added.tensor;
     }
 
+    /// Figures may be finite and their products not.
+    fn check_finite(&self, cx: &mut Diagnostics) {
+        if !cx.is_empty() {
+            return;
+        }
+        let infinite = |e: &crate::expr::Expr<'g>| e.value().is_some_and(|n| !n.is_finite());
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            let Some((Some(link), _)) = &self.places[k] else { continue };
+            let i = &self.model.links[link.0].inertia;
+            let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
+            if all.into_iter().any(infinite) {
+                let name = &body.name;
+                cx.error(name.place.clone(), format!("the figures of `{}` are too large", name.text))
+                    .help("mass times the square of the distance from the joint is not a finite number");
+                return;
+            }
+        }
+    }
+
     fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
         let graph = self.scope.graph;
         let mass = self.scope.scalar(&particle.mass, cx);
         if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
             cx.error(
                 particle.mass.place.clone(),
-                format!("the mass of `{}` is not positive: it is {m}", particle.name.text),
+                format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
             );
         }
         let Some(placed) = self.particle_place(particle, cx) else {

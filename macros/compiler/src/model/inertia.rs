@@ -1,6 +1,6 @@
 //! Mass and inertia of bodies: solids, matrices, and whether a real body can have them.
 
-use super::resolve::Scope;
+use super::resolve::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
@@ -85,6 +85,9 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let has_axis = names.last() == Some(&"axis");
+        if self.confused(solid, names, arguments, cx) {
+            return None;
+        }
         let mut numbers = Vec::new();
         let mut complete = true;
         for argument in &arguments[..arguments.len() - usize::from(has_axis)] {
@@ -101,6 +104,23 @@ impl<'g> Scope<'_, 'g> {
             _ => None,
         };
         complete.then(|| self.solid_inertia(text, &numbers, axis))
+    }
+
+    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely the
+    /// arguments stand in another order.
+    fn confused(&self, solid: &Name, names: &[&str], arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+        for (name, argument) in names.iter().zip(arguments) {
+            let mut silent = Diagnostics::new();
+            let found = match (self.value(argument, &mut silent), *name == "axis") {
+                (Some(Value::Vector(_)), false) => "a vector",
+                (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
+                _ => continue,
+            };
+            cx.error(argument.place.clone(), format!("expected the {name} of the {}, found {found}", solid.text))
+                .help(format!("write `{}({})`", solid.text, names.join(", ")));
+            return true;
+        }
+        false
     }
 
     fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
@@ -190,7 +210,7 @@ pub fn check_inertia(
     let Some(m) = inertia.full().values() else { return };
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
-    let list = moments.map(|m| format!("{m:.4e}")).join(", ");
+    let list = moments.map(brief).join(", ");
     let diagnostic = if moments[0] < -TOLERANCE * scale {
         cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
             .help(format!("its principal moments are {list}"))
@@ -202,6 +222,15 @@ pub fn check_inertia(
     };
     if let Some(hint) = hint {
         diagnostic.help(hint);
+    }
+}
+
+/// A number with about five digits.
+fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
+    match rounded.abs() {
+        size if size == 0.0 || (1e-3..1e6).contains(&size) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::Coordinate;
 use super::axis::sample;
+use super::axis::always;
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
@@ -69,11 +70,13 @@ impl<'g> Scope<'_, 'g> {
             }
             JointKind::Universal => {
                 let axes = several(&about, 2..=2, "about", "a Universal", place, cx)?;
+                check_independent(axes, "a Universal", joint.about.get(1), cx)?;
                 Some(axes.iter().map(|a| Turn(*a)).collect())
             }
             JointKind::Planar => self.planar(&about, &along, place, cx),
             JointKind::Stage => {
                 let axes = several(&along, 2..=3, "along", "a Stage", place, cx)?;
+                check_independent(axes, "a Stage", joint.along.last(), cx)?;
                 Some(axes.iter().map(|a| Slide(*a)).collect())
             }
             JointKind::Ball => Some(vec![Elementary::Ball]),
@@ -99,7 +102,8 @@ impl<'g> Scope<'_, 'g> {
             (Some(pitch), None) => self.scalar(pitch, cx),
             (None, Some(lead)) => self.scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
             _ => {
-                cx.error(joint.name.place.clone(), "a Screw has a `pitch` or a `lead`")
+                let and = if joint.pitch.is_some() { ", not both" } else { "" };
+                cx.error(joint.name.place.clone(), format!("a Screw has a `pitch` or a `lead`{and}"))
                     .help("`pitch` is the advance per radian, `lead` the advance per turn");
                 None
             }
@@ -197,9 +201,33 @@ fn several<'a, 'g>(
         (2, 2) => ("two axes", "(x, y)"),
         _ => ("two or three axes", "(x, y)"),
     };
-    cx.error(place.clone(), format!("{what} has {number} in `{key}`, found {}", axes.len()))
+    let message = match axes.len() {
+        0 => format!("missing `{key}`: {what} has {number}"),
+        n => format!("{what} has {number} in `{key}`, found {n}"),
+    };
+    cx.error(place.clone(), message)
         .help(format!("write `{key} = {example}`"));
     None
+}
+
+/// Reports axes that are parallel, or three in a plane: one of the coordinates would do what the others do.
+fn check_independent(
+    axes: &[Vec3<'_>],
+    what: &str,
+    last: Option<&syntax::Expr>,
+    cx: &mut Diagnostics,
+) -> Option<()> {
+    let dependent = match axes {
+        [a, b] => a.cross(*b).0.iter().all(|c| always(*c, 0.0)),
+        [a, b, c] => always(a.cross(*b).dot(*c), 0.0),
+        _ => false,
+    };
+    if let Some(last) = last.filter(|_| dependent) {
+        cx.error(last.place.clone(), format!("the axes of {what} are not independent"))
+            .help("the last one adds nothing to the others; choose another direction");
+        return None;
+    }
+    Some(())
 }
 
 fn either<'g>(

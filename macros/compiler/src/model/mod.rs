@@ -303,6 +303,10 @@ pub struct Model<'g> {
     pub friction_speed: Expr<'g>,
     /// Links, parents before children.
     pub links: Vec<Link<'g>>,
+    /// Something depends on time.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
     /// Parts of the configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
     /// Name of every entry of `q`.

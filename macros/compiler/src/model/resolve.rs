@@ -1,6 +1,7 @@
 //! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
 
 use super::axis::check_rotation_matrix;
+use super::tree::GROUND;
 use super::{Quantity, Rotation};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
@@ -16,8 +17,10 @@ pub struct Scope<'a, 'g> {
     pub used: std::cell::RefCell<Vec<bool>>,
     /// Names of bodies and particles.
     pub bodies: Vec<String>,
-    /// Names of everything else, which are known but have no value here.
-    pub others: Vec<String>,
+    /// Names of joints.
+    pub joints: Vec<String>,
+    /// Names of force elements and inputs.
+    pub actions: Vec<String>,
 }
 
 /// The axes that a vector is given in.
@@ -57,6 +60,20 @@ const FUNCTIONS: [&str; 8] = ["atan2", "pow", "min", "max", "dot", "cross", "nor
 const LATER: [&str; 7] = ["r", "v", "a", "omega", "alpha", "rate", "angle"];
 
 impl<'a, 'g> Scope<'a, 'g> {
+    /// What a known name stands for, with its article.
+    pub fn what(&self, name: &str) -> Option<&'static str> {
+        let is = |list: &[String]| list.iter().any(|known| known == name);
+        match name {
+            _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
+            _ if name == GROUND || is(&self.bodies) => Some("a body"),
+            _ if is(&self.joints) => Some("a joint"),
+            _ if is(&self.actions) => Some("a force element"),
+            "x" | "y" | "z" => Some("a direction"),
+            "pi" => Some("a number"),
+            _ => None,
+        }
+    }
+
     /// A scalar.
     pub fn scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         match self.value(e, cx)? {
@@ -162,8 +179,22 @@ impl<'a, 'g> Scope<'a, 'g> {
         Some(m)
     }
 
-    /// The value of an expression.
+    /// The value of an expression; a number that is not finite is a mistake.
     pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let value = self.any_value(e, cx)?;
+        let infinite = |s: &Expr<'g>| s.value().is_some_and(|n| !n.is_finite());
+        let bad = match &value {
+            Value::Scalar(s) => infinite(s),
+            Value::Vector(terms) => terms.iter().any(|(_, v)| v.0.iter().any(infinite)),
+        };
+        if bad {
+            cx.error(e.place.clone(), "the value of this is not a finite number");
+            return None;
+        }
+        Some(value)
+    }
+
+    fn any_value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         match &e.kind {
             ExprKind::Number(n) => Some(Value::Scalar(self.graph.num(*n))),
             ExprKind::Name(name) => self.name(name, e, cx),
@@ -183,11 +214,21 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Some(Value::Vector(vec![(Axes::Own, vector)]))
             }
             ExprKind::Method(_, method, _) => {
-                cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
+                let diagnostic = cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
+                if is_function(&method.text) {
+                    diagnostic.help(format!("write `{}(…)`", method.text));
+                } else if matches!(method.text.as_str(), "powi" | "powf") {
+                    diagnostic.help("write `pow(a, n)`");
+                }
                 None
             }
-            ExprKind::Array(_) | ExprKind::Tuple(_) => {
-                cx.error(e.place.clone(), "expected a scalar or a vector");
+            ExprKind::Array(items) => {
+                cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()));
+                None
+            }
+            ExprKind::Tuple(_) => {
+                cx.error(e.place.clone(), "expected a scalar or a vector, found a list")
+                    .help("a vector is written `[a, b, c]` or `a * x + b * y + c * z`");
                 None
             }
         }
@@ -209,8 +250,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         } else if self.bodies.iter().any(|b| b == name) || name == "ground" {
             cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
                 .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
-        } else if self.others.iter().any(|b| b == name) {
-            cx.error(e.place.clone(), format!("`{name}` has no value here"))
+        } else if let Some(what) = self.what(name) {
+            cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
         } else {
             let known = self.parameters.iter().map(|p| p.text.as_str());
@@ -222,10 +263,22 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let ExprKind::Name(body) = &inner.kind else {
-            cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
+            let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
+            if ["x", "y", "z"].contains(&member.text.as_str()) {
+                diagnostic.help(format!("a component of a vector is `dot(vector, {})`", member.text));
+            }
             return None;
         };
+        if body == "self" {
+            cx.error(inner.place.clone(), "parameters are named without `self`").help(format!("write `{}`", member.text));
+            return None;
+        }
         if body != "ground" && !self.bodies.contains(body) {
+            if let Some(what) = self.what(body) {
+                cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
+                    .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
+                return None;
+            }
             let known = self.bodies.iter().map(String::as_str).chain(["ground"]);
             cx.error(inner.place.clone(), format!("unknown body `{body}`")).suggest(body, known);
             return None;
@@ -279,7 +332,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             (_, left, right) => {
                 let verb = if op == BinaryOp::Add { "added to" } else { "subtracted from" };
                 let (what, from) = if op == BinaryOp::Add { (&left, &right) } else { (&right, &left) };
-                cx.error(e.place.clone(), format!("{} cannot be {verb} {}", what.word(), from.word()));
+                cx.error(e.place.clone(), format!("{} cannot be {verb} {}", what.word(), from.word()))
+                    .help("multiply the scalar by a direction, as in `length * y`");
                 return None;
             }
         })
@@ -293,9 +347,10 @@ impl<'a, 'g> Scope<'a, 'g> {
             };
             let s = self.scalar(argument, cx)?.call(*f);
             if let crate::expr::Node::Call(f, inner) = s.node()
-                && self.graph.expr(inner).value().is_some()
+                && let Some(number) = self.graph.expr(inner).value()
             {
-                cx.error(argument.place.clone(), format!("`{}` is not defined at this number", f.name()));
+                let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
+                cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()));
                 return None;
             }
             return Some(Value::Scalar(s));
@@ -349,6 +404,11 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
         }
     }
+}
+
+/// True for a function of the language that has a value.
+fn is_function(name: &str) -> bool {
+    FUNCTIONS.contains(&name) || Function::ALL.iter().any(|(known, _)| *known == name)
 }
 
 fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {

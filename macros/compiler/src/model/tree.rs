@@ -52,6 +52,11 @@ pub fn find_tree(
             continue;
         };
         let Some(child) = child else {
+            sound = false;
+            // A body of this name was reported.
+            if held.iter().any(|h| h.name.text == GROUND) {
+                continue;
+            }
             cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
                 .help("turn the joint around: `ground -> body`");
             sound = false;
@@ -93,7 +98,7 @@ pub fn find_tree(
     }
     let order = sort(&ends, held.len());
     if sound && order.len() < ends.len() {
-        report_cycle(description, &ends, &order, held, cx);
+        report_cycles(description, &ends, held, cx);
         sound = false;
     }
     sound.then_some(Order { joints: order })
@@ -117,28 +122,43 @@ fn sort(
     order
 }
 
-fn report_cycle(
+/// Reports every cycle once: from each body that is not reached, the joints are followed up until one is met again.
+fn report_cycles(
     description: &Description,
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
-    reached: &[(usize, Option<BodyIndex>, BodyIndex)],
     held: &[Held<'_>],
     cx: &mut Diagnostics,
 ) {
-    let Some((joint, _, child)) = ends.iter().find(|e| !reached.contains(e)) else {
-        return;
-    };
-    cx.error(
-        description.joints[*joint].name.place.clone(),
-        format!(
-            "`{}` hangs from itself: its joints form a cycle that the ground is not part of",
-            held[*child].name.text
-        ),
-    )
-    .help("one body of the cycle must be joined to `ground`");
+    let mut above: Vec<Option<(usize, BodyIndex)>> = vec![None; held.len()];
+    for (joint, parent, child) in ends {
+        above[*child] = parent.map(|parent| (*joint, parent));
+    }
+    let mut walks: Vec<Option<usize>> = vec![None; held.len()];
+    for start in 0..held.len() {
+        let mut body = start;
+        while let (None, Some((_, parent))) = (walks[body], above[body]) {
+            walks[body] = Some(start);
+            body = parent;
+        }
+        if let (Some((joint, _)), true) = (above[body], walks[body] == Some(start)) {
+            let (joint, name) = (&description.joints[joint].name, &held[body].name.text);
+            cx.error(
+                joint.place.clone(),
+                format!("`{name}` hangs from itself: its joints form a cycle that the ground is not part of"),
+            )
+            .help(format!("let one of them begin at the ground, as in `ground -> {name}`"));
+        }
+        walks[body].get_or_insert(start);
+    }
 }
 
 fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
+    if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
+        cx.error(place, format!("`{}` is {what}, not a body", name.text))
+            .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
+        return;
+    }
     if scope.bodies.contains(&name.text) {
         cx.error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
             .help("leave its `at` out, or join the body");

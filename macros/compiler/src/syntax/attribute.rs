@@ -5,6 +5,7 @@ use super::expression::name;
 use super::{Base, Description, Name, ScalarType, guard};
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
+use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type, Visibility};
 
@@ -62,7 +63,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         return None;
     }
     let item = parse_struct(item, cx)?;
-    let generic = check_generics(&item, cx);
+    let mut item = item;
+    let (generic, refused) = check_generics(&mut item, cx);
     let mut description = empty_description(&item);
     let mut shell = Shell {
         attributes: item.attrs.clone(),
@@ -74,6 +76,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
     for field in item.fields {
+        if type_name(&field.ty).is_some_and(|kind| refused.contains(&kind)) {
+            continue;
+        }
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
     }
     let urdf = read_options(arguments, &mut description, &mut scalar, cx);
@@ -83,7 +88,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if let Some(generic) = generic
         && description.scalar != ScalarType::Generic(generic.clone())
     {
-        cx.error(item.generics.span(), format!("no parameter of the mechanism has the type `{generic}`"))
+        let unused = std::mem::take(&mut shell.generics);
+        let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
+        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`"))
             .help(
                 "remove the type parameter, or give it to a parameter: then all generated functions use it",
             );
@@ -120,23 +127,37 @@ fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
     None
 }
 
-/// The struct's type parameter, if it has one that can be the scalar type.
-fn check_generics(item: &ItemStruct, cx: &mut Diagnostics) -> Option<String> {
-    let mut found = None;
-    for parameter in &item.generics.params {
-        match parameter {
-            GenericParam::Type(t) if found.is_none() => found = Some(t.ident.to_string()),
+/// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken away, so that
+/// Rust does not complain of them once more, and the names of the types among them are returned.
+fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
+    let (mut found, mut refused) = (None, Vec::new());
+    let parameters = std::mem::take(&mut item.generics.params);
+    let count = parameters.len();
+    for parameter in parameters {
+        match &parameter {
+            GenericParam::Type(t) if found.is_none() => {
+                found = Some(t.ident.to_string());
+                item.generics.params.push(parameter);
+            }
             GenericParam::Type(t) => {
                 cx.error(t.ident.span(), format!("a second type parameter `{}`", t.ident))
                     .help("a mechanism has one scalar type at most");
+                refused.push(t.ident.clone());
             }
-            other => {
-                cx.error(other.span(), "a mechanism can be generic over its scalar type only")
+            GenericParam::Const(c) => {
+                cx.error(c.ident.span(), "a mechanism can be generic over its scalar type only")
+                    .help("write `struct Robot<T>` with parameters of type `T`");
+            }
+            GenericParam::Lifetime(l) => {
+                cx.error(l.lifetime.span(), "a mechanism can be generic over its scalar type only")
                     .help("write `struct Robot<T>` with parameters of type `T`");
             }
         }
     }
-    found
+    if item.generics.params.len() < count {
+        item.generics.where_clause = None;
+    }
+    (found, refused)
 }
 
 fn empty_description(item: &ItemStruct) -> Description {
@@ -154,7 +175,7 @@ fn empty_description(item: &ItemStruct) -> Description {
 }
 
 fn read_field(
-    field: Field,
+    mut field: Field,
     generic: Option<&str>,
     description: &mut Description,
     shell: &mut Shell,
@@ -164,8 +185,7 @@ fn read_field(
     let Some(ident) = field.ident.clone() else { return };
     let field_name = name(&ident);
     let Some(kind) = type_name(&field.ty) else {
-        cx.error(field.ty.span(), format!("field `{ident}` has a type that a mechanism cannot have"))
-            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …)");
+        element::unknown_type(&field_name, "", span_of(&field.ty), cx);
         return;
     };
     let found = match kind.to_string().as_str() {
@@ -179,9 +199,13 @@ fn read_field(
         }
     };
     check_parameter_attributes(&field_name, &field.attrs, cx);
+    field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     unify_scalar(scalar, found, field.ty.span().into(), cx);
+    // Rust would complain of a second field with the same name as well.
+    if !shell.parameters.iter().any(|known| known.ident == field.ident) {
+        shell.parameters.push(field);
+    }
     description.parameters.push(field_name);
-    shell.parameters.push(field);
 }
 
 fn unify_scalar(
@@ -209,6 +233,14 @@ fn spell(scalar: &ScalarType) -> &str {
         ScalarType::F32 => "f32",
         ScalarType::Generic(name) => name,
     }
+}
+
+/// From the first to the last token of a type.
+fn span_of(ty: &Type) -> Place {
+    let mut tokens = ty.to_token_stream().into_iter();
+    let Some(first) = tokens.next() else { return ty.span().into() };
+    let last = tokens.last().map_or(first.span(), |last| last.span());
+    Place::from(first.span()).to(&last.into())
 }
 
 /// The last word of a plain path without arguments.
@@ -268,7 +300,7 @@ fn read_options(
     let trust_inertia = choice("inertia", ["check", "trust"]).unwrap_or(false);
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     let lock = arguments.take_texts("lock", cx);
-    arguments.finish("mechanism", &OPTIONS, cx);
+    arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     Some(UrdfOptions {
         path: path?,
         base: if base { Base::Free } else { Base::Fixed },

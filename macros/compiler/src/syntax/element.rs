@@ -61,6 +61,57 @@ const LATER: [(&str, &str); 14] = [
     ("Scalar", "output"),
 ];
 
+/// Words of other trades, and the element that they mean.
+const SYNONYMS: [(&str, &str); 23] = [
+    ("Link", "Body"),
+    ("RigidBody", "Body"),
+    ("PointMass", "Particle"),
+    ("Mass", "Particle"),
+    ("Revolute", "Pin"),
+    ("Continuous", "Pin"),
+    ("Hinge", "Pin"),
+    ("Prismatic", "Sleeve"),
+    ("Slider", "Sleeve"),
+    ("Helical", "Screw"),
+    ("Cylindrical", "Collar"),
+    ("Cardan", "Universal"),
+    ("Hooke", "Universal"),
+    ("Spherical", "Ball"),
+    ("Floating", "Free"),
+    ("SixDof", "Free"),
+    ("Fixed", "Weld"),
+    ("Rigid", "Weld"),
+    ("Damper", "Dashpot"),
+    ("Motor", "Torque"),
+    ("Actuator", "Torque"),
+    ("Thruster", "Force"),
+    ("f16", "f32"),
+];
+
+/// Types of Rust that are no parameter.
+const NUMBERS: [&str; 12] =
+    ["i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
+
+/// Reports a field whose type is neither a parameter's nor an element's.
+pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
+    if NUMBERS.contains(&kind) {
+        cx.error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
+            .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
+    } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
+        cx.error(place, format!("field `{}` has a type that a mechanism cannot have", field.text))
+            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …)");
+    } else if let Some((_, word)) = SYNONYMS.iter().find(|(synonym, _)| *synonym == kind) {
+        cx.error(place, format!("unknown element type `{kind}`")).help(format!("did you mean `{word}`?"));
+    } else {
+        let types = element_types();
+        let near = crate::diag::nearest(kind, &types).is_some();
+        let diagnostic = cx.error(place, format!("unknown element type `{kind}`")).suggest(kind, types);
+        if !near {
+            diagnostic.help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
+        }
+    }
+}
+
 /// Every element type of the language.
 fn element_types() -> Vec<&'static str> {
     let mut all = vec!["Body", "Particle", "Vector", "f64"];
@@ -95,8 +146,7 @@ pub fn read_element(
         _ if joint.is_some() => "joint",
         k if ACTIONS.contains(&k) => "acts",
         _ => {
-            cx.error(kind.span(), format!("unknown element type `{kind_name}`"))
-                .suggest(&kind_name, element_types());
+            unknown_type(name, &kind_name, kind.span(), cx);
             return;
         }
     };
@@ -114,7 +164,8 @@ pub fn read_element(
     }
 }
 
-fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
+/// True for an attribute of one of these names.
+pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
 
@@ -147,7 +198,11 @@ fn own_arguments(
             word.as_str(),
             "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated"
         ) {
-            cx.error(span, format!("unknown attribute `#[{word}]` on an element")).suggest(&word, ATTRIBUTES);
+            let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
+            diagnostic.suggest(&word, ATTRIBUTES);
+            if crate::diag::nearest(&word, &ATTRIBUTES).is_none() {
+                diagnostic.help("an element does not stay in the struct; only parameters can have attributes of other crates");
+            }
             return None;
         }
     }
@@ -168,8 +223,8 @@ fn example(attribute: &str) -> &'static str {
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
-    if arguments.word_given("massive") {
-        cx.error(arguments.place.clone(), "a body with prescribed motion is not yet supported");
+    if let Some(place) = arguments.word_given("massive") {
+        cx.error(place, "a body with prescribed motion is not yet supported");
     }
     let body = Body {
         name: name.clone(),
@@ -178,14 +233,15 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         inertia: arguments.take_expr("inertia", cx),
         trust_inertia: false,
     };
-    arguments.finish("body", &["mass", "com", "inertia"], cx);
+    arguments.finish("a Body", &["mass", "com", "inertia"], cx);
     body
 }
 
 fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Particle> {
-    let mass = arguments.need_expr("mass", "particle", cx);
+    let keys = ["mass", "at"];
+    let mass = arguments.need_expr("mass", "m", "particle", &keys, cx);
     let at = arguments.take_expr("at", cx);
-    arguments.finish("particle", &["mass", "at"], cx);
+    arguments.finish("a Particle", &keys, cx);
     Some(Particle { name: name.clone(), mass: mass?, at })
 }
 
@@ -220,7 +276,7 @@ fn read_joint(
             cx.error(place, format!("a {} takes no `{key}`", kind_word(kind))).help(help);
         }
     }
-    arguments.finish("joint", allowed, cx);
+    arguments.finish(&format!("a {}", kind_word(kind)), allowed, cx);
     let (parent, child) = ends?;
     Some(Joint {
         name: name.clone(),
@@ -302,35 +358,37 @@ fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diag
         arguments.forget_all();
         return None;
     }
-    let on = arguments.need_expr("on", "acts", cx);
-    let (action, keys): (Option<ActionKind>, &[&str]) = match kind {
-        "Spring" => {
-            let stiffness = arguments.need_expr("stiffness", "acts", cx);
-            let lengths = [arguments.take_expr("free_length", cx), arguments.take_expr("free_angle", cx)];
-            if let [Some(_), Some(second)] = &lengths {
-                cx.error(second.place.clone(), "a spring has one of `free_length` and `free_angle`");
-            }
-            let free = lengths.into_iter().flatten().next();
-            (
-                stiffness.map(|stiffness| ActionKind::Spring { stiffness, free }),
-                &["on", "stiffness", "free_length", "free_angle"],
-            )
-        }
-        "Dashpot" => {
-            let damping = arguments.need_expr("damping", "acts", cx);
-            (damping.map(|damping| ActionKind::Dashpot { damping }), &["on", "damping"])
-        }
-        "Force" => {
-            let along = arguments.take_expr("along", cx);
-            (Some(ActionKind::Force { along }), &["on", "along"])
-        }
-        _ => {
-            let about = arguments.take_expr("about", cx);
-            (Some(ActionKind::Torque { about }), &["on", "about"])
-        }
+    let keys: &[&str] = match kind {
+        "Spring" => &["on", "stiffness", "free_length", "free_angle"],
+        "Dashpot" => &["on", "damping"],
+        "Force" => &["on", "along"],
+        _ => &["on", "about"],
     };
-    arguments.finish("acts", keys, cx);
+    let on = arguments.need_expr("on", "joint", "acts", keys, cx);
+    let action = match kind {
+        "Spring" => read_spring(arguments, keys, cx),
+        "Dashpot" => arguments
+            .need_expr("damping", "c", "acts", keys, cx)
+            .map(|damping| ActionKind::Dashpot { damping }),
+        "Force" => Some(ActionKind::Force { along: arguments.take_expr("along", cx) }),
+        _ => Some(ActionKind::Torque { about: arguments.take_expr("about", cx) }),
+    };
+    arguments.finish(&format!("a {kind}"), keys, cx);
     Some(Action { name: name.clone(), kind: action?, on: on? })
+}
+
+fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<ActionKind> {
+    let stiffness = arguments.need_expr("stiffness", "k", "acts", keys, cx);
+    let place = arguments.place_of("free_angle");
+    let length = arguments.take_expr("free_length", cx);
+    let angle = arguments.take_expr("free_angle", cx);
+    if let (Some(_), Some(_), Some(place)) = (&length, &angle, place) {
+        cx.error(place, "a spring has one of `free_length` and `free_angle`")
+            .help("`free_length` goes with what slides, `free_angle` with what turns");
+    }
+    let is_angle = angle.is_some();
+    let free = length.or(angle).map(|free| (free, is_angle));
+    Some(ActionKind::Spring { stiffness: stiffness?, free })
 }
 
 /// The arguments of an attribute: at most one relation `a -> b`, and `key = value` in any order.
@@ -365,18 +423,27 @@ impl Arguments {
     /// Parses the tokens between the parentheses.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
         let parsed = (|input: ParseStream<'_>| parse_arguments(input, span)).parse2(tokens);
-        let arguments = match parsed {
+        let mut arguments = match parsed {
             Ok(arguments) => arguments,
+            // The end of the input has no place of its own.
+            Err(error) if error.to_string().starts_with("unexpected end") => {
+                cx.error(span, "unexpected end of the arguments");
+                return None;
+            }
             Err(error) => {
                 cx.syn(error);
                 return None;
             }
         };
-        for (k, (key, _)) in arguments.named.iter().enumerate() {
-            if arguments.named[..k].iter().any(|(other, _)| other.text == key.text) {
-                cx.error(key.place.clone(), format!("`{}` is given twice", key.text));
+        let mut first: Vec<(Name, Value)> = Vec::new();
+        for (key, value) in std::mem::take(&mut arguments.named) {
+            if first.iter().any(|(other, _)| other.text == key.text) {
+                cx.error(key.place, format!("`{}` is given twice", key.text));
+            } else {
+                first.push((key, value));
             }
         }
+        arguments.named = first;
         Some(arguments)
     }
 
@@ -406,31 +473,43 @@ impl Arguments {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
-    fn word_given(&mut self, word: &str) -> bool {
-        let before = self.plain.len();
-        self.plain.retain(|e| !matches!(&e.kind, ExprKind::Name(name) if name == word));
-        self.plain.len() < before
+    /// Where a word stands alone, without a value.
+    fn word_given(&mut self, word: &str) -> Option<Place> {
+        let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
+        let at = self.plain.iter().position(is_word)?;
+        Some(self.plain.remove(at).place)
     }
 
     /// The expression of a key, if given.
     pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
         match self.take(key)? {
             (_, Value::Expr(e)) => Some(e),
-            (name, _) => {
-                cx.error(name.place, format!("expected an expression for `{key}`"));
+            (_, Value::Text(text)) => {
+                cx.error(text.span(), format!("expected an expression for `{key}`, found a text"))
+                    .help("write it without quotes");
+                None
+            }
+            (name, Value::Texts(_)) => {
+                cx.error(name.place, format!("expected an expression for `{key}`, found texts"))
+                    .help("write it without quotes");
                 None
             }
         }
     }
 
-    fn need_expr(&mut self, key: &str, attribute: &str, cx: &mut Diagnostics) -> Option<Expr> {
-        if self.place_of(key).is_none() {
-            // A misspelt key is reported as such, once.
-            let near = self.named.iter().any(|(name, _)| crate::diag::nearest(&name.text, &[key]).is_some());
-            if !near {
-                cx.error(self.place.clone(), format!("missing `{key}`"))
-                    .help(format!("write `#[{attribute}({key} = …)]`"));
-            }
+    /// The expression of a key that must be there; `example` is what may stand for it.
+    fn need_expr(
+        &mut self,
+        key: &str,
+        example: &str,
+        attribute: &str,
+        known: &[&str],
+        cx: &mut Diagnostics,
+    ) -> Option<Expr> {
+        // A key that is not known is reported as such: most likely it is the missing one.
+        if self.place_of(key).is_none() && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str())) {
+            cx.error(self.place.clone(), format!("missing `{key}`"))
+                .help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
         }
         self.take_expr(key, cx)
     }
@@ -504,20 +583,23 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// Reports what was not taken.
-    pub fn finish(&mut self, attribute: &str, known: &[&str], cx: &mut Diagnostics) {
+    /// Reports what was not taken; `whose` is the element with its article.
+    pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         for (name, _) in self.named.drain(..) {
             if name.text == "rotation" || name.text == "axes" {
-                cx.error(name.place, format!("`#[{attribute}]` takes no `{}`", name.text))
+                cx.error(name.place, format!("{whose} has no argument `{}`", name.text))
                     .help("rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`");
                 continue;
             }
-            cx.error(name.place, format!("unknown argument `{}` of `#[{attribute}]`", name.text))
+            cx.error(name.place, format!("{whose} has no argument `{}`", name.text))
                 .suggest(&name.text, known.iter().copied());
         }
-        let stray = self.plain.drain(..).chain(self.relation.take().map(|(e, _)| e));
-        for e in stray {
-            cx.error(e.place, "expected `name = value`");
+        for e in self.plain.drain(..) {
+            cx.error(e.place, "expected `name = value`").suggest("", known.iter().copied());
+        }
+        if let Some((parent, child)) = self.relation.take() {
+            cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
+                .help("`parent -> child` stands in a joint");
         }
     }
 }
@@ -534,7 +616,7 @@ fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments>
         parse_argument(input, &mut arguments)?;
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(input.error("expected `,` or an operator"));
+                return Err(super::expression::unexpected(input));
             }
             input.parse::<Token![,]>()?;
         }
@@ -547,6 +629,9 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     if input.peek(Ident::peek_any) && input.peek2(Token![=]) && !input.peek2(Token![==]) {
         let key = parse_name(input)?;
         input.parse::<Token![=]>()?;
+        if input.is_empty() || input.peek(Token![,]) {
+            return Err(syn::Error::new(key.place.span, format!("`{}` has no value", key.text)));
+        }
         let value = parse_value(input)?;
         arguments.named.push((key, value));
         return Ok(());
@@ -554,6 +639,9 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     let first = parse_expr(input)?;
     if input.peek(Token![->]) {
         let arrow: Token![->] = input.parse()?;
+        if input.is_empty() || input.peek(Token![,]) {
+            return Err(syn::Error::new(arrow.spans[1], "nothing stands behind this arrow"));
+        }
         let second = parse_expr(input)?;
         if arguments.relation.is_some() {
             return Err(syn::Error::new(arrow.spans[0], "a second `parent -> child`"));

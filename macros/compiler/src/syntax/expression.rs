@@ -2,9 +2,10 @@
 //! is bounded.
 
 use super::{BinaryOp, Expr, ExprKind, Name};
-use proc_macro2::Span;
+use crate::diag::{Place, syn_error};
+use proc_macro2::{Span, TokenTree};
 use syn::ext::IdentExt;
-use syn::parse::ParseStream;
+use syn::parse::{ParseStream, Parser};
 use syn::{Ident, Lit, Token, bracketed, parenthesized, token};
 
 /// Deepest expression; a sum of this many terms counts as deep.
@@ -28,14 +29,11 @@ pub fn name(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn node(kind: ExprKind, span: Span, depth: usize) -> syn::Result<Parsed> {
+fn node(kind: ExprKind, place: Place, depth: usize) -> syn::Result<Parsed> {
     if depth > MAX_DEPTH {
-        return Err(syn::Error::new(
-            span,
-            "this expression is too long\n\n= help: name a part of it as a parameter",
-        ));
+        return Err(syn_error(place.span, "this expression is too long", "name a part of it as a parameter"));
     }
-    Ok(Parsed(Expr { kind, place: span.into() }, depth))
+    Ok(Parsed(Expr { kind, place }, depth))
 }
 
 fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -48,8 +46,8 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = parse_product(input)?;
-        left = binary(op, left, right, span)?;
+        let right = behind(span, input, parse_product)?;
+        left = binary(op, left, right)?;
     }
 }
 
@@ -63,21 +61,35 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = parse_unary(input)?;
-        left = binary(op, left, right, span)?;
+        let right = behind(span, input, parse_unary)?;
+        left = binary(op, left, right)?;
     }
 }
 
-fn binary(op: BinaryOp, left: Parsed, right: Parsed, span: Span) -> syn::Result<Parsed> {
+/// The operand behind an operator: at the end of the input there is no token to show but the operator.
+fn behind(
+    operator: Span,
+    input: ParseStream<'_>,
+    parse: fn(ParseStream<'_>) -> syn::Result<Parsed>,
+) -> syn::Result<Parsed> {
+    if input.is_empty() || input.peek(Token![,]) {
+        return Err(syn::Error::new(operator, "nothing stands behind this operator"));
+    }
+    parse(input)
+}
+
+fn binary(op: BinaryOp, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
     let depth = left.1.max(right.1) + 1;
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0)), span, depth)
+    let place = left.0.place.to(&right.0.place);
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0)), place, depth)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
-        let inner = parse_unary(input)?;
-        return node(ExprKind::Neg(Box::new(inner.0)), span, inner.1 + 1);
+        let inner = behind(span, input, parse_unary)?;
+        let place = Place::from(span).to(&inner.0.place);
+        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1 + 1);
     }
     parse_postfix(input)
 }
@@ -87,47 +99,104 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
     while input.peek(Token![.]) {
         input.parse::<Token![.]>()?;
         let member = parse_name(input)?;
-        let (span, depth) = (member.place.span, inner.1 + 1);
+        let depth = inner.1 + 1;
         inner = if input.peek(token::Paren) {
-            let (arguments, deepest) = parse_arguments(input)?;
-            let kind = ExprKind::Method(Box::new(inner.0), member, arguments);
-            node(kind, span, depth.max(deepest + 1))?
+            let (arguments, deepest, close) = parse_arguments(input)?;
+            let place = inner.0.place.to(&close.into());
+            node(ExprKind::Method(Box::new(inner.0), member, arguments), place, depth.max(deepest + 1))?
         } else {
-            node(ExprKind::Field(Box::new(inner.0), member), span, depth)?
+            let place = inner.0.place.to(&member.place);
+            node(ExprKind::Field(Box::new(inner.0), member), place, depth)?
         };
     }
     Ok(inner)
 }
 
 fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
+    if input.peek(token::Group) {
+        return parse_fragment(input);
+    }
     if input.peek(Lit) {
         return parse_number(input);
     }
     if input.peek(token::Paren) {
         let content;
-        let span = parenthesized!(content in input).span.open();
+        let span = parenthesized!(content in input).span;
+        let place = Place::from(span.open()).to(&span.close().into());
         let (mut items, deepest, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
-            return Ok(Parsed(items.remove(0), deepest + 1));
+            let item = items.remove(0);
+            return Ok(Parsed(Expr { place, ..item }, deepest + 1));
         }
-        return node(ExprKind::Tuple(items), span, deepest + 1);
+        return node(ExprKind::Tuple(items), place, deepest + 1);
     }
     if input.peek(token::Bracket) {
         let content;
-        let span = bracketed!(content in input).span.open();
+        let span = bracketed!(content in input).span;
+        let place = Place::from(span.open()).to(&span.close().into());
         let (items, deepest, _) = parse_list(&content)?;
-        return node(ExprKind::Array(items), span, deepest + 1);
+        return node(ExprKind::Array(items), place, deepest + 1);
     }
-    if input.peek(Ident::peek_any) {
+    if input.peek(Ident::peek_any) && !input.peek(Token![if]) && !input.peek(Token![match]) {
         let name = parse_name(input)?;
-        let span = name.place.span;
+        let place = name.place.clone();
         if input.peek(token::Paren) {
-            let (arguments, deepest) = parse_arguments(input)?;
-            return node(ExprKind::Call(name, arguments), span, deepest + 1);
+            let (arguments, deepest, close) = parse_arguments(input)?;
+            return node(ExprKind::Call(name, arguments), place.to(&close.into()), deepest + 1);
         }
-        return node(ExprKind::Name(name.text), span, 1);
+        return node(ExprKind::Name(name.text), place, 1);
     }
-    Err(input.error("expected an expression: a number, a name, a call or a vector"))
+    Err(no_expression(input))
+}
+
+/// An expression that a macro of the user's hands on: it stays together without parentheses.
+fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
+    let TokenTree::Group(group) = input.parse()? else { return Err(no_expression(input)) };
+    let whole = |inner: ParseStream<'_>| {
+        let parsed = parse_sum(inner)?;
+        if inner.is_empty() { Ok(parsed) } else { Err(unexpected(inner)) }
+    };
+    whole.parse2(group.stream())
+}
+
+/// The error where an expression should begin.
+fn no_expression(input: ParseStream<'_>) -> syn::Error {
+    let message = "expected an expression: a number, a name, a call or a vector";
+    let help = if input.peek(Token![*]) {
+        "write `pow(a, n)` for a power"
+    } else if input.peek(Token![&]) {
+        "parameters are named as they are: remove the `&`"
+    } else if input.peek(token::Brace) || input.peek(Token![if]) || input.peek(Token![match]) {
+        "an expression has no conditions and no blocks; `min`, `max`, `abs` and `signum` may serve"
+    } else {
+        return input.error(message);
+    };
+    syn_error(input.span(), message, help)
+}
+
+/// The error where an expression should end or go on.
+pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
+    let message = "expected `,` or an operator";
+    let help = if input.peek(Token![->]) {
+        "a joint has two ends; write a joint for each `parent -> child`"
+    } else if input.peek(Token![<]) && input.peek2(Token![-]) || input.peek(Token![=>]) {
+        "write `parent -> child`"
+    } else if input.peek(Token![::]) {
+        "names have no path; the number π is `pi`"
+    } else if input.peek(Token![:]) {
+        "write `name = value`"
+    } else if input.peek(Token![^]) {
+        "write `pow(a, n)` for a power"
+    } else if input.peek(Token![as]) {
+        "all numbers have one type: remove the conversion"
+    } else if input.peek(Token![!]) {
+        "an expression calls functions, not macros"
+    } else if input.peek(Ident::peek_any) || input.peek(Lit) || input.peek(token::Paren) {
+        "arguments are separated by `,` and factors by `*`"
+    } else {
+        "the operators are `+`, `-`, `*` and `/`"
+    };
+    syn_error(input.span(), message, help)
 }
 
 fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -138,19 +207,21 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         _ => return Err(syn::Error::new(literal.span(), "expected a number")),
     };
     if !matches!(suffix.as_str(), "" | "f64" | "f32") {
-        return Err(syn::Error::new(literal.span(), format!("a number cannot have the suffix `{suffix}`")));
+        let message = format!("a number cannot have the suffix `{suffix}`");
+        return Err(syn_error(literal.span(), &message, "all quantities are in SI units, all angles in radians"));
     }
     match digits.parse::<f64>() {
-        Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span(), 1),
+        Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), 1),
         _ => Err(syn::Error::new(literal.span(), "this number is too large")),
     }
 }
 
-fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize)> {
+/// Expressions in parentheses, the deepest, and the closing parenthesis.
+fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize, Span)> {
     let content;
-    parenthesized!(content in input);
+    let close = parenthesized!(content in input).span.close();
     let (items, deepest, _) = parse_list(&content)?;
-    Ok((items, deepest))
+    Ok((items, deepest, close))
 }
 
 /// Comma-separated expressions to the end: the items, the deepest, whether a comma stands at the end.
@@ -164,7 +235,7 @@ fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize, bool)>
         if trailing {
             content.parse::<Token![,]>()?;
         } else if !content.is_empty() {
-            return Err(content.error("expected `,` or an operator"));
+            return Err(unexpected(content));
         }
     }
     Ok((items, deepest, trailing))

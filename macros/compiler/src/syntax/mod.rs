@@ -251,8 +251,8 @@ pub enum ActionKind {
     Spring {
         /// Stiffness.
         stiffness: Expr,
-        /// Coordinate at which the force is zero.
-        free: Option<Expr>,
+        /// Coordinate at which the force is zero, and whether the user calls it an angle.
+        free: Option<(Expr, bool)>,
     },
     /// Linear dashpot on a joint coordinate.
     Dashpot {

@@ -51,8 +51,7 @@ fn a_missing_file_has_neighbours() {
     folder.write("urdf/panda.urdf", b"");
     folder.write("urdf/readme.txt", b"");
     let found = folder.read("urdf/pandas.urdf");
-    let expected = "there is no file `urdf/pandas.urdf`\n\n= help: did you mean `urdf/panda.urdf`?\n";
-    assert_eq!(found, format!("{expected}= help: looked for `…urdf/pandas.urdf`"));
+    assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: did you mean `urdf/panda.urdf`?");
     let found = folder.read("robots/panda.urdf");
     assert_eq!(
         found,

@@ -1,0 +1,180 @@
+//! The normal form against evaluation of the expression, for hand-picked and for random expressions.
+
+use super::*;
+use crate::expr::eval::eval_one;
+use crate::expr::normal::Normal;
+use crate::expr::trigonometry::simplified;
+use crate::expr::{Expr, Graph};
+
+/// The first symbols are parameters.
+pub fn rank(symbol: Symbol) -> Rank {
+    if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
+}
+
+fn value_of(symbol: Symbol) -> f64 {
+    0.37 + 0.61 * f64::from(symbol.0)
+}
+
+/// Repeatable numbers.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 20) % n
+    }
+}
+
+/// A polynomial as an expression.
+pub fn expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g> {
+    let mut sum = graph.zero();
+    for term in &p.terms {
+        let mut product = graph.num(term.coefficient);
+        for (atom, power) in term.monomial.factors() {
+            let base = match &ring.atoms[atom] {
+                Atom::Symbol(s) => graph.symbol(*s),
+                Atom::Wave(w) => {
+                    let angle = wave_angle(graph, ring, w);
+                    if w.cosine { angle.cos() } else { angle.sin() }
+                }
+                Atom::Inverse(p) => graph.one() / expression(graph, ring, p),
+                Atom::Call(f, p) => expression(graph, ring, p).call(*f),
+                Atom::Atan2(y, x) => expression(graph, ring, y).atan2(expression(graph, ring, x)),
+                Atom::Power(a, b) => expression(graph, ring, a).pow(expression(graph, ring, b)),
+            };
+            product = (0..power).fold(product, |p, _| p * base);
+        }
+        sum += product;
+    }
+    sum
+}
+
+fn wave_angle<'g>(graph: &'g Graph, ring: &Ring, wave: &Wave) -> Expr<'g> {
+    let angles = ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
+    angles.fold(graph.zero(), |sum, (angle, n)| {
+        let angle = Polynomial { terms: vec![*angle] };
+        sum + expression(graph, ring, &angle) * f64::from(n)
+    })
+}
+
+fn random<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
+    let pick = if depth == 0 { 0 } else { r.below(if functions { 12 } else { 9 }) };
+    let next = |r: &mut Random| random(graph, r, depth - 1, functions);
+    match pick {
+        0 if r.below(4) == 0 => graph.num(r.below(9) as f64 - 4.0),
+        0 => graph.symbol(Symbol(r.below(6) as u32)),
+        1 | 2 => next(r) + next(r),
+        3 | 4 => next(r) - next(r),
+        5 | 6 => next(r) * next(r),
+        7 | 8 => {
+            let angle = graph.symbol(Symbol(3 + r.below(2) as u32));
+            let angle = if r.below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
+            if r.below(2) == 0 { angle.sin() } else { angle.cos() }
+        }
+        9 => next(r) / (next(r).square() + graph.one()),
+        10 => (next(r).square() + graph.one()).sqrt(),
+        _ => next(r).call(Function::Tanh),
+    }
+}
+
+fn assert_near(a: f64, b: f64, what: &str) {
+    assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} instead of {b}: {what}");
+}
+
+#[test]
+fn random_expressions_keep_their_values() {
+    let mut r = Random(0x9E37_79B9_7F4A_7C15);
+    let mut found = 0;
+    for _ in 0..400 {
+        let graph = Graph::new();
+        let e = random(&graph, &mut r, 5, true);
+        let expected = eval_one(e, &value_of);
+        let mut normal = Normal::new(&graph, rank);
+        let Some(p) = normal.of(e) else { continue };
+        assert_near(normal.ring.evaluate(&p, &value_of), expected, &format!("{e:?}"));
+        let Some(short) = simplified(&mut normal.ring, &p) else { continue };
+        assert!(short.terms.len() <= p.terms.len());
+        assert_near(normal.ring.evaluate(&short, &value_of), expected, &format!("{e:?}"));
+        found += 1;
+    }
+    assert!(found > 300, "only {found} of 400 are within the limits");
+}
+
+/// What is in normal form stays as it is.
+#[test]
+fn normal_forms_of_normal_forms_are_the_same() {
+    let mut r = Random(77);
+    for _ in 0..200 {
+        let graph = Graph::new();
+        let e = random(&graph, &mut r, 5, false);
+        let mut normal = Normal::new(&graph, rank);
+        let Some(p) = normal.of(e) else { continue };
+        let Some(short) = simplified(&mut normal.ring, &p) else { continue };
+        let again = normal.of(expression(&graph, &normal.ring, &short)).unwrap();
+        same(&p, &again);
+        let shorter = simplified(&mut normal.ring, &again).unwrap();
+        same(&short, &shorter);
+    }
+}
+
+fn same(a: &Polynomial, b: &Polynomial) {
+    assert_eq!(a.terms.len(), b.terms.len(), "{a:?} {b:?}");
+    for (s, t) in a.terms.iter().zip(&b.terms) {
+        assert_eq!(s.monomial, t.monomial);
+        assert_near(s.coefficient, t.coefficient, "coefficient");
+    }
+}
+
+fn assert_zero(build: impl Fn(&Graph, [Expr<'_>; 3]) -> Vec<usize>) {
+    let graph = Graph::new();
+    let symbols = [3, 4, 5].map(|k| graph.symbol(Symbol(k)));
+    assert!(build(&graph, symbols).iter().all(|terms| *terms == 0));
+}
+
+#[test]
+fn identities_are_zero() {
+    assert_zero(|graph, [x, y, z]| {
+        let zeros = [
+            (x + y) * (x - y) - (x.square() - y.square()),
+            (x + y).pow(graph.num(3.0)) - (x * x * x + x * x * y * 3.0 + x * y * y * 3.0 + y * y * y),
+            x.sin().square() + x.cos().square() - graph.one(),
+            (x + y).sin() - x.sin() * y.cos() - x.cos() * y.sin(),
+            (x - y + z).cos().square() + (x - y + z).sin().square() - graph.one(),
+            (x * 2.0).sin() - x.sin() * x.cos() * 2.0,
+            (x + graph.num(0.3)).sin().square() + (x + graph.num(0.3)).cos().square() - graph.one(),
+            x * y / (x * z) - y / z,
+            (x.square() + y).sqrt().square() - x.square() - y,
+            graph.num(0.1) * x + graph.num(0.2) * x - graph.num(0.3) * x,
+        ];
+        let mut normal = Normal::new(graph, rank);
+        zeros.iter().map(|e| normal.of(*e).unwrap().terms.len()).collect()
+    });
+}
+
+#[test]
+fn monomials_multiply_and_divide() {
+    let (x, y) = (Monomial::atom(2), Monomial::atom(40));
+    let product = x.times(x).and_then(|m| m.times(y)).unwrap();
+    assert_eq!(product.factors().collect::<Vec<_>>(), [(2, 2), (40, 1)]);
+    assert_eq!(product.over(x), x.times(y).unwrap());
+    assert!(x.divides(product) && !product.divides(x) && !Monomial::atom(3).divides(product));
+    assert_eq!(product.common(x.times(Monomial::atom(3)).unwrap()), x);
+    assert_eq!(product.degree(), 3);
+    assert_eq!((0..8).try_fold(Monomial::ONE, |m, _| m.times(x)), None);
+}
+
+#[test]
+fn what_grows_too_large_is_given_up() {
+    let graph = Graph::new();
+    let sum = (0..6).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
+    let mut normal = Normal::new(&graph, rank);
+    assert_eq!(normal.of(sum).unwrap().terms.len(), 7);
+    assert!(normal.of(sum.pow(graph.num(7.0))).is_none());
+    let atoms = (0..70).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
+    assert!(Normal::new(&graph, rank).of(atoms).is_none());
+    let angles = (0..9).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)).sin());
+    assert!(Normal::new(&graph, rank).of(angles).is_none());
+    assert!(Normal::new(&graph, rank).of(graph.one() / graph.zero()).is_none());
+}

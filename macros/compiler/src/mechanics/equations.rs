@@ -1,0 +1,180 @@
+//! The equations of motion of small mechanisms in normal form, and as text in the user's own names. They are the
+//! recursive algorithms' mass matrix and bias, which hold for ball and free joints as they are and are there already;
+//! Lagrange's equations are the same polynomials, as a test shows.
+
+use super::crba::Matrix;
+use super::kinematics::Joint;
+use super::{accelerations, energy, forces, position, rnea, velocities};
+use crate::expr::factor::without_noise;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Polynomial, Rank, Ring};
+use crate::expr::print::{Writer, wrapped};
+use crate::expr::trigonometry::simplified;
+use crate::expr::{Expr, Symbol};
+use crate::model::{Chart, Model, Motion, Quantity};
+
+#[cfg(test)]
+mod tests;
+
+/// Most velocities of a mechanism whose equations are written.
+const VELOCITIES: usize = 4;
+/// Most moving frames.
+const LINKS: usize = 8;
+/// Most terms, of all equations together, that anybody would read.
+const READABLE: usize = 240;
+/// Columns of text.
+const WIDTH: usize = 100;
+
+/// The equations of a mechanism as polynomials of one ring.
+pub struct Equations {
+    /// The atoms.
+    pub ring: Ring,
+    /// `L = T − U`.
+    pub lagrangian: Polynomial,
+    /// `M v̇ + h`, by velocity.
+    pub motion: Vec<Polynomial>,
+    /// What the inputs contribute, by velocity.
+    pub forces: Vec<Polynomial>,
+}
+
+/// True if the equations are worth trying.
+pub fn is_small(model: &Model<'_>) -> bool {
+    (1..=VELOCITIES).contains(&model.nv()) && model.links.len() <= LINKS
+}
+
+/// The equations of a small mechanism; `None` where they would be too long to read.
+pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Equations> {
+    if !is_small(model) {
+        return None;
+    }
+    let mut normal = Normal::new(model.graph, rank);
+    // Angles in the order of the joints, so that sums of them are read in this order.
+    for link in &model.links {
+        if let Motion::Turn { coordinate, .. } | Motion::Helix { coordinate, .. } = &link.motion {
+            normal.of(position(model, coordinate).sin())?;
+        }
+    }
+    let v = velocities(model);
+    let mut motion = normals(&mut normal, &rnea::inverse_dynamics(model, joints, &v, None))?;
+    let (v, a) = (normals(&mut normal, &v)?, normals(&mut normal, &accelerations(model))?);
+    for (i, row) in mass.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            let entry = normal.of(*entry)?;
+            let force = normal.ring.times(&entry, &a[j])?;
+            motion[i] = normal.ring.plus(&motion[i], &force)?;
+        }
+    }
+    let kinetic = kinetic(model, joints, mass, &v, &mut normal)?;
+    let potential = normal.of(energy::potential_energy(model, joints))?;
+    let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
+    let forces = normals(&mut normal, &forces::generalized_forces(model, joints))?;
+    readable(normal.ring, lagrangian, motion, forces)
+}
+
+/// Kinetic energy: `½ vᵀ M v`, which is there already, unless something is driven in time.
+fn kinetic<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    v: &[Polynomial],
+    normal: &mut Normal<'g>,
+) -> Option<Polynomial> {
+    if joints.iter().any(|joint| joint.drift.is_some()) {
+        return normal.of(energy::kinetic_energy(model, joints, &velocities(model)));
+    }
+    let mut twice = Polynomial::default();
+    for (i, row) in mass.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            let momentum = normal.of(*entry).and_then(|entry| normal.ring.times(&entry, &v[j]))?;
+            let energy = normal.ring.times(&momentum, &v[i])?;
+            twice = normal.ring.plus(&twice, &energy)?;
+        }
+    }
+    Some(twice.scaled(0.5))
+}
+
+fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
+    list.iter().map(|e| normal.of(*e)).collect()
+}
+
+/// Shortened, and few enough terms.
+fn readable(
+    mut ring: Ring,
+    lagrangian: Polynomial,
+    motion: Vec<Polynomial>,
+    forces: Vec<Polynomial>,
+) -> Option<Equations> {
+    let mut left = READABLE;
+    let mut short = |p: &Polynomial| {
+        let p = without_noise(&ring, p);
+        let p = simplified(&mut ring, &p)?;
+        left = left.checked_sub(p.terms.len())?;
+        p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
+    };
+    let lagrangian = short(&lagrangian)?;
+    let motion = motion.iter().map(&mut short).collect::<Option<_>>()?;
+    let forces = forces.iter().map(&mut short).collect::<Option<_>>()?;
+    Some(Equations { ring, lagrangian, motion, forces })
+}
+
+fn rank(symbol: Symbol) -> Rank {
+    match Quantity::of(symbol) {
+        Quantity::Configuration(_) | Quantity::Time => Rank::Position,
+        Quantity::Velocity(_) => Rank::Rate,
+        Quantity::Acceleration(_) => Rank::Acceleration,
+        Quantity::Input(_) => Rank::Input,
+        _ => Rank::Parameter,
+    }
+}
+
+/// The Lagrangian, an equation for every velocity, and what primes mean.
+pub fn text(model: &Model<'_>, equations: &Equations) -> String {
+    let rates = rates(model);
+    let name = |symbol| name(model, &rates, symbol);
+    let writer = Writer::new(&equations.ring, &name);
+    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let mut out = line(&format!("L = {}", writer.polynomial(&equations.lagrangian)));
+    out.push('\n');
+    for (motion, force) in equations.motion.iter().zip(&equations.forces) {
+        out += &line(&format!("{} = {}", writer.polynomial(motion), writer.polynomial(force)));
+    }
+    out.push('\n');
+    out + &line(&legend(model, &rates))
+}
+
+/// By velocity, whether it is the rate of a coordinate that has its name.
+fn rates(model: &Model<'_>) -> Vec<bool> {
+    let mut rates = vec![false; model.nv()];
+    for chart in &model.charts {
+        if let Chart::Plain(q, v) = chart {
+            rates[*v] = model.configuration[*q] == model.velocities[*v].0;
+        }
+    }
+    rates
+}
+
+fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> String {
+    match Quantity::of(symbol) {
+        Quantity::Parameter(k) => model.parameters[k].clone(),
+        Quantity::Configuration(k) => model.configuration[k].clone(),
+        Quantity::Velocity(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "'" } else { "" }),
+        Quantity::Acceleration(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" }),
+        Quantity::Input(k) => model.inputs[k].0.clone(),
+        Quantity::Time => "t".to_string(),
+        Quantity::Force(k) => format!("tau{k}"),
+        _ => format!("s{}", symbol.0),
+    }
+}
+
+fn legend(model: &Model<'_>, rates: &[bool]) -> String {
+    match rates.iter().position(|is_rate| *is_rate) {
+        Some(k) => {
+            let x = &model.velocities[k].0;
+            format!("L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}.")
+        }
+        None => {
+            let w = &model.velocities[0].0;
+            format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
+        }
+    }
+}

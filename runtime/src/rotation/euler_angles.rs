@@ -1,0 +1,119 @@
+//! Euler angles to rotations and back.
+
+use super::sequence::EulerSequence;
+use super::standard::{Standard, parallel};
+use crate::Real;
+use crate::private::constant;
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
+
+/// Euler angles found from a rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angles<T> {
+    /// The angles in the order of the turns, rad.
+    pub angles: [T; 3],
+    /// Whether the first and the third axis are parallel, so that only the sum or the difference of their angles is
+    /// known: the third angle is zero then.
+    pub singular: bool,
+}
+
+impl EulerSequence {
+    pub(super) fn standard(self) -> Standard {
+        Standard::of(self)
+    }
+
+    /// The rotation matrix of Euler angles `[t₁, t₂, t₃]`, rad, of any size.
+    ///
+    /// body-abc: `R_a(t₁) R_b(t₂) R_c(t₃)`; space-abc: `R_c(t₃) R_b(t₂) R_a(t₁)`. Columns are the body axes in space
+    /// axes. Kane, Likins and Levinson, appendix I. Never singular.
+    pub fn rotation<T: Real>(self, angles: [T; 3]) -> Rotation3<T> {
+        let standard = self.standard();
+        let [(sa, ca), (sb, cb), (sc, cc)] = standard.from_user(angles).map(|t| t.sin_cos());
+        let own = if standard.symmetric {
+            Matrix3::new(
+                cb, sb * sc, sb * cc, //
+                sa * sb, ca * cc - sa * cb * sc, -ca * sc - sa * cb * cc, //
+                -ca * sb, sa * cc + ca * cb * sc, ca * cb * cc - sa * sc, //
+            )
+        } else {
+            Matrix3::new(
+                cb * cc, -cb * sc, sb, //
+                ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb, //
+                sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb, //
+            )
+        };
+        let axes = standard.own_axes();
+        Rotation3::from_matrix_unchecked(axes * own * axes.transpose())
+    }
+
+    /// The Euler parameters of Euler angles, rad, of any size: the product of the half-angle quaternions of the turns,
+    /// continuous in the angles, so that `w` takes either sign.
+    ///
+    /// Shuster, §"Euler angles". Never singular.
+    pub fn quaternion<T: Real>(self, angles: [T; 3]) -> UnitQuaternion<T> {
+        let standard = self.standard();
+        let half = constant::<T>(0.5);
+        let [a, b, c] = standard.from_user(angles).map(|t| t * half);
+        let (sb, cb) = b.sin_cos();
+        let (own, w) = if standard.symmetric {
+            let ((s_sum, c_sum), (s_difference, c_difference)) = ((a + c).sin_cos(), (a - c).sin_cos());
+            ([cb * s_sum, sb * c_difference, sb * s_difference], cb * c_sum)
+        } else {
+            let ((sa, ca), (sc, cc)) = (a.sin_cos(), c.sin_cos());
+            (
+                [
+                    sa * cb * cc + ca * sb * sc,
+                    ca * sb * cc - sa * cb * sc,
+                    ca * cb * sc + sa * sb * cc,
+                ],
+                ca * cb * cc - sa * sb * sc,
+            )
+        };
+        let u = standard.own_axes() * nalgebra::Vector3::from(own);
+        UnitQuaternion::new_unchecked(Quaternion::from_parts(w, u))
+    }
+
+    /// The Euler angles of a rotation, rad: the inverse of [`Self::rotation`].
+    ///
+    /// - Ranges: first and third angle in [−π, π]; middle angle in [−π/2, π/2] (asymmetric) or [0, π] (symmetric).
+    ///   [`Self::other_angles`] gives the second solution.
+    /// - Singular at the ends of the middle range, where the first and the third axis are parallel within 4 ε: the third
+    ///   angle is zero, the first holds all of the turn about both, and `singular` is set.
+    /// - Accuracy: the angles give the rotation back to rounding everywhere. Close to the singularity the first and the
+    ///   third angle are known only to ε / sin(angle between their axes), but with errors that cancel: the third is
+    ///   found from what is left of the rotation after the first is undone (Herter and Klöpper's method).
+    pub fn angles<T: Real>(self, rotation: &Rotation3<T>) -> Angles<T> {
+        let standard = self.standard();
+        let axes = standard.own_axes::<T>();
+        let own = axes.transpose() * rotation.matrix() * axes;
+        let nalgebra::ArrayStorage([[r00, r10, r20], [r01, r11, r21], [r02, r12, r22]]) = own.data;
+        // Numerator and denominator of the first angle, then sine and cosine of the middle one.
+        let (y, x) = if standard.symmetric { (r10, -r20) } else { (-r12, r22) };
+        let distance = (y * y + x * x).sqrt();
+        let middle = if standard.symmetric { distance.atan2(r00) } else { r02.atan2(distance) };
+        let singular = distance <= parallel();
+        let [a, c] = if !singular {
+            let first = y.atan2(x);
+            let (s, c) = first.sin_cos();
+            let (across, along) = (c * r11 + s * r21, s * r20 + c * r10);
+            let sine = if standard.symmetric { -(c * r12 + s * r22) } else { along };
+            [first, sine.atan2(across)]
+        } else if standard.reversed {
+            let sine = if standard.symmetric { -r12 } else { r10 };
+            [T::zero(), sine.atan2(r11)]
+        } else {
+            [r21.atan2(r11), T::zero()]
+        };
+        Angles { angles: standard.to_user([a, middle, c]), singular }
+    }
+
+    /// The other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or
+    /// `[t₁ ± π, −t₂, t₃ ± π]` (symmetric).
+    ///
+    /// From angles in [−π, π] the results are in [−π, π] too. No rotation has other solutions but these two and
+    /// multiples of 2π, except where [`Angles::singular`] is set.
+    pub fn other_angles<T: Real>(self, [a, b, c]: [T; 3]) -> [T; 3] {
+        let opposite = |t: T| if t > T::zero() { t - T::pi() } else { t + T::pi() };
+        let middle = if self.is_symmetric() { -b } else { -opposite(b) };
+        [opposite(a), middle, opposite(c)]
+    }
+}

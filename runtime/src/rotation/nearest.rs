@@ -1,0 +1,83 @@
+//! The rotation nearest to a matrix.
+
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion};
+
+/// The rotation nearest to a matrix `M`, in the sum of squares of the entries of `R − M`: orthonormalises a rotation
+/// matrix that carries noise or the drift of an integration, and solves Wahba's problem for `M = Σ aₖ v_space v_bodyᵀ`.
+///
+/// - Method: `R` makes `tr(Mᵀ R)` largest, which is a quadratic form of the Euler parameters, so they are the eigenvector
+///   of its largest eigenvalue (Davenport's q-method; Shuster and Oh, Journal of Guidance and Control 4 (1981) 70).
+///   Jacobi's method finds it. Reflections and scalings are no obstacle.
+/// - `None` if the entries are not finite, or if several rotations are nearest to rounding: with the singular values
+///   `s₁ ≥ s₂ ≥ s₃`, if `s₂ + s₃ sign(det M)` is zero, as for matrices of rank one and for reflections.
+/// - Accuracy: a few ε (s₁ / (s₂ ± s₃)).
+pub fn nearest_rotation<T: Real>(matrix: &Matrix3<T>) -> Option<Rotation3<T>> {
+    let scale = matrix.amax();
+    if !matrix.iter().all(|x| x.is_finite()) || !(scale > T::zero()) {
+        return None;
+    }
+    let ArrayStorage([[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]) = (matrix / scale).data;
+    let form = [
+        [xx - yy - zz, xy + yx, zx + xz, zy - yz],
+        [xy + yx, yy - xx - zz, yz + zy, xz - zx],
+        [zx + xz, yz + zy, zz - xx - yy, yx - xy],
+        [zy - yz, xz - zx, yx - xy, xx + yy + zz],
+    ];
+    let ([x, y, z, w], gap) = dominant(form);
+    let unit = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+    // NaN counts as no gap.
+    if gap > constant::<T>(32.0) * epsilon::<T>() { Some(unit.to_rotation_matrix()) } else { None }
+}
+
+/// Sweeps of Jacobi's method, more than enough: it converges quadratically, in about six for `f64`.
+const SWEEPS: usize = 16;
+
+/// The eigenvector of the largest eigenvalue of a symmetric matrix, and the distance to the next eigenvalue.
+fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
+    let (o, i) = (T::zero(), T::one());
+    let mut vectors = [[i, o, o, o], [o, i, o, o], [o, o, i, o], [o, o, o, i]];
+    for _ in 0..SWEEPS {
+        annihilate::<T, 0, 1>(&mut form, &mut vectors);
+        annihilate::<T, 2, 3>(&mut form, &mut vectors);
+        annihilate::<T, 0, 2>(&mut form, &mut vectors);
+        annihilate::<T, 1, 3>(&mut form, &mut vectors);
+        annihilate::<T, 0, 3>(&mut form, &mut vectors);
+        annihilate::<T, 1, 2>(&mut form, &mut vectors);
+    }
+    let [[a, ..], [_, b, ..], [_, _, c, _], [.., d]] = form;
+    let [mut best, others @ ..] = [a, b, c, d];
+    let [mut vector, other_vectors @ ..] = vectors;
+    let mut next = -T::one() / epsilon();
+    for (value, candidate) in others.into_iter().zip(other_vectors) {
+        if value > best {
+            (next, best, vector) = (best, value, candidate);
+        } else {
+            next = next.max(value);
+        }
+    }
+    (vector, best - next)
+}
+
+/// Turns rows and columns `P` and `Q` so that their entry vanishes; the eigenvectors are the rows of `vectors`.
+///
+/// Golub and Van Loan, *Matrix Computations* (2013), §8.5.
+fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], vectors: &mut [[T; 4]; 4]) {
+    let entry = form[P][Q];
+    if entry == T::zero() {
+        return;
+    }
+    let cotangent = (form[Q][Q] - form[P][P]) / (entry + entry);
+    let magnitude = T::one() / (cotangent.abs() + (T::one() + cotangent * cotangent).sqrt());
+    let tangent = if cotangent < T::zero() { -magnitude } else { magnitude };
+    let c = T::one() / (T::one() + tangent * tangent).sqrt();
+    let s = tangent * c;
+    for row in form.iter_mut() {
+        (row[P], row[Q]) = (c * row[P] - s * row[Q], s * row[P] + c * row[Q]);
+    }
+    for rows in [form, vectors] {
+        let (p, q) = (rows[P], rows[Q]);
+        for ((to_p, to_q), k) in rows[P].iter_mut().zip(rows[Q].iter_mut()).zip(0..) { let _ = (to_p, to_q, k, p, q); }
+    }
+}

@@ -1,0 +1,110 @@
+//! The exponential and the logarithm of rotations, and the rates of rotation vectors.
+
+use super::euler_parameters::quaternion_of_rotation;
+use super::singular::Singular;
+use super::standard::parallel;
+use crate::lie::{ball_tangent_rate, exponential, left_jacobian, logarithm};
+use crate::private::constant;
+use crate::Real;
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+/// The rotation vector `φ = θ n`, rad: eigenaxis times angle, of any length; the same in space and in body axes.
+///
+/// Shuster, §"The rotation vector". Vectors longer than π are turns the long way round, or several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotationVector<T>(pub Vector3<T>);
+
+impl<T: Real> RotationVector<T> {
+    /// The rotation matrix, the exponential of `[φ]ₓ`: `1 + (sin θ / θ) [φ]ₓ + ((1 − cos θ) / θ²) [φ]ₓ²`.
+    ///
+    /// Accurate at zero, where the factors are series, and for every length. Never singular.
+    pub fn rotation(&self) -> Rotation3<T> {
+        let square = self.0.norm_squared();
+        let (versine, cubic) = left_jacobian(square);
+        let cross = self.0.cross_matrix();
+        let sine = T::one() - cubic * square;
+        Rotation3::from_matrix_unchecked(Matrix3::identity() + cross * sine + cross * cross * versine)
+    }
+
+    /// The Euler parameters `(n sin(θ/2), cos(θ/2))`, with `w < 0` for `θ` between π and 3π.
+    pub fn quaternion(&self) -> UnitQuaternion<T> {
+        let [x, y, z, w] = exponential(self.0.into());
+        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+    }
+
+    /// The shortest rotation vector of a rotation matrix, `|φ| ≤ π`: its logarithm.
+    ///
+    /// By way of the Euler parameters, so accurate at zero and at π, where the skew part of the matrix tells nothing.
+    /// At half a turn either of two opposite vectors is returned.
+    pub fn from_rotation(rotation: &Rotation3<T>) -> Self {
+        Self::from_quaternion(&quaternion_of_rotation(rotation))
+    }
+
+    /// The shortest rotation vector of Euler parameters, `|φ| ≤ π`; `q` and `−q` give the same, but at half a turn.
+    pub fn from_quaternion(q: &UnitQuaternion<T>) -> Self {
+        let u = q.imag();
+        Self(logarithm([u.x, u.y, u.z, q.w]).into())
+    }
+
+    /// The length `|φ|`, rad: the angle of the turn.
+    pub fn angle(&self) -> T {
+        let largest = self.0.amax();
+        if largest > T::zero() { (self.0 / largest).norm() * largest } else { T::zero() }
+    }
+
+    /// The rotation vector of the same rotation the other way round, `φ (1 − 2π / |φ|)`, whose quaternion is the
+    /// antipode; for a vector shorter than 2π the only other shorter than 2π.
+    ///
+    /// # Errors
+    ///
+    /// [`Singular::FullTurn`] at zero: the other vector is a full turn about any axis.
+    pub fn shadow(&self) -> Result<Self, Singular> {
+        let angle = self.angle();
+        if angle > T::zero() {
+            // The direction first: 2π / |φ| may be infinite.
+            let direction = self.0 / angle;
+            Ok(Self(direction * (angle - T::two_pi())))
+        } else {
+            Err(Singular::FullTurn)
+        }
+    }
+
+    /// `φ̇ = ω + ½ φ × ω + ((1 − (θ/2) cot(θ/2)) / θ²) φ × (φ × ω)`, rad/s, of the angular velocity in body axes, rad/s.
+    ///
+    /// Shuster, §"Kinematics" (Bortz's equation). The factor is a series near zero.
+    ///
+    /// # Errors
+    ///
+    /// [`Singular::FullTurn`] where `|φ|` is a multiple of 2π, but zero, to rounding.
+    pub fn rate_from_body(&self, omega: &Vector3<T>) -> Result<Vector3<T>, Singular> {
+        let half = self.angle() * constant(0.5);
+        if half > T::one() && half.sin().abs() <= parallel::<T>() * half {
+            return Err(Singular::FullTurn);
+        }
+        Ok(ball_tangent_rate(self.0.into(), (*omega).into()).into())
+    }
+
+    /// `φ̇ = ω − ½ φ × ω + …`, rad/s, of the angular velocity in space axes, rad/s.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::rate_from_body`].
+    pub fn rate_from_space(&self, omega: &Vector3<T>) -> Result<Vector3<T>, Singular> {
+        // Of the inverse rotation, −φ, the angular velocity in its body axes is −ω.
+        Ok(-Self(-self.0).rate_from_body(&-omega)?)
+    }
+
+    /// Angular velocity in body axes, rad/s:
+    /// `ω = φ̇ − ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) / θ³) φ × (φ × φ̇)`. Never singular.
+    pub fn omega_body(&self, rate: &Vector3<T>) -> Vector3<T> {
+        -Self(-self.0).omega_space(&-rate)
+    }
+
+    /// Angular velocity in space axes, rad/s:
+    /// `ω = φ̇ + ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) / θ³) φ × (φ × φ̇)`. Never singular.
+    pub fn omega_space(&self, rate: &Vector3<T>) -> Vector3<T> {
+        let (versine, cubic) = left_jacobian(self.0.norm_squared());
+        let first = self.0.cross(rate);
+        rate + first * versine + self.0.cross(&first) * cubic
+    }
+}

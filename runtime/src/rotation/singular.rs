@@ -1,0 +1,29 @@
+//! Why a vector or a rate does not exist.
+
+use core::fmt;
+
+/// Why parameters or their rates do not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Singular {
+    /// The first and the third axis of a sequence of Euler angles are parallel ("gimbal lock"): the middle angle is an
+    /// odd multiple of π/2 (three different axes) or a multiple of π (first axis repeated), to rounding.
+    ParallelAxes,
+    /// A turn by π, or an odd multiple, to rounding: the Gibbs vector is infinite.
+    HalfTurn,
+    /// A turn by 2π, or another multiple but zero, to rounding: the rotation vector has no rate for most angular
+    /// velocities, and the modified Rodrigues vector is infinite.
+    FullTurn,
+}
+
+impl fmt::Display for Singular {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ParallelAxes => "the first and the third axis of the Euler angles are parallel",
+            Self::HalfTurn => "a Gibbs vector is infinite at half a turn",
+            Self::FullTurn => "the parameters are singular at a full turn",
+        })
+    }
+}
+
+impl core::error::Error for Singular {}

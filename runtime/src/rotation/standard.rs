@@ -1,0 +1,67 @@
+//! Every sequence of Euler angles as one of two: body-xyz or body-xyx in the sequence's own axes.
+
+use super::sequence::{Axis, EulerSequence, FixedIn};
+use crate::Real;
+use crate::private::{constant, epsilon};
+use core::ops::Neg;
+use nalgebra::{Matrix3, Vector3};
+
+/// A sequence as body-xyz (asymmetric) or body-xyx (symmetric) in its own axes: the first axis of the body-fixed
+/// sequence, the second, and the cross product of both.
+///
+/// Space-fixed sequences are body-fixed ones in reverse. Where the third axis is opposite to the cross product, the
+/// third angle changes its sign.
+#[derive(Clone, Copy)]
+pub(super) struct Standard {
+    first: Axis,
+    second: Axis,
+    pub(super) symmetric: bool,
+    pub(super) reversed: bool,
+}
+
+impl Standard {
+    pub(super) fn of(sequence: EulerSequence) -> Self {
+        let reversed = sequence.fixed_in() == FixedIn::Space;
+        let [a, second, c] = sequence.axes();
+        let first = if reversed { c } else { a };
+        Self { first, second, symmetric: sequence.is_symmetric(), reversed }
+    }
+
+    /// Whether the cross product of the first and the second axis is a coordinate axis, not opposite to one.
+    fn cyclic(self) -> bool {
+        matches!((self.first, self.second), (Axis::X, Axis::Y) | (Axis::Y, Axis::Z) | (Axis::Z, Axis::X))
+    }
+
+    /// Turns the third one round if the third axis is opposite to the third own axis.
+    fn signed<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+        if self.symmetric || self.cyclic() { [a, b, c] } else { [a, b, -c] }
+    }
+
+    /// Angles or rates of the sequence as those of the standard one.
+    pub(super) fn from_user<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+        self.signed(if self.reversed { [c, b, a] } else { [a, b, c] })
+    }
+
+    /// Angles or rates of the standard sequence as those of the sequence itself; the same for the columns by which
+    /// rates are multiplied.
+    pub(super) fn to_user<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
+        let [a, b, c] = self.signed(standard);
+        if self.reversed { [c, b, a] } else { [a, b, c] }
+    }
+
+    /// The own axes in columns: a right-handed permutation with signs, so products with it are exact.
+    pub(super) fn own_axes<T: Real>(self) -> Matrix3<T> {
+        let [first, second] = [self.first, self.second].map(|axis| match axis {
+            Axis::X => Vector3::new(T::one(), T::zero(), T::zero()),
+            Axis::Y => Vector3::new(T::zero(), T::one(), T::zero()),
+            Axis::Z => Vector3::new(T::zero(), T::zero(), T::one()),
+        });
+        Matrix3::from_columns(&[first, second, first.cross(&second)])
+    }
+}
+
+/// The sine of the angle between the first and the third axis below which they count as parallel: what rounding may
+/// leave of zero in a rotation matrix.
+pub(super) fn parallel<T: Real>() -> T {
+    constant::<T>(4.0) * epsilon::<T>()
+}
