@@ -73,7 +73,7 @@ where
     assert_eq!(heap_calls(|| m.bias_forces(q, v)), 0, "bias_forces");
     assert_eq!(heap_calls(|| m.inverse_dynamics(q, v, a)), 0, "inverse_dynamics");
     assert_eq!(heap_calls(|| m.forward_dynamics(q, v, a)), 0, "forward_dynamics");
-    assert_eq!(heap_calls(|| m.generalized_forces(q, u)), 0, "generalized_forces");
+    assert_eq!(heap_calls(|| m.generalized_forces(q, v, u)), 0, "generalized_forces");
     assert_eq!(heap_calls(|| m.kinetic_energy(q, v)), 0, "kinetic_energy");
     assert_eq!(heap_calls(|| m.potential_energy(q)), 0, "potential_energy");
     assert_eq!(heap_calls(|| m.generalized_momentum(q, v)), 0, "generalized_momentum");

@@ -1,7 +1,7 @@
 //! Published robots against the reference values of `data/robots` (Pinocchio 4.1.0), and against themselves.
 
-use linkwork::Mechanism;
-use linkwork::frame;
+use linkwork::nalgebra::SVector;
+use linkwork::{Mechanism, frame};
 use support::compare::assert_close;
 use support::robots::*;
 use support::table::Record;
@@ -24,7 +24,7 @@ where
 {
     for (i, case) in table(name).records("cases").iter().enumerate() {
         let of = |what: &str| format!("{name}, case {i}: {what}");
-        let (q, v, a, tau) = (&case.vector(&"q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
+        let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
         let mass_matrix = case.symmetric::<NV>("M");
 
         assert_close(of("mass matrix"), robot.mass_matrix(q).as_slice(), mass_matrix.as_slice(), DYNAMICS);
@@ -53,8 +53,8 @@ where
     assert_eq!(M::VELOCITIES[NV - NU..], *joints);
     assert_eq!(M::CONFIGURATION[NQ - NU..], *joints);
 
-    let u = linkwork::nalgebra::SVector::from_fn(|i, _| i as f64 + 0.5);
-    let forces = robot.generalized_forces(&robot.neutral(), &u);
+    let u = SVector::from_fn(|i, _| i as f64 + 0.5);
+    let forces = robot.generalized_forces(&robot.neutral(), &SVector::zeros(), &u);
     for (i, force) in forces.iter().enumerate() {
         let expected = if i < NV - NU { 0.0 } else { u[i - (NV - NU)] };
         assert_eq!(*force, expected, "{name}: force on velocity {i}");
@@ -208,9 +208,9 @@ mod panda_mimic {
 fn locked_joints_stay_at_zero() {
     for case in table("panda").records("cases") {
         let [q, v, a] = ["q", "v", "a"].map(|key| case.vector::<9>(key).fixed_rows::<7>(0).into_owned());
-        let still = |x: linkwork::nalgebra::SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let still = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
         let [q_free, v_free, a_free] =
-            [q, v, a].map(|x| linkwork::nalgebra::SVector::from_fn(|i, _| still(x)[i]));
+            [q, v, a].map(|x| SVector::from_fn(|i, _| still(x)[i]));
 
         let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
         assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);

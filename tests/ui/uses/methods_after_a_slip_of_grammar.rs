@@ -19,12 +19,7 @@ fn main() {
     let _ = pendulum.forward_dynamics(&q, &v, &pendulum.generalized_forces(&q, &[0.0].into()));
     let _ = pendulum.kinetic_energy(&q, &v) + pendulum.potential_energy(&q);
     let _ = (Pendulum::NQ, Pendulum::NV, Pendulum::NU, Pendulum::VELOCITIES, Pendulum::INPUTS);
-    let _ = pendulum.frame_placement(frame!(Pendulum, "arm"), &q);
-    let _ = pendulum.frame_velocity(frame!(Pendulum, "arm"), &q, &v);
-    let _ = pendulum.frame_acceleration(frame!(Pendulum, "arm"), &q, &v, &v);
-    let _ = pendulum.frame_jacobian(frame!(Pendulum, "arm"), &q);
-    let _ = pendulum.frame_placements(&q);
     let _ = pendulum.center_of_mass(&q) * pendulum.total_mass();
     let _ = pendulum.momentum(&q, &v);
-    let _ = simulate(&pendulum, Rk4::new(1e-3), (q, v));
+    let _ = simulate(&pendulum).initial(q, v);
 }

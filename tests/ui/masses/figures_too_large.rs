@@ -2,12 +2,10 @@ use linkwork::prelude::*;
 
 #[mechanism]
 struct Machine {
-    #[body(mass = 1, com = -y)]
+    #[body(mass = 1e200, com = 1e200 * x)]
     arm: Body,
     #[joint(ground -> arm, about = z)]
     hinge: Pin,
-    #[acts(on = arm.at(x), about = z)]
-    acting: Torque,
 }
 
 fn main() {}

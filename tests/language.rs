@@ -1,0 +1,172 @@
+//! What the words of the language mean, by values that can be worked out by hand: names, expressions, solids,
+//! particles on joints, scalar types.
+
+use linkwork::nalgebra::{SVector, Vector3};
+use linkwork::{Mechanism, Real, frame, mechanism};
+use support::compare::assert_close;
+
+const TOLERANCE: f64 = 1e-14;
+
+/// Names that generated code might want for itself, and words of Rust.
+#[mechanism(gravity = -g * y)]
+struct Names {
+    q: f64,
+    v: f64,
+    a: f64,
+    u: f64,
+    tau: f64,
+    g: f64,
+    r#type: f64,
+    self_: f64,
+    #[body(mass = q, com = v * x + a * y, inertia = diagonal(tau, tau, u + tau))]
+    r#in: Body,
+    #[body(mass = r#type, com = self_ * x)]
+    f64x: Body,
+    #[joint(ground -> r#in, about = z)]
+    r#fn: Pin,
+    #[joint(r#in.at(x) -> f64x, about = z)]
+    loop_: Pin,
+    #[acts(on = r#fn)]
+    r#match: Torque,
+}
+
+#[test]
+fn names_of_all_kinds() {
+    let m = Names { q: 2.0, v: 0.3, a: 0.4, u: 0.1, tau: 0.05, g: 9.81, r#type: 3.0, self_: 0.5 };
+    assert_eq!(Names::CONFIGURATION, ["fn", "loop_"]);
+    assert_eq!(Names::INPUTS, ["match"]);
+    assert_eq!(Names::FRAMES, ["in", "f64x"]);
+    let q = SVector::from([0.0, 0.0]);
+    let inertia = 0.15 + 2.0 * 0.25 + 3.0 * 1.5 * 1.5;
+    assert_close("inertia", &[m.mass_matrix(&q)[0]], &[inertia], TOLERANCE);
+    let end = m.frame_placement(frame!(Names, "f64x"), &q).translation.vector;
+    assert_close("end", end.as_slice(), &[1.0, 0.0, 0.0], TOLERANCE);
+}
+
+/// A particle may itself be the end of a joint.
+#[mechanism(gravity = -9.81 * z)]
+struct Projectile {
+    m: f64,
+    #[particle(mass = m)]
+    ball: Particle,
+    #[joint(ground -> ball, along = (x, y, z))]
+    flight: Stage,
+}
+
+#[test]
+fn particle_on_a_joint() {
+    let ball = Projectile { m: 2.0 };
+    let a = ball.forward_dynamics(&Vector3::zeros(), &Vector3::x(), &Vector3::new(0.0, 4.0, 0.0));
+    assert_close("acceleration", a.as_slice(), &[0.0, 2.0, -9.81], TOLERANCE);
+    let place = ball.frame_placement(frame!(Projectile, "ball"), &Vector3::new(1.0, 2.0, 3.0));
+    assert_close("place", place.translation.vector.as_slice(), &[1.0, 2.0, 3.0], TOLERANCE);
+}
+
+/// Generics with bounds, a where clause and a default.
+#[mechanism(gravity = -9.81 * y)]
+struct Generic<Number: Real = f64>
+where
+    Number: PartialOrd,
+{
+    length: Number,
+    #[body(mass = 1, com = length * y)]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+}
+
+fn inertia<M, T, const NU: usize>(m: &M) -> T
+where
+    T: Real,
+    M: Mechanism<1, 1, NU, Scalar = T>,
+{
+    m.mass_matrix(&m.neutral())[0]
+}
+
+#[test]
+fn scalars() {
+    assert_eq!(inertia(&Generic { length: 0.5_f32 }), 0.25_f32);
+    assert_eq!(inertia(&Generic { length: 0.5 }), 0.25);
+    let end = Generic { length: 0.5 }.frame_placement(frame!(Generic<f64>, "rod"), &SVector::from([0.0]));
+    assert_eq!(end.translation.vector, Vector3::zeros());
+}
+
+/// Expressions: functions, precedence, several parameters of one dimension, nested solids.
+#[mechanism(gravity = [0, -9.81, 0])]
+struct Expressions {
+    l: f64,
+    w: f64,
+    angle: f64,
+    m: f64,
+    #[body(
+        mass = 2 * m - m / 2,
+        com = (l + w) / 2 * (cos(angle) * x + sin(angle) * y) - -(w * z),
+        inertia = rod(m, l, x).rotated(z(angle)) + cuboid(m / 2, l, sqrt(l * w), w)
+    )]
+    plate: Body,
+    #[joint(ground.at(-l * x) -> plate.at(l * x), along = y)]
+    rail: Sleeve,
+}
+
+#[test]
+fn expressions_mean_what_they_say() {
+    let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
+    let plate = Expressions { l, w, angle, m };
+    let q = SVector::from([0.3]);
+    assert_close("mass", &[plate.total_mass()], &[1.5 * m], TOLERANCE);
+    let r = (l + w) / 2.0;
+    let center = [r * angle.cos() - 2.0 * l, r * angle.sin() + 0.3, w];
+    assert_close("centre of mass", plate.center_of_mass(&q).as_slice(), &center, TOLERANCE);
+    let turning = plate.momentum(&q, &SVector::from([2.0]));
+    assert_close("momentum", turning.as_slice(), &[0.0, 3.0 * m, 0.0, 0.0, 0.0, 0.0], TOLERANCE);
+}
+
+/// The same body on a pin: its inertia shows.
+#[mechanism]
+struct Solids {
+    l: f64,
+    w: f64,
+    angle: f64,
+    m: f64,
+    #[body(mass = m, inertia = rod(m, l, x).rotated(z(angle)) + cuboid(m / 2, l, sqrt(l * w), w))]
+    plate: Body,
+    #[joint(ground -> plate)]
+    bearing: Ball,
+}
+
+#[test]
+fn solids_add_up_and_turn() {
+    let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
+    let body = Solids { l, w, angle, m };
+    let rod = m * l * l / 12.0;
+    let (sin, cos) = angle.sin_cos();
+    let block = m / 24.0;
+    let expected = [
+        rod * sin * sin + block * (l * w + w * w),
+        -rod * sin * cos,
+        rod * cos * cos + block * (l * l + w * w),
+        rod + block * (l * l + l * w),
+    ];
+    let inertia = body.mass_matrix(&body.neutral());
+    let actual = [inertia[(0, 0)], inertia[(0, 1)], inertia[(1, 1)], inertia[(2, 2)]];
+    assert_close("inertia", &actual, &expected, TOLERANCE);
+}
+
+/// Nothing can move: a structure, all of whose functions are empty.
+#[mechanism]
+struct Structure {
+    #[body(mass = 1)]
+    beam: Body,
+    #[joint(ground.at(2 * y) -> beam)]
+    wall: Weld,
+}
+
+#[test]
+fn structure_without_motion() {
+    assert_eq!((Structure::NQ, Structure::NV, Structure::NU), (0, 0, 0));
+    let q = Structure {}.neutral();
+    assert_eq!(Structure {}.potential_energy(&q), 0.0);
+    let beam = Structure {}.frame_placement(frame!(Structure, "beam"), &q).translation.vector;
+    assert_eq!(beam, Vector3::new(0.0, 2.0, 0.0));
+    assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
+}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/broken_xml.urdf")]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/arm.urdf", mimic = "follow")]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/entity_bomb.urdf")]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/arm.urdf", lock = "elbow")]
+struct Robot;
+
+fn main() {}

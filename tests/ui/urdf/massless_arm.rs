@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/massless_arm.urdf")]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/negative_mass.urdf")]
+struct Robot;
+
+fn main() {}

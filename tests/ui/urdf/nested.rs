@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/nested.urdf")]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = arm.urdf)]
+struct Robot;
+
+fn main() {}

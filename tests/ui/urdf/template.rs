@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/template.urdf")]
+struct Robot;
+
+fn main() {}

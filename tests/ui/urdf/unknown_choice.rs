@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/arm.urdf", base = floating)]
+struct Robot;
+
+fn main() {}

@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/unknown_joint_type.urdf")]
+struct Robot;
+
+fn main() {}

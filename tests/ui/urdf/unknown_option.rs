@@ -1,0 +1,6 @@
+use linkwork::prelude::*;
+
+#[mechanism(urdf = "urdf/arm.urdf", fix = ["elbow"])]
+struct Robot;
+
+fn main() {}
