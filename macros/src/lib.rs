@@ -12,5 +12,14 @@ pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();
-    linkwork_compiler::expand(arguments.into(), item.into(), &folder).into()
+    let emitted = linkwork_compiler::expand(arguments.into(), item.into(), &folder);
+    let mut tokens = TokenStream::from(emitted.tokens);
+    match emitted.text.parse::<TokenStream>() {
+        Ok(text) => tokens.extend(text),
+        Err(error) => {
+            let message = format!("a mistake of Linkwork's: {error}");
+            tokens.extend(format!("::core::compile_error!({message:?});").parse::<TokenStream>());
+        }
+    }
+    tokens
 }

@@ -109,13 +109,13 @@ fn from_urdf(path: &Path, options: &[(&str, &str)]) -> Result<Input, Failure> {
 }
 
 impl Input {
-    fn expand(&self) -> TokenStream {
+    fn expand(&self) -> linkwork_compiler::emit::Emitted {
         expand(self.arguments.clone(), self.item.clone(), &self.folder)
     }
 }
 
 fn rust(input: &Input) -> Result<(), Failure> {
-    println!("{}", prettyplease::unparse(&syn::parse2(input.expand())?));
+    println!("{}", prettyplease::unparse(&syn::parse2(input.expand().into_tokens()?)?));
     Ok(())
 }
 

@@ -12,7 +12,7 @@ pub mod syntax;
 mod derive;
 
 use diag::Diagnostics;
-use emit::{Interface, emit_failed, emit_mechanism};
+use emit::{Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
 use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
@@ -20,40 +20,23 @@ use syntax::{Description, Mechanism};
 
 pub use derive::{derive, equations};
 
-/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, or one `compile_error!` for each mistake.
+/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.
 /// Files are looked up in `folder`.
-pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> TokenStream {
+pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     let Some(source) = read(arguments, item, folder, &mut cx) else {
-        return cx.into_tokens();
+        return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
     let interface = source.interface(output.as_ref().map(|(model, _)| model));
-    let tokens = output.as_ref().map(|(_, output)| emit_mechanism(&interface, output));
-    match tokens {
-        Some(Ok(tokens)) => tokens,
-        Some(Err(message)) => {
-            cx.error(
-                source.mechanism.description.name.place.clone(),
-                format!("a mistake of Linkwork's: {message}"),
-            );
-            cx.into_tokens()
-        }
-        None => {
-            let mut tokens = cx.into_tokens();
-            tokens.extend(emit_failed(
-                &interface,
-                &derive::signatures(
-                    interface.configuration.len(),
-                    interface.velocities.len(),
-                    false,
-                    false,
-                ),
-            ));
-            tokens
-        }
+    if let Some((_, output)) = &output {
+        return emit_mechanism(&interface, output);
     }
+    let (nq, nv) = (interface.configuration.len(), interface.velocities.len());
+    let mut emitted = emit_failed(&interface, &derive::signatures(nq, nv, false, false));
+    emitted.tokens.extend(cx.into_tokens());
+    emitted
 }
 
 /// The messages of the mistakes in a mechanism; empty if there is none.

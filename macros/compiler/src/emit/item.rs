@@ -61,8 +61,27 @@ const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
 
 const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
+/// Emitted code: the struct as tokens, which keep their places in the user's source, and everything else as text, since
+/// the compiler's own lexer is much faster than tokens made one by one.
+#[derive(Debug, Default)]
+pub struct Emitted {
+    /// The struct.
+    pub tokens: TokenStream,
+    /// Implementations.
+    pub text: String,
+}
+
+impl Emitted {
+    /// All of it as tokens.
+    pub fn into_tokens(self) -> Result<TokenStream, proc_macro2::LexError> {
+        let mut tokens = self.tokens;
+        tokens.extend(self.text.parse::<TokenStream>()?);
+        Ok(tokens)
+    }
+}
+
 /// Emits a mechanism that compiled.
-pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<TokenStream, String> {
+pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
@@ -92,7 +111,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Result<Toke
 }
 
 /// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
-pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> TokenStream {
+pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
@@ -107,7 +126,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> TokenSt
         pub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{ loop {{}} }}
         pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}"
     );
-    assemble(interface, &s, &methods, &[], "").unwrap_or_default()
+    assemble(interface, &s, &methods, &[], "")
 }
 
 fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
@@ -338,7 +357,7 @@ fn assemble(
     methods: &str,
     frames: &[String],
     docs: &str,
-) -> Result<TokenStream, String> {
+) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
     let mut generics = i.shell.generics.clone();
     let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();
@@ -362,7 +381,7 @@ fn assemble(
             const _: &[u8] = ::core::include_bytes!(#path);
         )
     });
-    let mut out = quote! {
+    let tokens = quote! {
         #(#attributes)*
         #docs
         #visibility struct #ident #struct_generics #fields
@@ -370,7 +389,7 @@ fn assemble(
         #known
     };
     if s.scalar.is_generic() {
-        let name: syn::Ident = syn::parse_str(s.scalar.name()).map_err(|e| e.to_string())?;
+        let name = quote::format_ident!("{}", s.scalar.name());
         generics.make_where_clause().predicates.push(syn::parse_quote!(#name: ::linkwork::Real));
     }
     let (impl_generics, _, where_clause) = generics.split_for_impl();
@@ -397,7 +416,5 @@ fn assemble(
             s.scalar.name()
         );
     }
-    let tokens: TokenStream = text.parse().map_err(|e| format!("{e}"))?;
-    out.extend(tokens);
-    Ok(out)
+    Emitted { tokens, text }
 }

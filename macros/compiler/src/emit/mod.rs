@@ -9,4 +9,4 @@ mod item;
 mod scalar;
 
 pub use function::{Argument, Function, Shape};
-pub use item::{Interface, Output, emit_failed, emit_mechanism};
+pub use item::{Emitted, Interface, Output, emit_failed, emit_mechanism};

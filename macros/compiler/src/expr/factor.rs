@@ -39,20 +39,31 @@ pub struct Order {
     parameters: Monomial,
 }
 
+/// Where an atom stands: by rank; symbols before waves in order of their angles, before all else. An inverse of an atom
+/// stands where that atom does.
+fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
+    let rank = ring.ranks[atom];
+    match &ring.atoms[atom] {
+        Atom::Symbol(s) => (rank, 0, vec![s.0 as usize]),
+        Atom::Wave(w) => {
+            let first = w.angle.iter().position(|n| *n != 0).unwrap_or(0);
+            let rest = w.angle.iter().map(|n| usize::from(n.unsigned_abs()));
+            let angle = std::iter::once(first).chain(rest).chain([usize::from(w.cosine)]);
+            (rank, 1, angle.collect())
+        }
+        Atom::Inverse(p) => match p.terms.as_slice() {
+            [t] => t.monomial.factors().next().map_or((rank, 2, vec![atom]), |(k, _)| place(ring, k)),
+            _ => (rank, 2, vec![atom]),
+        },
+        _ => (rank, 2, vec![atom]),
+    }
+}
+
 impl Order {
     /// The order of the atoms of a ring.
     pub fn of(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
-        atoms.sort_by_key(|k| match &ring.atoms[*k] {
-            Atom::Symbol(s) => (ring.ranks[*k], 0, vec![s.0 as usize]),
-            Atom::Wave(w) => {
-                let first = w.angle.iter().position(|n| *n != 0).unwrap_or(0);
-                let rest = w.angle.iter().map(|n| usize::from(n.unsigned_abs()));
-                let angle = std::iter::once(first).chain(rest).chain([usize::from(w.cosine)]);
-                (ring.ranks[*k], 1, angle.collect())
-            }
-            _ => (ring.ranks[*k], 2, vec![*k]),
-        });
+        atoms.sort_by_cached_key(|k| place(ring, *k));
         Order {
             atoms,
             rates: ring.mask(|_, rank| rank >= Rank::Rate),

@@ -5,7 +5,7 @@
 //! node; the operands of commutative operations stand in order of their ids; a constant factor stands first and constants in a
 //! chain of factors are merged. Only rewrites that never cost an operation are made.
 
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -208,6 +208,8 @@ impl Store {
 /// The owner of all expressions of a mechanism.
 pub struct Graph {
     store: RefCell<Store>,
+    /// A number for every node, zero between uses.
+    table: RefCell<Vec<u32>>,
 }
 
 impl Default for Graph {
@@ -250,7 +252,7 @@ impl Graph {
         let mut store = Store { nodes: Vec::new(), table: vec![EMPTY; 1024] };
         store.intern(Node::Const(0.0));
         store.intern(Node::Const(1.0));
-        Graph { store: RefCell::new(store) }
+        Graph { store: RefCell::new(store), table: RefCell::new(Vec::new()) }
     }
 
     /// Number of nodes made so far.
@@ -271,6 +273,13 @@ impl Graph {
     /// A copy of all nodes, operands before operations.
     pub fn nodes(&self) -> Vec<Node> {
         self.store.borrow().nodes.clone()
+    }
+
+    /// A table with a zero for every node. Who borrows it sets back to zero what was written.
+    pub fn borrow_table(&self) -> RefMut<'_, Vec<u32>> {
+        let mut table = self.table.borrow_mut();
+        table.resize(self.len(), 0);
+        table
     }
 
     /// The expression with an id.

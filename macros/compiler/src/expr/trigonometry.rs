@@ -1,6 +1,6 @@
 //! Fewer terms by trigonometric identities: `sin² + cos² = 1`, and products of sines and cosines against those of sums
-//! and differences of angles. Every step makes one term of two; it is tried from the products as they stand and from
-//! their Fourier sum, and the shorter end is kept.
+//! and differences of angles. Every step makes one term of two; it is tried from the products as they stand, with the
+//! squares of sines in place of those of cosines, and from the Fourier sum; the shortest end is kept.
 
 use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};
 
@@ -46,10 +46,37 @@ pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
 fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Product>> {
     let products: Vec<Product> = terms.iter().map(|t| product(ring, t, mask)).collect();
     let degree = terms.iter().map(|t| t.monomial.only(mask).degree()).max();
-    let sum = if degree <= Some(DEGREE) { fourier(ring, &products)? } else { products.clone() };
-    let as_products = merged(ring, products)?;
-    let as_sum: Vec<Product> = merged(ring, sum)?.into_iter().map(unfolded).collect();
-    Some(if length(&as_sum) < length(&as_products) { as_sum } else { as_products })
+    let mut best = merged(ring, products.clone())?;
+    if degree <= Some(DEGREE) {
+        let sum = fourier(ring, &products)?;
+        let sum = merged(ring, sum)?.into_iter().map(unfolded).collect();
+        let sines = in_sines(ring, products)?;
+        let sines = merged(ring, sines)?;
+        best = [sum, sines].into_iter().fold(best, |a, b| if length(&b) < length(&a) { b } else { a });
+    }
+    Some(best)
+}
+
+/// The same sum with `1 − sin²` for `cos²`.
+fn in_sines(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+    let mut sum = Vec::new();
+    while let Some(mut product) = products.pop() {
+        ring.spend(1 + sum.len())?;
+        let waves = &product.waves;
+        match (1..waves.len()).find(|k| waves[*k].cosine && waves[*k] == waves[k - 1]) {
+            None => collect(&mut sum, product),
+            Some(k) => {
+                let mut squared = product.clone();
+                product.waves.drain(k - 1..=k);
+                squared.waves[k - 1..=k].iter_mut().for_each(|w| w.cosine = false);
+                squared.waves.sort_unstable();
+                squared.coefficient = -squared.coefficient;
+                products.extend([product, squared]);
+            }
+        }
+    }
+    sum.retain(|p| p.coefficient != 0.0);
+    Some(sum)
 }
 
 fn product(ring: &Ring, term: &Term, mask: Monomial) -> Product {

@@ -105,32 +105,35 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
         return Program::default();
     };
     let graph = first.graph();
-    let order = needed(outputs);
-    let mut program = Program::default();
-    // Values of nodes, in a dense table that is as long as the graph.
-    let mut value: Vec<Operand> = vec![Operand::Const(0.0); graph.len()];
-    let mut uses = vec![0_u32; graph.len()];
+    // By node: its place in the order, counted from one. Only the places of the nodes that are needed are touched, so
+    // that a small function does not pay for a large graph.
+    let mut places = graph.borrow_table();
+    let order = needed(outputs, &mut places);
+    let place = |id: Id| places[id as usize] as usize - 1;
     let nodes: Vec<Node> = order.iter().map(|id| graph.node(*id)).collect();
+    let mut uses = vec![0_u32; order.len()];
     for node in &nodes {
-        node.operands(|a| uses[a as usize] += 1);
+        node.operands(|a| uses[place(a)] += 1);
     }
     for output in outputs {
-        uses[output.id() as usize] += 1;
+        uses[place(output.id())] += 1;
     }
-    for (id, node) in order.iter().zip(&nodes) {
-        let at = |a: Id| value[a as usize];
+    let mut program = Program::default();
+    let mut values: Vec<Operand> = Vec::with_capacity(order.len());
+    for node in &nodes {
+        let at = |a: Id| values[place(a)];
         let op = match *node {
             Node::Const(c) => {
-                value[*id as usize] = Operand::Const(c);
+                values.push(Operand::Const(c));
                 continue;
             }
             Node::Symbol(s) => {
-                value[*id as usize] = Operand::Symbol(s);
+                values.push(Operand::Symbol(s));
                 continue;
             }
-            Node::Neg(a) => match graph.node(a) {
+            Node::Neg(a) => match nodes[place(a)] {
                 // −(a − b) is b − a where nothing else wants a − b.
-                Node::Sub(x, y) if uses[a as usize] == 1 => Op::Sub(at(y), at(x)),
+                Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(at(y), at(x)),
                 _ => Op::Neg(at(a)),
             },
             Node::Add(a, b) => Op::Add(at(a), at(b)),
@@ -141,39 +144,43 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
             Node::Atan2(a, b) => Op::Atan2(at(a), at(b)),
             Node::Pow(a, b) => Op::Pow(at(a), at(b)),
         };
-        value[*id as usize] = Operand::Value(program.instructions.len());
+        values.push(Operand::Value(program.instructions.len()));
         program.instructions.push(op);
     }
-    program.outputs = outputs.iter().map(|o| value[o.id() as usize]).collect();
+    program.outputs = outputs.iter().map(|o| values[place(o.id())]).collect();
+    for id in &order {
+        places[*id as usize] = 0;
+    }
     program.sweep();
     program.counts = program.count();
     program
 }
 
-/// Ids of all nodes that the outputs need, operands first.
-fn needed(outputs: &[Expr<'_>]) -> Vec<Id> {
+/// Ids of all nodes that the outputs need, operands first; their places, counted from one, go into the table.
+fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();
     };
     let graph = first.graph();
-    let mut seen = vec![false; graph.len()];
     let mut todo: Vec<Id> = Vec::new();
     let mut order: Vec<Id> = Vec::new();
-    for output in outputs {
-        if !std::mem::replace(&mut seen[output.id() as usize], true) {
-            todo.push(output.id());
+    let mut visit = |id: Id, todo: &mut Vec<Id>| {
+        if std::mem::replace(&mut places[id as usize], 1) == 0 {
+            todo.push(id);
         }
+    };
+    for output in outputs {
+        visit(output.id(), &mut todo);
     }
     while let Some(id) = todo.pop() {
         order.push(id);
-        graph.node(id).operands(|a| {
-            if !std::mem::replace(&mut seen[a as usize], true) {
-                todo.push(a);
-            }
-        });
+        graph.node(id).operands(|a| visit(a, &mut todo));
     }
     // Creation order is the algorithm's order, and operands are made before operations.
     order.sort_unstable();
+    for (place, id) in order.iter().enumerate() {
+        places[*id as usize] = place as u32 + 1;
+    }
     order
 }
 

@@ -4,14 +4,14 @@
 
 use super::crba::Matrix;
 use super::kinematics::Joint;
-use super::{accelerations, energy, forces, position, rnea, velocities};
+use super::{accelerations, energy, forces, rnea, velocities};
 use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
 use crate::expr::polynomial::{Polynomial, Rank, Ring};
 use crate::expr::print::{Writer, wrapped};
 use crate::expr::trigonometry::simplified;
-use crate::expr::{Expr, Symbol};
-use crate::model::{Chart, Model, Motion, Quantity};
+use crate::expr::{Expr, Function, Node, Symbol};
+use crate::model::{Chart, Model, Quantity};
 
 #[cfg(test)]
 mod tests;
@@ -48,11 +48,9 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
-    // Angles in the order of the joints, so that sums of them are read in this order.
-    for link in &model.links {
-        if let Motion::Turn { coordinate, .. } | Motion::Helix { coordinate, .. } = &link.motion {
-            normal.of(position(model, coordinate).sin())?;
-        }
+    // Angles in the order of `q`, so that sums of them are read in this order.
+    for angle in angles(model) {
+        normal.of(angle.sin())?;
     }
     let v = velocities(model);
     let mut motion = normals(&mut normal, &rnea::inverse_dynamics(model, joints, &v, None))?;
@@ -69,6 +67,22 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
     let forces = normals(&mut normal, &forces::generalized_forces(model, joints))?;
     readable(normal.ring, lagrangian, motion, forces)
+}
+
+/// The coordinates of which sines or cosines are taken somewhere.
+fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let nodes = model.graph.nodes();
+    let mut angle = vec![false; model.nq()];
+    for node in &nodes {
+        if let Node::Call(Function::Sin | Function::Cos, argument) = node
+            && let Node::Symbol(symbol) = nodes[*argument as usize]
+            && let Quantity::Configuration(k) = Quantity::of(symbol)
+        {
+            angle[k] = true;
+        }
+    }
+    let of_angles = (0..model.nq()).filter(|k| angle[*k]);
+    of_angles.map(|k| Quantity::Configuration(k).expr(model.graph)).collect()
 }
 
 /// Kinetic energy: `½ vᵀ M v`, which is there already, unless something is driven in time.

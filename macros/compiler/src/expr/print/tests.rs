@@ -58,7 +58,7 @@ fn products() {
 #[test]
 fn groups() {
     assert_eq!(text(|_, [m, k, _, _, _, v, w, _]| (m + k) * v + m * w), "(m + k) x' + m y'");
-    assert_eq!(text(|_, [m, _, l, x, _, v, ..]| m * v * v * (l + x).square()), "m (l² + x² + 2 l x) x'²");
+    assert_eq!(text(|_, [m, _, l, x, _, v, ..]| m * v * v * (l + x).square()), "m (l² + 2 l x + x²) x'²");
     assert_eq!(text(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5), "1/2 k (x - l)²");
     assert_eq!(text(|_, [_, k, _, x, y, ..]| -k * (x - y).square()), "-k (x - y)²");
     assert_eq!(text(|_, [_, k, l, x, ..]| k * x - k * l), "k (x - l)");

@@ -137,3 +137,11 @@ struct Wagon {
     #[acts(on = table.x, damping = c)] damper: Dashpot,
     #[acts(on = bob.at(-l1 * y), along = ground.x + bob.y)] jet: Force,
 }";
+
+/// A particle with one coordinate; where it is, the test says.
+pub const HOOP: &str = "
+struct Hoop {
+    g: f64, m: f64, radius: f64, speed: f64,
+    #[body(mass = m)] bead: Body,
+    #[joint(ground -> bead, about = z)] theta: Pin,
+}";
