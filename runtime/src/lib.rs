@@ -35,6 +35,7 @@ mod lie;
 mod mechanism;
 mod private;
 mod rheonomic;
+pub mod rotation;
 pub mod simulate;
 
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.

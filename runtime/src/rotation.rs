@@ -27,7 +27,7 @@
 //! the Astronautical Sciences 44 (1996) 1.
 //!
 //! **Singular cases** are told, by [`Singular`], by `None` or by [`Angles::singular`]; no function makes a NaN of finite
-//! arguments. Nothing allocates or panics.
+//! arguments whose squares do not overflow. Nothing allocates or panics.
 //!
 //! ```
 //! use linkwork::rotation::{EulerSequence, Mrp};
@@ -63,8 +63,8 @@ mod standard;
 pub use eigenaxis::{angle_between, eigenaxis, rodrigues, rotate_about};
 pub use euler_angles::Angles;
 pub use euler_parameters::{
-    antipode, quaternion_of_rotation, quaternion_omega_body, quaternion_omega_space, quaternion_rate_from_body,
-    quaternion_rate_from_space, shorter,
+    antipode, quaternion_of_rotation, quaternion_omega_body, quaternion_omega_space,
+    quaternion_rate_from_body, quaternion_rate_from_space, shorter,
 };
 pub use gibbs::{Gibbs, cayley, inverse_cayley};
 pub use matrix::{

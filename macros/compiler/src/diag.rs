@@ -160,17 +160,15 @@ pub fn one_of(list: &[String]) -> String {
     }
 }
 
-/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A letter
-/// in the other case is the smallest of slips; one letter alone is not near to another.
+/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A letter in
+/// the other case is the smallest of slips; something of the name must remain.
 pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = match name.chars().count() {
-        0 | 1 => 0,
-        n => (n / 3).clamp(1, 3),
-    };
+    let length = name.chars().count();
+    let limit = (length / 3).clamp(1, 3);
     candidates
         .iter()
         .map(|c| (if c.eq_ignore_ascii_case(name) { 0 } else { edit_distance(name, c) }, *c))
-        .filter(|(distance, _)| *distance <= limit)
+        .filter(|(distance, c)| *distance <= limit && *distance < length.max(c.chars().count()))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c)
 }
@@ -208,5 +206,6 @@ mod tests {
         assert_eq!(nearest("m1", &["m2", "M1"]), Some("M1"));
         assert_eq!(nearest("Z", &["x", "y", "z"]), Some("z"));
         assert_eq!(nearest("w", &["x", "y", "z"]), None);
+        assert_eq!(nearest("j", &["j1", "j2"]), Some("j1"));
     }
 }

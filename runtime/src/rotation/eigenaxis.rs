@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 /// The rotation by `angle`, rad, about an axis (the same in space and in body axes): Rodrigues's formula
 /// `R = 1 + sin θ [n]ₓ + (1 − cos θ) [n]ₓ²`. Never singular.
 ///
-/// Kane, Likins and Levinson, §1.2; Bernstein, Goel and Ansari, ch. 2. `1 − cos θ` is taken as `2 sin²(θ/2)`, so small
+/// Kane, Likins and Levinson, §1.1; Bernstein, Goel and Ansari, ch. 2. `1 − cos θ` is taken as `2 sin²(θ/2)`, so small
 /// angles lose no digits.
 pub fn rodrigues<T: Real>(axis: &Unit<Vector3<T>>, angle: T) -> Rotation3<T> {
     let cross = axis.cross_matrix();
@@ -37,10 +37,11 @@ pub fn eigenaxis<T: Real>(rotation: &Rotation3<T>) -> Option<(Unit<Vector3<T>>, 
     let u = q.imag();
     // Scaled first, so that squares do not vanish.
     let largest = u.amax();
-    if !(largest > T::zero()) {
-        return None;
+    if largest > T::zero() {
+        Some((Unit::new_normalize(u / largest), RotationVector::from_quaternion(&q).angle()))
+    } else {
+        None
     }
-    Some((Unit::new_normalize(u / largest), RotationVector::from_quaternion(&q).angle()))
 }
 
 /// The angle of the turn from one rotation to another, in [0, π] rad, accurate at both ends.

@@ -4,7 +4,7 @@ use super::sequence::EulerSequence;
 use super::standard::{Standard, parallel};
 use crate::Real;
 use crate::private::constant;
-use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
+use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Euler angles found from a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,32 +27,33 @@ impl EulerSequence {
     /// axes. Kane, Likins and Levinson, appendix I. Never singular.
     pub fn rotation<T: Real>(self, angles: [T; 3]) -> Rotation3<T> {
         let standard = self.standard();
-        let [(sa, ca), (sb, cb), (sc, cc)] = standard.from_user(angles).map(|t| t.sin_cos());
+        let [(sa, ca), (sb, cb), (sc, cc)] = standard.standardised(angles).map(|t| t.sin_cos());
+        // By columns.
         let own = if standard.symmetric {
-            Matrix3::new(
-                cb, sb * sc, sb * cc, //
-                sa * sb, ca * cc - sa * cb * sc, -ca * sc - sa * cb * cc, //
-                -ca * sb, sa * cc + ca * cb * sc, ca * cb * cc - sa * sc, //
-            )
+            [
+                [cb, sa * sb, -ca * sb],
+                [sb * sc, ca * cc - sa * cb * sc, sa * cc + ca * cb * sc],
+                [sb * cc, -ca * sc - sa * cb * cc, ca * cb * cc - sa * sc],
+            ]
         } else {
-            Matrix3::new(
-                cb * cc, -cb * sc, sb, //
-                ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb, //
-                sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb, //
-            )
+            [
+                [cb * cc, ca * sc + sa * sb * cc, sa * sc - ca * sb * cc],
+                [-cb * sc, ca * cc - sa * sb * sc, sa * cc + ca * sb * sc],
+                [sb, -sa * cb, ca * cb],
+            ]
         };
-        let axes = standard.own_axes();
-        Rotation3::from_matrix_unchecked(axes * own * axes.transpose())
+        let axes = standard.own_axes::<T>();
+        Rotation3::from_matrix_unchecked(axes * Matrix3::from(own) * axes.transpose())
     }
 
     /// The Euler parameters of Euler angles, rad, of any size: the product of the half-angle quaternions of the turns,
     /// continuous in the angles, so that `w` takes either sign.
     ///
-    /// Shuster, §"Euler angles". Never singular.
+    /// Source: Shuster. Never singular.
     pub fn quaternion<T: Real>(self, angles: [T; 3]) -> UnitQuaternion<T> {
         let standard = self.standard();
         let half = constant::<T>(0.5);
-        let [a, b, c] = standard.from_user(angles).map(|t| t * half);
+        let [a, b, c] = standard.standardised(angles).map(|t| t * half);
         let (sb, cb) = b.sin_cos();
         let (own, w) = if standard.symmetric {
             let ((s_sum, c_sum), (s_difference, c_difference)) = ((a + c).sin_cos(), (a - c).sin_cos());
@@ -60,15 +61,11 @@ impl EulerSequence {
         } else {
             let ((sa, ca), (sc, cc)) = (a.sin_cos(), c.sin_cos());
             (
-                [
-                    sa * cb * cc + ca * sb * sc,
-                    ca * sb * cc - sa * cb * sc,
-                    ca * cb * sc + sa * sb * cc,
-                ],
+                [sa * cb * cc + ca * sb * sc, ca * sb * cc - sa * cb * sc, ca * cb * sc + sa * sb * cc],
                 ca * cb * cc - sa * sb * sc,
             )
         };
-        let u = standard.own_axes() * nalgebra::Vector3::from(own);
+        let u = standard.own_axes::<T>() * Vector3::from(own);
         UnitQuaternion::new_unchecked(Quaternion::from_parts(w, u))
     }
 
@@ -80,12 +77,12 @@ impl EulerSequence {
     ///   angle is zero, the first holds all of the turn about both, and `singular` is set.
     /// - Accuracy: the angles give the rotation back to rounding everywhere. Close to the singularity the first and the
     ///   third angle are known only to ε / sin(angle between their axes), but with errors that cancel: the third is
-    ///   found from what is left of the rotation after the first is undone (Herter and Klöpper's method).
+    ///   found from what is left of the rotation after the first is undone.
     pub fn angles<T: Real>(self, rotation: &Rotation3<T>) -> Angles<T> {
         let standard = self.standard();
         let axes = standard.own_axes::<T>();
         let own = axes.transpose() * rotation.matrix() * axes;
-        let nalgebra::ArrayStorage([[r00, r10, r20], [r01, r11, r21], [r02, r12, r22]]) = own.data;
+        let ArrayStorage([[r00, r10, r20], [_, r11, r21], [r02, r12, r22]]) = own.data;
         // Numerator and denominator of the first angle, then sine and cosine of the middle one.
         let (y, x) = if standard.symmetric { (r10, -r20) } else { (-r12, r22) };
         let distance = (y * y + x * x).sqrt();
@@ -103,7 +100,7 @@ impl EulerSequence {
         } else {
             [r21.atan2(r11), T::zero()]
         };
-        Angles { angles: standard.to_user([a, middle, c]), singular }
+        Angles { angles: standard.restored([a, middle, c]), singular }
     }
 
     /// The other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or

@@ -26,7 +26,7 @@ pub fn quaternion_of_rotation<T: Real>(rotation: &Rotation3<T>) -> UnitQuaternio
 
 /// `q̇ = ½ q (ω_body, 0)`, 1/s, of the angular velocity in body axes, rad/s. Never singular.
 ///
-/// Shuster, §"Kinematics". `q̇` is perpendicular to `q`. The antipode `−q` has the rate `−q̇`.
+/// Source: Shuster. `q̇` is perpendicular to `q`. The antipode `−q` has the rate `−q̇`.
 pub fn quaternion_rate_from_body<T: Real>(q: &UnitQuaternion<T>, omega: &Vector3<T>) -> Quaternion<T> {
     q.into_inner() * Quaternion::from_imag(omega * constant::<T>(0.5))
 }

@@ -13,14 +13,14 @@ impl EulerSequence {
     /// parallel; correct there too.
     pub fn body_rate_matrix<T: Real>(self, angles: [T; 3]) -> Matrix3<T> {
         let standard = self.standard();
-        let [_, (sb, cb), (sc, cc)] = standard.from_user(angles).map(|t| t.sin_cos());
+        let [_, (sb, cb), (sc, cc)] = standard.standardised(angles).map(|t| t.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let columns = if standard.symmetric {
             [Vector3::new(cb, sb * sc, sb * cc), Vector3::new(o, cc, -sc), Vector3::new(i, o, o)]
         } else {
             [Vector3::new(cb * cc, -cb * sc, sb), Vector3::new(sc, cc, o), Vector3::new(o, o, i)]
         };
-        standard.own_axes() * Matrix3::from_columns(&standard.to_user(columns))
+        standard.own_axes::<T>() * Matrix3::from_columns(&standard.restored(columns))
     }
 
     /// `B` with `ω_space = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three turns, resolved in space axes.
@@ -28,11 +28,11 @@ impl EulerSequence {
     /// Source and singular case as for [`Self::body_rate_matrix`].
     pub fn space_rate_matrix<T: Real>(self, angles: [T; 3]) -> Matrix3<T> {
         let standard = self.standard();
-        let [(sa, ca), (sb, cb), _] = standard.from_user(angles).map(|t| t.sin_cos());
+        let [(sa, ca), (sb, cb), _] = standard.standardised(angles).map(|t| t.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let third = if standard.symmetric { [cb, sa * sb, -ca * sb] } else { [sb, -sa * cb, ca * cb] };
         let columns = [Vector3::new(i, o, o), Vector3::new(o, ca, sa), Vector3::from(third)];
-        standard.own_axes() * Matrix3::from_columns(&standard.to_user(columns))
+        standard.own_axes::<T>() * Matrix3::from_columns(&standard.restored(columns))
     }
 
     /// The inverse of [`Self::body_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_body`.
@@ -43,7 +43,7 @@ impl EulerSequence {
     /// the rounding of the angle.
     pub fn inverse_body_rate_matrix<T: Real>(self, angles: [T; 3]) -> Result<Matrix3<T>, Singular> {
         let standard = self.standard();
-        let [_, b, c] = standard.from_user(angles);
+        let [_, b, c] = standard.standardised(angles);
         let ((sb, cb), (sc, cc)) = (b.sin_cos(), c.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let rows = if standard.symmetric {
@@ -55,7 +55,7 @@ impl EulerSequence {
             let first = RowVector3::new(cc, -sc, o) / sine;
             [first, RowVector3::new(sc, cc, o), RowVector3::new(o, o, i) - first * sb]
         };
-        Ok(Matrix3::from_rows(&standard.to_user(rows)) * standard.own_axes().transpose())
+        Ok(Matrix3::from_rows(&standard.restored(rows)) * standard.own_axes::<T>().transpose())
     }
 
     /// The inverse of [`Self::space_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_space`.
@@ -65,7 +65,7 @@ impl EulerSequence {
     /// As [`Self::inverse_body_rate_matrix`].
     pub fn inverse_space_rate_matrix<T: Real>(self, angles: [T; 3]) -> Result<Matrix3<T>, Singular> {
         let standard = self.standard();
-        let [a, b, _] = standard.from_user(angles);
+        let [a, b, _] = standard.standardised(angles);
         let ((sa, ca), (sb, cb)) = (a.sin_cos(), b.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let (third, along) = if standard.symmetric {
@@ -74,7 +74,7 @@ impl EulerSequence {
             (RowVector3::new(o, -sa, ca) / apart(cb, b)?, sb)
         };
         let rows = [RowVector3::new(i, o, o) - third * along, RowVector3::new(o, ca, sa), third];
-        Ok(Matrix3::from_rows(&standard.to_user(rows)) * standard.own_axes().transpose())
+        Ok(Matrix3::from_rows(&standard.restored(rows)) * standard.own_axes::<T>().transpose())
     }
 
     /// Angular velocity in body axes, rad/s, at these angles, rad, and rates, rad/s.
@@ -109,5 +109,9 @@ impl EulerSequence {
 /// The sine of the angle between the first and the third axis, unless it is zero to the rounding of the middle angle.
 fn apart<T: Real>(sine: T, middle: T) -> Result<T, Singular> {
     // Written so that NaN passes: it is the caller's, and no singularity.
-    if sine.abs() <= parallel::<T>() * middle.abs().max(T::one()) { Err(Singular::ParallelAxes) } else { Ok(sine) }
+    if sine.abs() <= parallel::<T>() * middle.abs().max(T::one()) {
+        Err(Singular::ParallelAxes)
+    } else {
+        Ok(sine)
+    }
 }

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 /// The Gibbs (Rodrigues) vector `g = n tan(θ/2) = u / w`: infinite at half a turn, the same for `q` and `−q`, and the
 /// same in space and in body axes.
 ///
-/// Shuster, §"The Rodrigues parameters"; Kane, Likins and Levinson, §1.4.
+/// Shuster; Kane, Likins and Levinson, §1.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gibbs<T>(pub Vector3<T>);
 
@@ -64,7 +64,7 @@ impl<T: Real> Gibbs<T> {
 
     /// `ġ = ½ (ω + g × ω + g (g · ω))`, 1/s, of the angular velocity in body axes, rad/s.
     ///
-    /// Shuster, §"Kinematics". Finite wherever `g` is.
+    /// Source: Shuster. Finite wherever `g` is.
     pub fn rate_from_body(&self, omega: &Vector3<T>) -> Vector3<T> {
         let g = self.0;
         (omega + g.cross(omega) + g * g.dot(omega)) * constant::<T>(0.5)
@@ -94,7 +94,7 @@ fn finite<T: Real>(g: Vector3<T>) -> Result<Gibbs<T>, Singular> {
 /// Cayley's transform `R = (1 + S)(1 − S)⁻¹` of a skew matrix `S = [g]ₓ`: the rotation of the Gibbs vector `g`. Of a
 /// matrix that is not skew only the skew part counts. Never singular.
 ///
-/// Shuster, §"The Rodrigues parameters" (for the transpose).
+/// Source: Shuster (for the transpose).
 pub fn cayley<T: Real>(skew: &Matrix3<T>) -> Rotation3<T> {
     Gibbs(axial(skew)).rotation()
 }

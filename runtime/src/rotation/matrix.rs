@@ -12,7 +12,7 @@ pub fn axial<T: Real>(matrix: &Matrix3<T>) -> Vector3<T> {
 
 /// `Ṙ = R [ω_body]ₓ`, 1/s, of a rotation matrix and the angular velocity in body axes, rad/s.
 ///
-/// Poisson's equation; Hughes, §2.3, for the transpose. Never singular.
+/// Poisson's equation; Hughes, ch. 2, for the transpose. Never singular.
 pub fn rotation_rate_from_body<T: Real>(rotation: &Rotation3<T>, omega: &Vector3<T>) -> Matrix3<T> {
     rotation.matrix() * omega.cross_matrix()
 }

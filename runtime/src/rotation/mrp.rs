@@ -65,11 +65,15 @@ impl<T: Real> Mrp<T> {
     ///
     /// # Errors
     ///
-    /// As [`Self::shadow`].
+    /// [`Singular::FullTurn`] where the square of the shadow is not finite.
     pub fn shadow_rate(&self, rate: &Vector3<T>) -> Result<Vector3<T>, Singular> {
         let shadow = self.shadow()?.0;
+        let square = shadow.norm_squared();
+        if !square.is_finite() {
+            return Err(Singular::FullTurn);
+        }
         // −s / s² = σ of the shadow s.
-        Ok(shadow * (constant::<T>(2.0) * shadow.dot(rate)) - rate * shadow.norm_squared())
+        Ok(shadow * (constant::<T>(2.0) * shadow.dot(rate)) - rate * square)
     }
 
     /// The shorter of the vector and its shadow: the vector itself up to `|σ| = 1`.
@@ -97,7 +101,7 @@ impl<T: Real> Mrp<T> {
 
     /// `σ̇ = ¼ ((1 − σ²) ω + 2 σ × ω + 2 σ (σ · ω))`, 1/s, of the angular velocity in body axes, rad/s.
     ///
-    /// Schaub and Junkins; Shuster, §"Kinematics". Finite wherever `σ` is.
+    /// Schaub and Junkins; Shuster. Finite wherever `σ` is.
     pub fn rate_from_body(&self, omega: &Vector3<T>) -> Vector3<T> {
         let s = self.0;
         let two = constant::<T>(2.0);

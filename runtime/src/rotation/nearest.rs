@@ -15,7 +15,7 @@ use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion};
 /// - Accuracy: a few ε (s₁ / (s₂ ± s₃)).
 pub fn nearest_rotation<T: Real>(matrix: &Matrix3<T>) -> Option<Rotation3<T>> {
     let scale = matrix.amax();
-    if !matrix.iter().all(|x| x.is_finite()) || !(scale > T::zero()) {
+    if !matrix.iter().all(|x| x.is_finite()) || scale == T::zero() {
         return None;
     }
     let ArrayStorage([[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]) = (matrix / scale).data;
@@ -49,7 +49,8 @@ fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     let [[a, ..], [_, b, ..], [_, _, c, _], [.., d]] = form;
     let [mut best, others @ ..] = [a, b, c, d];
     let [mut vector, other_vectors @ ..] = vectors;
-    let mut next = -T::one() / epsilon();
+    // Below every eigenvalue of a form of a matrix with entries in [−1, 1].
+    let mut next = constant::<T>(-16.0);
     for (value, candidate) in others.into_iter().zip(other_vectors) {
         if value > best {
             (next, best, vector) = (best, value, candidate);
@@ -65,7 +66,8 @@ fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
 /// Golub and Van Loan, *Matrix Computations* (2013), §8.5.
 fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], vectors: &mut [[T; 4]; 4]) {
     let entry = form[P][Q];
-    if entry == T::zero() {
+    // Negligible in a matrix with eigenvalues of order one.
+    if entry.abs() <= epsilon::<T>() * epsilon() {
         return;
     }
     let cotangent = (form[Q][Q] - form[P][P]) / (entry + entry);
@@ -78,6 +80,11 @@ fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], v
     }
     for rows in [form, vectors] {
         let (p, q) = (rows[P], rows[Q]);
-        for ((to_p, to_q), k) in rows[P].iter_mut().zip(rows[Q].iter_mut()).zip(0..) { let _ = (to_p, to_q, k, p, q); }
+        (rows[P], rows[Q]) = (combined(c, p, -s, q), combined(s, p, c, q));
     }
+}
+
+/// `a p + b q`.
+fn combined<T: Real>(a: T, [p0, p1, p2, p3]: [T; 4], b: T, [q0, q1, q2, q3]: [T; 4]) -> [T; 4] {
+    [a * p0 + b * q0, a * p1 + b * q1, a * p2 + b * q2, a * p3 + b * q3]
 }

@@ -3,27 +3,23 @@
 use super::euler_parameters::quaternion_of_rotation;
 use super::singular::Singular;
 use super::standard::parallel;
+use crate::Real;
 use crate::lie::{ball_tangent_rate, exponential, left_jacobian, logarithm};
 use crate::private::constant;
-use crate::Real;
-use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// The rotation vector `φ = θ n`, rad: eigenaxis times angle, of any length; the same in space and in body axes.
 ///
-/// Shuster, §"The rotation vector". Vectors longer than π are turns the long way round, or several.
+/// Source: Shuster. Vectors longer than π are turns the long way round, or several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotationVector<T>(pub Vector3<T>);
 
 impl<T: Real> RotationVector<T> {
     /// The rotation matrix, the exponential of `[φ]ₓ`: `1 + (sin θ / θ) [φ]ₓ + ((1 − cos θ) / θ²) [φ]ₓ²`.
     ///
-    /// Accurate at zero, where the factors are series, and for every length. Never singular.
+    /// By way of the Euler parameters; accurate at zero, where their factor is a series. Never singular.
     pub fn rotation(&self) -> Rotation3<T> {
-        let square = self.0.norm_squared();
-        let (versine, cubic) = left_jacobian(square);
-        let cross = self.0.cross_matrix();
-        let sine = T::one() - cubic * square;
-        Rotation3::from_matrix_unchecked(Matrix3::identity() + cross * sine + cross * cross * versine)
+        self.quaternion().to_rotation_matrix()
     }
 
     /// The Euler parameters `(n sin(θ/2), cos(θ/2))`, with `w < 0` for `θ` between π and 3π.
@@ -71,7 +67,7 @@ impl<T: Real> RotationVector<T> {
 
     /// `φ̇ = ω + ½ φ × ω + ((1 − (θ/2) cot(θ/2)) / θ²) φ × (φ × ω)`, rad/s, of the angular velocity in body axes, rad/s.
     ///
-    /// Shuster, §"Kinematics" (Bortz's equation). The factor is a series near zero.
+    /// Source: Shuster (Bortz's equation). The factor is a series near zero.
     ///
     /// # Errors
     ///

@@ -38,13 +38,13 @@ impl Standard {
     }
 
     /// Angles or rates of the sequence as those of the standard one.
-    pub(super) fn from_user<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+    pub(super) fn standardised<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         self.signed(if self.reversed { [c, b, a] } else { [a, b, c] })
     }
 
     /// Angles or rates of the standard sequence as those of the sequence itself; the same for the columns by which
     /// rates are multiplied.
-    pub(super) fn to_user<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
+    pub(super) fn restored<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
         let [a, b, c] = self.signed(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }

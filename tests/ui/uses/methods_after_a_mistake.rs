@@ -21,5 +21,5 @@ fn main() {
     let _ = (Pendulum::NQ, Pendulum::NV, Pendulum::NU, Pendulum::VELOCITIES, Pendulum::INPUTS);
     let _ = pendulum.center_of_mass(&q) * pendulum.total_mass();
     let _ = pendulum.momentum(&q, &v);
-    let _ = simulate(&pendulum).initial(q, v);
+    let _ = simulate(&pendulum);
 }

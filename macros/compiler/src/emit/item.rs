@@ -167,7 +167,7 @@ fn write_constants(out: &mut String, i: &Interface<'_>, equations: &str) {
         );
     }
     let about = match equations {
-        "" => "Empty: the equations of this mechanism are too long to be read. Those of small ones stand here as text.",
+        "" => "Empty: the equations of this mechanism are too long to be read as text.",
         _ => "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
     };
     let _ = writeln!(out, "/// {about}\npub const EQUATIONS: &'static str = {equations:?};");

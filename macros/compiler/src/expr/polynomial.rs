@@ -16,7 +16,7 @@ pub const TERMS: usize = 400;
 /// Most angles.
 pub const ANGLES: usize = 8;
 /// Most steps of a whole derivation, of about a microsecond each in an unoptimised build.
-const WORK: usize = 100_000;
+const WORK: usize = 40_000;
 /// What remains of two numbers that cancel, relative to them, is rounding.
 const ROUNDING: f64 = 1e-13;
 

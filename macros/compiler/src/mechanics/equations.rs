@@ -21,7 +21,9 @@ const VELOCITIES: usize = 4;
 /// Most moving frames.
 const LINKS: usize = 8;
 /// Most terms, of all equations together, that anybody would read.
-const READABLE: usize = 240;
+const READABLE: usize = 150;
+/// Most terms before they are shortened.
+const LONG: usize = 300;
 /// Columns of text.
 const WIDTH: usize = 100;
 
@@ -118,6 +120,10 @@ fn readable(
     motion: Vec<Polynomial>,
     forces: Vec<Polynomial>,
 ) -> Option<Equations> {
+    let all = || motion.iter().chain(&forces).chain([&lagrangian]);
+    if all().map(|p| p.terms.len()).sum::<usize>() > LONG {
+        return None;
+    }
     let mut left = READABLE;
     let mut short = |p: &Polynomial| {
         let p = without_noise(&ring, p);
@@ -172,7 +178,9 @@ fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> String {
         Quantity::Parameter(k) => model.parameters[k].clone(),
         Quantity::Configuration(k) => model.configuration[k].clone(),
         Quantity::Velocity(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "'" } else { "" }),
-        Quantity::Acceleration(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" }),
+        Quantity::Acceleration(k) => {
+            format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" })
+        }
         Quantity::Input(k) => model.inputs[k].0.clone(),
         Quantity::Time => "t".to_string(),
         Quantity::Force(k) => format!("tau{k}"),
@@ -184,7 +192,9 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> String {
     match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {
             let x = &model.velocities[k].0;
-            format!("L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}.")
+            format!(
+                "L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}."
+            )
         }
         None => {
             let w = &model.velocities[0].0;

@@ -30,7 +30,8 @@ impl<'g> Builder<'_, 'g> {
                 if let (Some((free, is_angle)), Some(Target::Coordinate(_, angle))) = (given, &target)
                     && is_angle != angle
                 {
-                    let (is, key) = if *angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+                    let (is, key) =
+                        if *angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
                     cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
                         .help(format!("write `{key} = …`"));
                 }
@@ -65,8 +66,11 @@ impl<'g> Builder<'_, 'g> {
         match target? {
             Target::Coordinate(c, _) => Some(c),
             Target::Body(..) => {
-                cx.error(place.clone(), format!("a {what} acts on the coordinate of a joint, but this is a body"))
-                    .help("name a joint, as in `on = hinge`; between two bodies it is not yet supported");
+                cx.error(
+                    place.clone(),
+                    format!("a {what} acts on the coordinate of a joint, but this is a body"),
+                )
+                .help("name a joint, as in `on = hinge`; between two bodies it is not yet supported");
                 None
             }
         }
@@ -165,8 +169,11 @@ impl<'g> Builder<'_, 'g> {
                                 cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
                                     .help("a force or a torque can act on a body that it joins, with a direction");
                             } else {
-                                cx.error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
-                                    .help(format!("write {}", one_of(&list)));
+                                cx.error(
+                                    on.place.clone(),
+                                    format!("`{name}` has {} coordinates", list.len()),
+                                )
+                                .help(format!("write {}", one_of(&list)));
                             }
                             None
                         }
@@ -223,7 +230,12 @@ impl<'g> Builder<'_, 'g> {
         let found = self.held_index(name);
         if name == GROUND {
             cx.error(place.clone(), "nothing that acts on the ground has an effect");
-        } else if found.is_none() && let Some(what) = self.scope.what(name) {
+        } else if found.is_none() && self.scope.what(name) == Some("a joint") {
+            cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
+                .help(format!("write `on = {name}`, or name a point of a body"));
+        } else if found.is_none()
+            && let Some(what) = self.scope.what(name)
+        {
             cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
                 .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
         } else if found.is_none() {

@@ -4,7 +4,9 @@ use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::resolve::Scope;
 use super::tree::{GROUND, Held, Order, find_tree};
-use super::{Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame, Pose,
+use super::{
+    Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
+    Pose,
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};
@@ -92,7 +94,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             .collect();
         let all =
             description.bodies.iter().map(|b| &b.name).chain(description.particles.iter().map(|p| &p.name));
-        
+
         let scope = Scope {
             graph,
             parameters: &description.parameters,

@@ -214,7 +214,8 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Some(Value::Vector(vec![(Axes::Own, vector)]))
             }
             ExprKind::Method(_, method, _) => {
-                let diagnostic = cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
+                let diagnostic =
+                    cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
                 if is_function(&method.text) {
                     diagnostic.help(format!("write `{}(…)`", method.text));
                 } else if matches!(method.text.as_str(), "powi" | "powf") {
@@ -270,7 +271,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             return None;
         };
         if body == "self" {
-            cx.error(inner.place.clone(), "parameters are named without `self`").help(format!("write `{}`", member.text));
+            cx.error(inner.place.clone(), "parameters are named without `self`")
+                .help(format!("write `{}`", member.text));
             return None;
         }
         if body != "ground" && !self.bodies.contains(body) {

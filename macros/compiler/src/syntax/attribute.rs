@@ -90,10 +90,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     {
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
-        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`"))
-            .help(
-                "remove the type parameter, or give it to a parameter: then all generated functions use it",
-            );
+        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
+            "remove the type parameter, or give it to a parameter: then all generated functions use it",
+        );
     }
     check_duplicates(&description, cx);
     Some(Mechanism { description, shell, urdf })
@@ -184,6 +183,10 @@ fn read_field(
 ) {
     let Some(ident) = field.ident.clone() else { return };
     let field_name = name(&ident);
+    if ident == "_" {
+        cx.error(ident.span(), "a field of a mechanism needs a name");
+        return;
+    }
     let Some(kind) = type_name(&field.ty) else {
         element::unknown_type(&field_name, "", span_of(&field.ty), cx);
         return;

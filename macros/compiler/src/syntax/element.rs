@@ -507,7 +507,9 @@ impl Arguments {
         cx: &mut Diagnostics,
     ) -> Option<Expr> {
         // A key that is not known is reported as such: most likely it is the missing one.
-        if self.place_of(key).is_none() && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str())) {
+        if self.place_of(key).is_none()
+            && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
+        {
             cx.error(self.place.clone(), format!("missing `{key}`"))
                 .help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
         }
@@ -626,7 +628,11 @@ fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments>
 
 fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Result<()> {
     use syn::ext::IdentExt;
-    if input.peek(Ident::peek_any) && input.peek2(Token![=]) && !input.peek2(Token![==]) {
+    if input.peek(Ident::peek_any)
+        && input.peek2(Token![=])
+        && !input.peek2(Token![==])
+        && !input.peek2(Token![=>])
+    {
         let key = parse_name(input)?;
         input.parse::<Token![=]>()?;
         if input.is_empty() || input.peek(Token![,]) {

@@ -7,6 +7,8 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAX_DEPTH: usize = 48;
 /// Longest run of prefix operators and opening angle brackets.
 const MAX_RUN: usize = 48;
+/// Most digits of a number.
+const MAX_DIGITS: usize = 1000;
 /// Most tokens in one struct.
 const MAX_TOKENS: usize = 400_000;
 
@@ -39,7 +41,16 @@ pub fn check_tokens(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
                     todo.push(g.stream().into_iter());
                 }
             }
-            TokenTree::Ident(_) | TokenTree::Literal(_) => run = 0,
+            TokenTree::Ident(_) => run = 0,
+            TokenTree::Literal(literal) => {
+                run = 0;
+                let text = literal.to_string();
+                // Reading a number takes time that grows as the square of its length.
+                if text.len() > MAX_DIGITS && text.starts_with(|c: char| c.is_ascii_digit()) {
+                    cx.error(place, format!("this number has more than {MAX_DIGITS} digits"));
+                    return false;
+                }
+            }
         }
         if todo.len() > MAX_DEPTH || angle > MAX_RUN || run > MAX_RUN {
             cx.error(place, "this is nested too deeply")

@@ -44,6 +44,10 @@ pub(super) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
             let message = format!("joint {} joins a link to itself", quote(&joint.name.text));
             cx.error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
+            // Two joints of one name are a mistake that was reported.
+            if first.name.text == joint.name.text {
+                continue;
+            }
             report_two_parents(first, joint, cx);
         } else {
             parents.insert(&joint.child.text, joint);

@@ -141,7 +141,7 @@ struct Wagon {
 /// A particle with one coordinate; where it is, the test says.
 pub const HOOP: &str = "
 struct Hoop {
-    g: f64, m: f64, radius: f64, speed: f64,
+    g: f64, m: f64, _radius: f64, _speed: f64,
     #[body(mass = m)] bead: Body,
     #[joint(ground -> bead, about = z)] theta: Pin,
 }";

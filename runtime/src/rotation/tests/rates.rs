@@ -1,0 +1,195 @@
+use super::*;
+use crate::rotation::*;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Lengths of rotation vectors: tiny, small, both sides of the switch of the series, near and beyond half and full turns.
+const LENGTHS: [f64; 15] =
+    [0.0, 1e-200, 1e-9, 1e-4, 0.2, 0.23, 0.49, 0.51, 2.0, 3.1, PI, 3.2, 6.0, 6.6, 11.0];
+
+#[test]
+fn omega_of_euler_angles_is_that_of_the_turning_matrix() {
+    let mut random = Random(11);
+    for sequence in EulerSequence::ALL {
+        for _ in 0..20 {
+            let (angles, rates) = (random.vector() * 3.0, random.vector());
+            let rotation = sequence.rotation(angles.into());
+            let rate = slope(|t| *sequence.rotation((angles + rates * t).into()).matrix());
+            let body = sequence.omega_body(angles.into(), rates.into());
+            let space = sequence.omega_space(angles.into(), rates.into());
+            below(far(&rotation_omega_body(&rotation, &rate), &body), 1e-12, sequence);
+            below(far(&rotation_omega_space(&rotation, &rate), &space), 1e-12, sequence);
+            below(far(&(rotation * body), &space), 2e-15, sequence);
+        }
+    }
+}
+
+#[test]
+fn rates_of_euler_angles_invert_omega() {
+    let mut random = Random(12);
+    for sequence in EulerSequence::ALL {
+        for offset in [1e-14, 1e-10, 1e-6, 1e-3, 0.3, 1.0] {
+            for _ in 0..20 {
+                let singular = if sequence.is_symmetric() { PI } else { -FRAC_PI_2 };
+                let [a, c] = random.numbers().map(|x: f64| PI * x);
+                let angles = [a, singular + offset, c];
+                let rates: [f64; 3] = random.numbers();
+                let (body, space) = (sequence.omega_body(angles, rates), sequence.omega_space(angles, rates));
+                for found in
+                    [sequence.rates_from_body(angles, &body), sequence.rates_from_space(angles, &space)]
+                {
+                    below(apart(found.unwrap(), rates) * offset, 1.5e-15, (sequence, offset));
+                }
+                let omega = random.vector();
+                let rates = sequence.rates_from_body(angles, &omega).unwrap();
+                below(far(&sequence.omega_body(angles, rates), &omega) * offset, 1.5e-15, (sequence, offset));
+            }
+        }
+    }
+}
+
+#[test]
+fn euler_angles_report_their_singularity() {
+    let omega = Vector3::new(0.3, -0.2, 0.5);
+    for sequence in EulerSequence::ALL {
+        let singular = if sequence.is_symmetric() { 0.0 } else { FRAC_PI_2 };
+        for turns in [-1000.0, -3.0, -1.0, 0.0, 1.0, 2.0, 5.0, 1e6] {
+            let angles = [0.4, singular + turns * PI, -1.1];
+            assert_eq!(
+                sequence.rates_from_body(angles, &omega),
+                Err(Singular::ParallelAxes),
+                "{sequence} {turns}"
+            );
+            assert_eq!(sequence.rates_from_space(angles, &omega), Err(Singular::ParallelAxes));
+            // The forward matrices stay right: their third column is the first one or its opposite.
+            for matrix in [sequence.body_rate_matrix(angles), sequence.space_rate_matrix(angles)] {
+                below(matrix.determinant().abs(), 1e-9, sequence);
+                let parallel = matrix.column(0).dot(&matrix.column(2)).abs();
+                below((parallel - 1.0).abs(), 1e-12, sequence);
+            }
+        }
+        let nan = sequence.rates_from_body([0.0, f64::NAN, 0.0], &omega).unwrap();
+        assert!(nan.iter().any(|x| x.is_nan()), "the caller's NaN is no singularity");
+    }
+}
+
+#[test]
+fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
+    let mut random = Random(13);
+    for _ in 0..200 {
+        let (q, omega) = (random.quaternion(), random.vector());
+        let rotation = q.to_rotation_matrix();
+        let space = rotation * omega;
+        let turned = |t: f64| q * RotationVector(omega * t).quaternion();
+
+        let rate = quaternion_rate_from_body(&q, &omega);
+        below(far(&rate.coords, &slope(|t| turned(t).coords)), 1e-12, omega);
+        below(far(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
+        below(far(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
+        below(far(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
+        below(rate.coords.dot(&q.coords).abs(), 3e-16, omega);
+        let other = quaternion_rate_from_body(&antipode(&q), &omega);
+        below(far(&other.coords, &-rate.coords), 0.0, omega);
+
+        let rate = rotation_rate_from_body(&rotation, &omega);
+        below(far(&rate, &slope(|t| *turned(t).to_rotation_matrix().matrix())), 2e-12, omega);
+        below(far(&rate, &rotation_rate_from_space(&rotation, &space)), 1e-15, omega);
+        below(far(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
+        below(far(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
+    }
+}
+
+/// The angular velocity, in body axes, of the motion whose quaternion is `f`, found by differences.
+fn turning(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3<f64> {
+    quaternion_omega_body(&f(0.0), &Quaternion::from(slope(|t| f(t).coords)))
+}
+
+#[test]
+fn rates_of_rotation_vectors_agree_with_the_motion() {
+    let mut random = Random(14);
+    for length in LENGTHS {
+        for _ in 0..20 {
+            let vector = RotationVector(random.axis() * length);
+            let (rate, rotation) = (random.vector(), vector.rotation());
+            let body = vector.omega_body(&rate);
+            below(far(&body, &turning(|t| RotationVector(vector.0 + rate * t).quaternion())), 2e-12, length);
+            below(far(&(rotation * body), &vector.omega_space(&rate)), 2e-15, length);
+            // The inverse grows towards the full turn.
+            let bound = 2e-15 * (1.0 + length) / if length > 1.0 { (length / 2.0).sin().abs() } else { 1.0 };
+            below(far(&vector.rate_from_body(&body).unwrap(), &rate), bound, length);
+            below(far(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate), bound, length);
+        }
+    }
+    for turns in [1.0, 2.0, 7.0] {
+        let vector = RotationVector(random.axis() * (turns * TAU));
+        assert_eq!(vector.rate_from_body(&Vector3::x()), Err(Singular::FullTurn));
+        assert_eq!(vector.rate_from_space(&Vector3::x()), Err(Singular::FullTurn));
+        assert!(vector.omega_body(&Vector3::x()).iter().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn rates_of_gibbs_vectors_agree_with_the_motion() {
+    let mut random = Random(15);
+    for size in [0.0, 1e-200, 1e-9, 0.1, 1.0, 3.0, 1e3, 1e8] {
+        for _ in 0..20 {
+            let g = Gibbs(random.axis() * size);
+            let (omega, rotation) = (random.vector(), g.rotation());
+            let rate = g.rate_from_body(&omega);
+            let relative = 1.0 + size * size;
+            below(far(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
+            below(far(&g.omega_space(&rate), &(rotation * omega)), 2e-15 * (1.0 + size), size);
+            below(far(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
+            // By differences only where the vector is of order one.
+            if size <= 1.0 {
+                let rate = random.vector();
+                let found = turning(|t| Gibbs(g.0 + rate * t).quaternion());
+                below(far(&g.omega_body(&rate), &found), 1e-11, size);
+            }
+        }
+    }
+}
+
+#[test]
+fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
+    let mut random = Random(16);
+    for size in [0.0, 1e-200, 1e-9, 0.1, 0.9, 1.0, 1.1, 3.0, 1e3, 1e6] {
+        for _ in 0..20 {
+            let sigma = Mrp(random.axis() * size);
+            let (omega, rotation) = (random.vector(), sigma.rotation());
+            let rate = sigma.rate_from_body(&omega);
+            let relative = 1.0 + size * size;
+            below(far(&rate, &sigma.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
+            below(far(&sigma.omega_body(&rate), &omega), 2e-15, size);
+            below(far(&sigma.omega_space(&rate), &(rotation * omega)), 2e-15, size);
+            if size <= 3.0 {
+                let rate = random.vector();
+                let found = turning(|t| Mrp(sigma.0 + rate * t).quaternion());
+                below(far(&sigma.omega_body(&rate), &found), 1e-9, size);
+            }
+            // The shadow turns as the vector itself does.
+            if let (Ok(shadow), Ok(shadow_rate)) = (sigma.shadow(), sigma.shadow_rate(&rate)) {
+                let relative = 1.0 + shadow.0.norm_squared();
+                below(far(&shadow_rate, &shadow.rate_from_body(&omega)) / relative, 2e-15, size);
+            }
+        }
+    }
+}
+
+#[test]
+fn integrated_with_switching_the_vector_stays_in_the_ball() {
+    // Steady spin about a body axis, classical Runge–Kutta: many full turns.
+    let omega = Vector3::new(1.0, -2.0, 0.5);
+    let (h, steps) = (0.002, 10_000);
+    let mut sigma = Mrp(Vector3::zeros());
+    for _ in 0..steps {
+        let rate = |s: Vector3<f64>| Mrp(s).rate_from_body(&omega);
+        let a = rate(sigma.0);
+        let b = rate(sigma.0 + a * (h / 2.0));
+        let c = rate(sigma.0 + b * (h / 2.0));
+        let d = rate(sigma.0 + c * h);
+        sigma = Mrp(sigma.0 + (a + (b + c) * 2.0 + d) * (h / 6.0)).switched();
+        assert!(sigma.0.norm() <= 1.0);
+    }
+    let exact = RotationVector(omega * (h * f64::from(steps))).rotation();
+    below(far(sigma.rotation().matrix(), exact.matrix()), 1e-10, sigma);
+}

@@ -1,8 +1,0 @@
-use linkwork::prelude::*;
-
-struct Machine;
-
-#[mechanism]
-impl Machine {}
-
-fn main() {}

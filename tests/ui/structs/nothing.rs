@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism]
-struct Machine;
-
-fn main() {}

@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/entity_bomb.urdf")]
-struct Robot;
-
-fn main() {}

@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/infinite.urdf")]
-struct Robot;
-
-fn main() {}

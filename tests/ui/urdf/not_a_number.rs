@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/not_a_number.urdf")]
-struct Robot;
-
-fn main() {}

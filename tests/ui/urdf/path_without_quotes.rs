@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = arm.urdf)]
-struct Robot;
-
-fn main() {}

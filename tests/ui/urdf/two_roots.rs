@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/two_roots.urdf")]
-struct Robot;
-
-fn main() {}

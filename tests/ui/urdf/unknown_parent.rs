@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/unknown_parent.urdf")]
-struct Robot;
-
-fn main() {}

@@ -1,8 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/arm.urdf")]
-struct Robot {
-    mass: f64,
-}
-
-fn main() {}
