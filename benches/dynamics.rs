@@ -1,0 +1,25 @@
+//! Every generated function next to the generic implementation, on 256 random states in turn.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use linkwork_benches::pairs::robots;
+
+fn dynamics(criterion: &mut Criterion) {
+    for robot in robots() {
+        let mut group = criterion.benchmark_group(robot.name);
+        for mut pair in robot.pairs {
+            for (which, run) in [("generated", &mut pair.generated), ("generic", &mut pair.generic)] {
+                let mut state = 0;
+                group.bench_function(format!("{}/{which}", pair.function), |bencher| {
+                    bencher.iter(|| {
+                        state += 1;
+                        run(state);
+                    });
+                });
+            }
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, dynamics);
+criterion_main!(benches);

@@ -1,0 +1,56 @@
+//! Generated functions and the generic implementation, side by side in one table.
+//!
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the flag for the
+//! default target. Nanoseconds of one call: the least over many batches, in which both take turns.
+
+use linkwork_benches::pairs::{Pair, STATES, robots};
+use std::time::{Duration, Instant};
+
+/// How long each function is measured.
+const BUDGET: Duration = Duration::from_millis(700);
+
+fn main() {
+    let fused = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+    println!(
+        "{}, fused multiply-add {}; operations: mul + add + div (instructions if fused) + sin, cos\n",
+        std::env::consts::ARCH,
+        if fused { "used" } else { "not used" }
+    );
+    println!("| robot | function | generated, ns | generic, ns | ratio | operations |");
+    println!("| --- | --- | ---: | ---: | ---: | ---: |");
+    for robot in robots() {
+        for mut pair in robot.pairs {
+            let (generated, generic) = measure(&mut pair);
+            let size = pair.size;
+            println!(
+                "| {} | {} | {generated:.1} | {generic:.0} | {:.1} | {} ({}) + {} |",
+                robot.name,
+                pair.function,
+                generic / generated,
+                size.operations,
+                size.fused,
+                size.calls
+            );
+        }
+    }
+}
+
+/// Nanoseconds of a call of each.
+fn measure(pair: &mut Pair) -> (f64, f64) {
+    let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
+    let start = Instant::now();
+    while start.elapsed() < BUDGET {
+        generated = generated.min(batch(&mut pair.generated));
+        generic = generic.min(batch(&mut pair.generic));
+    }
+    let each = |time: Duration| time.as_secs_f64() * 1e9 / STATES as f64;
+    (each(generated), each(generic))
+}
+
+fn batch(f: &mut dyn FnMut(usize)) -> Duration {
+    let start = Instant::now();
+    for k in 0..STATES {
+        f(k);
+    }
+    start.elapsed()
+}

@@ -1,0 +1,377 @@
+//! What a competent engineer writes by hand: rigid-body dynamics of any tree of links, read at run time.
+//!
+//! The recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7, in link axes, on
+//! nalgebra's fixed 3-vectors and 3×3 matrices, with all intermediate results in a [`Data`] that is made once: nothing
+//! allocates. Written without the compiler's crates, so that it is an oracle for the generated code as well.
+
+mod spatial;
+mod urdf;
+
+pub use spatial::{Articulated, Inertia, Placement, Spatial};
+pub use urdf::Options;
+
+use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
+
+/// How a link moves in its parent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// Rotation about an axis.
+    Turn(Unit<Vector3<f64>>),
+    /// Translation along an axis.
+    Slide(Unit<Vector3<f64>>),
+    /// All motions: q = position, quaternion x y z w; v = linear, angular velocity in link axes.
+    Free,
+}
+
+impl Motion {
+    /// Number of entries of `q` and of `v`.
+    fn sizes(self) -> (usize, usize) {
+        match self {
+            Motion::Turn(_) | Motion::Slide(_) => (1, 1),
+            Motion::Free => (7, 6),
+        }
+    }
+
+    /// Column `k` of the motion subspace.
+    fn subspace(self, k: usize) -> Spatial {
+        match self {
+            Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis),
+            Motion::Slide(axis) => Spatial::new(*axis, Vector3::zeros()),
+            Motion::Free => Spatial::unit(k),
+        }
+    }
+
+    /// The motion subspace times the rates.
+    fn twist(self, rates: &[f64]) -> Spatial {
+        match self {
+            Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis * rates[0]),
+            Motion::Slide(axis) => Spatial::new(*axis * rates[0], Vector3::zeros()),
+            Motion::Free => Spatial::from_slice(rates),
+        }
+    }
+
+    /// Placement of the link in the joint's frame.
+    fn placement(self, q: &[f64]) -> Placement {
+        match self {
+            Motion::Turn(axis) => Placement::new(rotation(&axis, q[0]), Vector3::zeros()),
+            Motion::Slide(axis) => Placement::new(Matrix3::identity(), *axis * q[0]),
+            Motion::Free => {
+                let quaternion = Quaternion::new(q[6], q[3], q[4], q[5]);
+                let rotation = UnitQuaternion::new_unchecked(quaternion).to_rotation_matrix();
+                Placement::new(rotation.into_inner(), Vector3::new(q[0], q[1], q[2]))
+            }
+        }
+    }
+}
+
+/// Rodrigues's formula.
+fn rotation(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    let (u, k) = (n * s, n * (1.0 - c));
+    Matrix3::new(
+        c + k.x * n.x,
+        k.x * n.y - u.z,
+        k.x * n.z + u.y,
+        k.y * n.x + u.z,
+        c + k.y * n.y,
+        k.y * n.z - u.x,
+        k.z * n.x - u.y,
+        k.z * n.y + u.x,
+        c + k.z * n.z,
+    )
+}
+
+/// A moving link, with everything that is fixed to it.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Parent link, whose index is smaller; the ground if none.
+    pub parent: Option<usize>,
+    /// The joint's frame on the parent.
+    pub placement: Placement,
+    /// How the link moves in the joint's frame.
+    pub motion: Motion,
+    /// First entry of `q`.
+    pub q: usize,
+    /// First entry of `v`.
+    pub v: usize,
+    /// Mass properties.
+    pub inertia: Inertia,
+}
+
+/// A named frame, fixed in a link or in the ground.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Its name.
+    pub name: String,
+    /// The link; the ground if none.
+    pub link: Option<usize>,
+    /// Placement in the link.
+    pub placement: Placement,
+}
+
+/// A mechanism.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Links, parents first.
+    pub links: Vec<Link>,
+    /// Named frames.
+    pub frames: Vec<Frame>,
+    /// Gravity in ground axes.
+    pub gravity: Vector3<f64>,
+    /// Number of entries of `q`.
+    pub nq: usize,
+    /// Number of entries of `v`.
+    pub nv: usize,
+}
+
+/// Intermediate results of one link.
+#[derive(Clone, Debug)]
+struct LinkData {
+    placement: Placement,
+    twist: Spatial,
+    acceleration: Spatial,
+    wrench: Spatial,
+    composite: Inertia,
+    articulated: Articulated,
+    /// `U = IA s`, `1 / D` and `u = τ − s · pA` of a joint with one degree of freedom.
+    column: Spatial,
+    inverse: f64,
+    force: f64,
+}
+
+/// Room for the intermediate results of a model.
+#[derive(Clone, Debug)]
+pub struct Data(Vec<LinkData>);
+
+impl Model {
+    /// Reads a URDF file.
+    pub fn from_urdf(text: &str, options: &Options<'_>) -> Result<Model, String> {
+        urdf::read(text, options)
+    }
+
+    /// Room for intermediate results.
+    pub fn data(&self) -> Data {
+        let of_link = |link: &Link| LinkData {
+            placement: link.placement,
+            twist: Spatial::zero(),
+            acceleration: Spatial::zero(),
+            wrench: Spatial::zero(),
+            composite: link.inertia,
+            articulated: Articulated::rigid(&link.inertia),
+            column: Spatial::zero(),
+            inverse: 0.0,
+            force: 0.0,
+        };
+        Data(self.links.iter().map(of_link).collect())
+    }
+
+    fn place(&self, data: &mut Data, q: &[f64]) {
+        for (link, d) in self.links.iter().zip(&mut data.0) {
+            d.placement = link.placement.then(&link.motion.placement(&q[link.q..]));
+        }
+    }
+
+    /// Inverse dynamics `τ = M a + h` (the bias `h` alone without accelerations): recursive Newton–Euler algorithm.
+    pub fn inverse_dynamics(
+        &self,
+        data: &mut Data,
+        q: &[f64],
+        v: &[f64],
+        a: Option<&[f64]>,
+        tau: &mut [f64],
+    ) {
+        self.place(data, q);
+        self.move_outward(data, v, a);
+        for (k, link) in self.links.iter().enumerate().rev() {
+            let d = &data.0[k];
+            let (wrench, placement) = (d.wrench, d.placement);
+            for dof in 0..link.motion.sizes().1 {
+                tau[link.v + dof] = link.motion.subspace(dof).dot(&wrench);
+            }
+            if let Some(p) = link.parent {
+                data.0[p].wrench += placement.wrench_to_parent(&wrench);
+            }
+        }
+    }
+
+    /// Twists, accelerations and the wrenches that they take, link by link.
+    fn move_outward(&self, data: &mut Data, v: &[f64], a: Option<&[f64]>) {
+        for (k, link) in self.links.iter().enumerate() {
+            let nv = link.motion.sizes().1;
+            let (before, rest) = data.0.split_at_mut(k);
+            let d = &mut rest[0];
+            let own = link.motion.twist(&v[link.v..link.v + nv]);
+            let (parent_twist, parent_acceleration) = match link.parent {
+                Some(p) => (before[p].twist, before[p].acceleration),
+                None => (Spatial::zero(), Spatial::new(-self.gravity, Vector3::zeros())),
+            };
+            d.twist = d.placement.twist_to_child(&parent_twist) + own;
+            d.acceleration = d.placement.twist_to_child(&parent_acceleration) + d.twist.cross(&own);
+            if let Some(a) = a {
+                d.acceleration += link.motion.twist(&a[link.v..link.v + nv]);
+            }
+            let momentum = link.inertia.times(&d.twist);
+            d.wrench = link.inertia.times(&d.acceleration) + d.twist.cross_force(&momentum);
+        }
+    }
+
+    /// Mass matrix, both triangles: composite-rigid-body algorithm.
+    pub fn mass_matrix(&self, data: &mut Data, q: &[f64], m: &mut DMatrix<f64>) {
+        self.place(data, q);
+        for (link, d) in self.links.iter().zip(&mut data.0) {
+            d.composite = link.inertia;
+        }
+        for (k, link) in self.links.iter().enumerate().rev() {
+            if let Some(p) = link.parent {
+                let moved = data.0[k].composite.to_parent(&data.0[k].placement);
+                data.0[p].composite += moved;
+            }
+        }
+        m.fill(0.0);
+        for (k, link) in self.links.iter().enumerate() {
+            for dof in 0..link.motion.sizes().1 {
+                let mut wrench = data.0[k].composite.times(&link.motion.subspace(dof));
+                let row = link.v + dof;
+                let mut at = k;
+                loop {
+                    let other = &self.links[at];
+                    let count = if at == k { dof + 1 } else { other.motion.sizes().1 };
+                    for c in 0..count {
+                        let entry = other.motion.subspace(c).dot(&wrench);
+                        m[(row, other.v + c)] = entry;
+                        m[(other.v + c, row)] = entry;
+                    }
+                    let Some(parent) = other.parent else { break };
+                    wrench = data.0[at].placement.wrench_to_parent(&wrench);
+                    at = parent;
+                }
+            }
+        }
+    }
+
+    /// Forward dynamics `v̇ = M⁻¹ (τ − h)`: articulated-body algorithm.
+    pub fn forward_dynamics(&self, data: &mut Data, q: &[f64], v: &[f64], tau: &[f64], a: &mut [f64]) {
+        self.place(data, q);
+        for (k, link) in self.links.iter().enumerate() {
+            let own = link.motion.twist(&v[link.v..]);
+            let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
+            let d = &mut data.0[k];
+            d.twist = d.placement.twist_to_child(&parent) + own;
+            d.acceleration = d.twist.cross(&own);
+            d.articulated = Articulated::rigid(&link.inertia);
+            d.wrench = d.twist.cross_force(&link.inertia.times(&d.twist));
+        }
+        for (k, link) in self.links.iter().enumerate().rev() {
+            let d = &mut data.0[k];
+            let (inertia, wrench) = match link.motion {
+                // All the force is the joint's: nothing is left for the parent to move.
+                Motion::Free => (None, Spatial::from_slice(&tau[link.v..])),
+                Motion::Turn(_) | Motion::Slide(_) => {
+                    let s = link.motion.subspace(0);
+                    d.column = d.articulated.times(&s);
+                    d.inverse = 1.0 / s.dot(&d.column);
+                    d.force = tau[link.v] - s.dot(&d.wrench);
+                    let reduced = d.articulated.without(&d.column, d.inverse);
+                    let wrench = d.wrench + reduced.times(&d.acceleration) + d.column * (d.force * d.inverse);
+                    (Some(reduced), wrench)
+                }
+            };
+            let placement = d.placement;
+            if let Some(p) = link.parent {
+                let parent = &mut data.0[p];
+                parent.wrench += placement.wrench_to_parent(&wrench);
+                if let Some(inertia) = inertia {
+                    parent.articulated += inertia.to_parent(&placement);
+                }
+            }
+        }
+        for (k, link) in self.links.iter().enumerate() {
+            let (before, rest) = data.0.split_at_mut(k);
+            let d = &mut rest[0];
+            let parent = match link.parent {
+                Some(p) => before[p].acceleration,
+                None => Spatial::new(-self.gravity, Vector3::zeros()),
+            };
+            let carried = d.placement.twist_to_child(&parent) + d.acceleration;
+            match link.motion {
+                Motion::Free => {
+                    let force = Spatial::from_slice(&tau[link.v..]) - d.wrench;
+                    d.acceleration = d.articulated.solve(&force);
+                    let own: Vector6<f64> = (d.acceleration - carried).vector();
+                    a[link.v..link.v + 6].copy_from_slice(own.as_slice());
+                }
+                Motion::Turn(_) | Motion::Slide(_) => {
+                    let own = (d.force - d.column.dot(&carried)) * d.inverse;
+                    a[link.v] = own;
+                    d.acceleration = carried + link.motion.subspace(0) * own;
+                }
+            }
+        }
+    }
+
+    /// Kinetic energy.
+    pub fn kinetic_energy(&self, data: &mut Data, q: &[f64], v: &[f64]) -> f64 {
+        self.place(data, q);
+        let mut twice = 0.0;
+        for (k, link) in self.links.iter().enumerate() {
+            let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
+            let d = &mut data.0[k];
+            d.twist = d.placement.twist_to_child(&parent) + link.motion.twist(&v[link.v..]);
+            twice += d.twist.dot(&link.inertia.times(&d.twist));
+        }
+        0.5 * twice
+    }
+
+    /// The index of a frame.
+    pub fn frame(&self, name: &str) -> Option<usize> {
+        self.frames.iter().position(|frame| frame.name == name)
+    }
+
+    /// Jacobian of a frame: velocity of its origin, then angular velocity, in ground axes.
+    pub fn frame_jacobian(&self, data: &mut Data, frame: usize, q: &[f64], jacobian: &mut Matrix6xX<f64>) {
+        jacobian.fill(0.0);
+        let frame = &self.frames[frame];
+        // From the frame inwards: where the ancestors are seen from it, in the frame's axes …
+        let mut seen = frame.placement.inverse();
+        let mut at = frame.link;
+        while let Some(k) = at {
+            let link = &self.links[k];
+            let d = &mut data.0[k];
+            d.placement = link.placement.then(&link.motion.placement(&q[link.q..]));
+            for dof in 0..link.motion.sizes().1 {
+                let column = seen.twist_to_parent(&link.motion.subspace(dof));
+                jacobian.set_column(link.v + dof, &column.vector());
+            }
+            seen = seen.then(&d.placement.inverse());
+            at = link.parent;
+        }
+        // … and then all columns in the ground's.
+        let axes = seen.rotation.transpose();
+        at = frame.link;
+        while let Some(k) = at {
+            let link = &self.links[k];
+            for column in link.v..link.v + link.motion.sizes().1 {
+                let turned = Spatial::from_slice(jacobian.column(column).as_slice()).map(|v| axes * v);
+                jacobian.set_column(column, &turned.vector());
+            }
+            at = link.parent;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::pairs;
+
+    /// The two know nothing of each other but the file.
+    #[test]
+    fn generated_and_generic_code_agree() {
+        for robot in pairs::robots() {
+            for mut pair in robot.pairs {
+                let error = (0..pairs::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);
+                println!("{}, {}: {error:.1e}", robot.name, pair.function);
+                assert!(error <= 1e-9, "{}, {}: {error:e}", robot.name, pair.function);
+            }
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! Spatial algebra: twists and wrenches (linear part first), placements, inertias.
+
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use std::ops::{Add, AddAssign, Mul, Sub};
+
+/// A twist (velocity of the origin, angular velocity) or a wrench (force, moment about the origin).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spatial {
+    /// Velocity or force.
+    pub linear: Vector3<f64>,
+    /// Angular velocity or moment.
+    pub angular: Vector3<f64>,
+}
+
+impl Spatial {
+    /// Of its parts.
+    pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> Spatial {
+        Spatial { linear, angular }
+    }
+
+    /// Zero.
+    pub fn zero() -> Spatial {
+        Spatial::new(Vector3::zeros(), Vector3::zeros())
+    }
+
+    /// Entry `k` one, the others zero.
+    pub fn unit(k: usize) -> Spatial {
+        let mut s = Spatial::zero();
+        let part = if k < 3 { &mut s.linear } else { &mut s.angular };
+        part[k % 3] = 1.0;
+        s
+    }
+
+    /// From the first six numbers.
+    pub fn from_slice(s: &[f64]) -> Spatial {
+        Spatial::new(Vector3::new(s[0], s[1], s[2]), Vector3::new(s[3], s[4], s[5]))
+    }
+
+    /// All six numbers.
+    pub fn vector(&self) -> Vector6<f64> {
+        let (l, a) = (self.linear, self.angular);
+        Vector6::new(l.x, l.y, l.z, a.x, a.y, a.z)
+    }
+
+    /// Both parts with a function applied.
+    pub fn map(&self, f: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Spatial {
+        Spatial::new(f(&self.linear), f(&self.angular))
+    }
+
+    /// Twist dotted with wrench: a power.
+    pub fn dot(&self, other: &Spatial) -> f64 {
+        self.linear.dot(&other.linear) + self.angular.dot(&other.angular)
+    }
+
+    /// The rate of a twist that is carried along by this one.
+    pub fn cross(&self, other: &Spatial) -> Spatial {
+        Spatial::new(
+            self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
+            self.angular.cross(&other.angular),
+        )
+    }
+
+    /// The rate of a wrench that is carried along by this twist.
+    pub fn cross_force(&self, wrench: &Spatial) -> Spatial {
+        Spatial::new(
+            self.angular.cross(&wrench.linear),
+            self.angular.cross(&wrench.angular) + self.linear.cross(&wrench.linear),
+        )
+    }
+}
+
+impl Add for Spatial {
+    type Output = Spatial;
+    fn add(self, b: Spatial) -> Spatial {
+        Spatial::new(self.linear + b.linear, self.angular + b.angular)
+    }
+}
+
+impl Sub for Spatial {
+    type Output = Spatial;
+    fn sub(self, b: Spatial) -> Spatial {
+        Spatial::new(self.linear - b.linear, self.angular - b.angular)
+    }
+}
+
+impl AddAssign for Spatial {
+    fn add_assign(&mut self, b: Spatial) {
+        *self = *self + b;
+    }
+}
+
+impl Mul<f64> for Spatial {
+    type Output = Spatial;
+    fn mul(self, s: f64) -> Spatial {
+        Spatial::new(self.linear * s, self.angular * s)
+    }
+}
+
+/// Where a child frame is in a parent frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Columns are the child's axes in the parent's.
+    pub rotation: Matrix3<f64>,
+    /// The child's origin, in parent axes.
+    pub translation: Vector3<f64>,
+}
+
+impl Placement {
+    /// Of its parts.
+    pub fn new(rotation: Matrix3<f64>, translation: Vector3<f64>) -> Placement {
+        Placement { rotation, translation }
+    }
+
+    /// The child frame is the parent frame.
+    pub fn identity() -> Placement {
+        Placement::new(Matrix3::identity(), Vector3::zeros())
+    }
+
+    /// This placement, then another in the child frame.
+    pub fn then(&self, next: &Placement) -> Placement {
+        Placement::new(self.rotation * next.rotation, self.translation + self.rotation * next.translation)
+    }
+
+    /// The parent frame in the child frame.
+    pub fn inverse(&self) -> Placement {
+        let rotation = self.rotation.transpose();
+        Placement::new(rotation, -(rotation * self.translation))
+    }
+
+    /// A twist of the parent's frame, at the child's.
+    pub fn twist_to_child(&self, t: &Spatial) -> Spatial {
+        Spatial::new(
+            self.rotation.tr_mul(&(t.linear + t.angular.cross(&self.translation))),
+            self.rotation.tr_mul(&t.angular),
+        )
+    }
+
+    /// A twist of the child's frame, at the parent's.
+    pub fn twist_to_parent(&self, t: &Spatial) -> Spatial {
+        let angular = self.rotation * t.angular;
+        Spatial::new(self.rotation * t.linear + self.translation.cross(&angular), angular)
+    }
+
+    /// A wrench at the child's frame, at the parent's.
+    pub fn wrench_to_parent(&self, w: &Spatial) -> Spatial {
+        let force = self.rotation * w.linear;
+        Spatial::new(force, self.rotation * w.angular + self.translation.cross(&force))
+    }
+}
+
+/// Mass properties about a frame's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass.
+    pub mass: f64,
+    /// Mass times centre of mass.
+    pub moment: Vector3<f64>,
+    /// Inertia about the origin.
+    pub tensor: Matrix3<f64>,
+}
+
+impl Inertia {
+    /// Nothing.
+    pub fn zero() -> Inertia {
+        Inertia { mass: 0.0, moment: Vector3::zeros(), tensor: Matrix3::zeros() }
+    }
+
+    /// A body with its centre of mass at `c` and an inertia about it.
+    pub fn of_body(mass: f64, c: Vector3<f64>, central: Matrix3<f64>) -> Inertia {
+        Inertia {
+            mass,
+            moment: c * mass,
+            tensor: central + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * mass,
+        }
+    }
+
+    /// Momentum of a twist.
+    pub fn times(&self, t: &Spatial) -> Spatial {
+        Spatial::new(
+            t.linear * self.mass + t.angular.cross(&self.moment),
+            self.tensor * t.angular + self.moment.cross(&t.linear),
+        )
+    }
+
+    /// The same about the parent's origin, in parent axes.
+    pub fn to_parent(&self, placement: &Placement) -> Inertia {
+        let (r, p) = (&placement.rotation, &placement.translation);
+        let h = r * self.moment;
+        let s = h + p * (0.5 * self.mass);
+        let outer = p * s.transpose();
+        let tensor = r * self.tensor * r.transpose() + Matrix3::identity() * (2.0 * p.dot(&s))
+            - outer
+            - outer.transpose();
+        Inertia { mass: self.mass, moment: h + p * self.mass, tensor }
+    }
+}
+
+impl AddAssign for Inertia {
+    fn add_assign(&mut self, b: Inertia) {
+        self.mass += b.mass;
+        self.moment += b.moment;
+        self.tensor += b.tensor;
+    }
+}
+
+/// An articulated inertia: force `m a + hᵀ w`, moment `h a + i w` for an acceleration `(a, w)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Articulated {
+    /// Force by linear acceleration.
+    pub m: Matrix3<f64>,
+    /// Moment by linear acceleration.
+    pub h: Matrix3<f64>,
+    /// Moment by angular acceleration.
+    pub i: Matrix3<f64>,
+}
+
+impl Articulated {
+    /// Of a rigid body.
+    pub fn rigid(inertia: &Inertia) -> Articulated {
+        Articulated {
+            m: Matrix3::from_diagonal_element(inertia.mass),
+            h: inertia.moment.cross_matrix(),
+            i: inertia.tensor,
+        }
+    }
+
+    /// The wrench of an acceleration.
+    pub fn times(&self, a: &Spatial) -> Spatial {
+        Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
+    }
+
+    /// `IA − U Uᵀ / D`.
+    pub fn without(&self, u: &Spatial, inverse: f64) -> Articulated {
+        let scaled = *u * inverse;
+        Articulated {
+            m: self.m - scaled.linear * u.linear.transpose(),
+            h: self.h - scaled.angular * u.linear.transpose(),
+            i: self.i - scaled.angular * u.angular.transpose(),
+        }
+    }
+
+    /// The same about the parent's origin, in parent axes.
+    pub fn to_parent(&self, placement: &Placement) -> Articulated {
+        let r = &placement.rotation;
+        let turned = |x: &Matrix3<f64>| r * x * r.transpose();
+        let p = placement.translation.cross_matrix();
+        let m = turned(&self.m);
+        let h = turned(&self.h);
+        let moved = h + p * m;
+        Articulated { m, h: moved, i: turned(&self.i) - moved * p + p * h.transpose() }
+    }
+
+    /// The acceleration that a wrench gives.
+    pub fn solve(&self, wrench: &Spatial) -> Spatial {
+        let mut full = Matrix6::zeros();
+        full.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.m);
+        full.fixed_view_mut::<3, 3>(0, 3).copy_from(&self.h.transpose());
+        full.fixed_view_mut::<3, 3>(3, 0).copy_from(&self.h);
+        full.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.i);
+        let nothing = Vector6::from_element(f64::NAN);
+        let solved = full.cholesky().map_or(nothing, |factors| factors.solve(&wrench.vector()));
+        Spatial::from_slice(solved.as_slice())
+    }
+}
+
+impl AddAssign for Articulated {
+    fn add_assign(&mut self, b: Articulated) {
+        self.m += b.m;
+        self.h += b.h;
+        self.i += b.i;
+    }
+}

@@ -1,0 +1,153 @@
+//! A URDF file → a [`Model`]: links that are fixed to others are lumped into them; coordinates depth first, the joints
+//! of one link in alphabetical order.
+
+use super::{Frame, Inertia, Link, Model, Motion, Placement};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use roxmltree::{Document, Node};
+
+/// How a file is read. Mimic joints are independent.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options<'a> {
+    /// The root moves freely.
+    pub free: bool,
+    /// Joints that stay at zero.
+    pub lock: &'a [&'a str],
+}
+
+/// Reads a file.
+pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
+    let document = Document::parse(text).map_err(|e| e.to_string())?;
+    let robot = document.root_element();
+    let children = |kind: &'static str| robot.children().filter(move |n| n.has_tag_name(kind));
+    let mut joints: Vec<Node<'_, '_>> = children("joint").collect();
+    joints.sort_by_key(|joint| joint.attribute("name"));
+    let links: Vec<Node<'_, '_>> = children("link").collect();
+    let is_child = |link: &Node<'_, '_>| joints.iter().any(|j| end(j, "child") == link.attribute("name"));
+    let root = links.iter().find(|link| !is_child(link)).ok_or("no root link")?;
+    let mut reader = Reader {
+        joints: &joints,
+        links: &links,
+        lock: options.lock,
+        model: Model {
+            links: Vec::new(),
+            frames: Vec::new(),
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+            nq: 0,
+            nv: 0,
+        },
+    };
+    let at = options.free.then(|| reader.add(None, Placement::identity(), Motion::Free));
+    reader.link(root.attribute("name").unwrap_or_default(), at, Placement::identity())?;
+    Ok(reader.model)
+}
+
+/// The link at one end of a joint.
+fn end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
+    let node = joint.children().find(|n| n.has_tag_name(which))?;
+    node.attribute("link")
+}
+
+struct Reader<'a, 'd, 'i> {
+    joints: &'a [Node<'d, 'i>],
+    links: &'a [Node<'d, 'i>],
+    lock: &'a [&'a str],
+    model: Model,
+}
+
+impl Reader<'_, '_, '_> {
+    /// Adds a moving link without mass yet; its index.
+    fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
+        let (nq, nv) = motion.sizes();
+        let (q, v) = (self.model.nq, self.model.nv);
+        self.model.nq += nq;
+        self.model.nv += nv;
+        self.model.links.push(Link { parent, placement, motion, q, v, inertia: Inertia::zero() });
+        self.model.links.len() - 1
+    }
+
+    /// Reads a link that is fixed at `placement` in the moving link `at`, and all that hangs from it.
+    fn link(&mut self, name: &str, at: Option<usize>, placement: Placement) -> Result<(), String> {
+        self.model.frames.push(Frame { name: name.to_string(), link: at, placement });
+        let node = self.links.iter().find(|n| n.attribute("name") == Some(name));
+        let node = node.ok_or_else(|| format!("no link `{name}`"))?;
+        if let (Some(at), Some(inertial)) = (at, node.children().find(|n| n.has_tag_name("inertial"))) {
+            self.model.links[at].inertia += inertia(&inertial)?.to_parent(&placement);
+        }
+        for joint in self.joints.iter().filter(|j| end(j, "parent") == Some(name)) {
+            let child = end(joint, "child").ok_or("a joint without child")?;
+            let origin = placement.then(&origin(joint)?);
+            match self.motion(joint)? {
+                None => self.link(child, at, origin)?,
+                Some(motion) => {
+                    let link = self.add(at, origin, motion);
+                    self.link(child, Some(link), Placement::identity())?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// How a joint moves; not at all if it is fixed or locked.
+    fn motion(&self, joint: &Node<'_, '_>) -> Result<Option<Motion>, String> {
+        let name = joint.attribute("name").unwrap_or_default();
+        if self.lock.contains(&name) {
+            return Ok(None);
+        }
+        if joint.children().any(|n| n.has_tag_name("dynamics")) {
+            return Err(format!("joint `{name}`: damping and friction are not supported"));
+        }
+        let axis = joint.children().find(|n| n.has_tag_name("axis"));
+        let axis = axis.map_or(Ok(Vector3::x()), |n| vector(&n, "xyz"))?;
+        let axis = Unit::try_new(axis, 1e-9).ok_or_else(|| format!("joint `{name}`: the axis is zero"))?;
+        match joint.attribute("type").unwrap_or_default() {
+            "fixed" => Ok(None),
+            "revolute" | "continuous" => Ok(Some(Motion::Turn(axis))),
+            "prismatic" => Ok(Some(Motion::Slide(axis))),
+            "floating" => Ok(Some(Motion::Free)),
+            other => Err(format!("joint `{name}`: type `{other}` is not supported")),
+        }
+    }
+}
+
+/// An `<origin>`.
+fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
+    let Some(node) = parent.children().find(|n| n.has_tag_name("origin")) else {
+        return Ok(Placement::identity());
+    };
+    let angles = vector(&node, "rpy")?;
+    let rotation = Rotation3::from_euler_angles(angles.x, angles.y, angles.z);
+    Ok(Placement::new(rotation.into_inner(), vector(&node, "xyz")?))
+}
+
+/// An `<inertial>`.
+fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
+    let find = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
+    let mass = find("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;
+    let mut entries = [0.0; 6];
+    if let Some(node) = find("inertia") {
+        for (entry, key) in entries.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
+            *entry = number(&node, key)?;
+        }
+    }
+    let [xx, xy, xz, yy, yz, zz] = entries;
+    let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let central = Inertia::of_body(mass, Vector3::zeros(), tensor);
+    Ok(central.to_parent(&origin(inertial)?))
+}
+
+fn number(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {
+    let text = node.attribute(key).unwrap_or("0");
+    text.trim().parse().map_err(|_| format!("`{text}` is no number"))
+}
+
+/// Three numbers; zero if absent.
+fn vector(node: &Node<'_, '_>, key: &str) -> Result<Vector3<f64>, String> {
+    let Some(text) = node.attribute(key) else {
+        return Ok(Vector3::zeros());
+    };
+    let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) => Ok(Vector3::new(x, y, z)),
+        _ => Err(format!("`{text}` are not three numbers")),
+    }
+}

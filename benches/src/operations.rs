@@ -1,0 +1,76 @@
+//! Operations of generated functions, counted by the compiler.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::emit::Output;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::lower::Program;
+use linkwork_compiler::{compile, read};
+use proc_macro2::TokenStream;
+use std::path::Path;
+
+/// Operations of one function.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Size {
+    /// Multiplications, additions and divisions.
+    pub operations: usize,
+    /// The same with a product and its sum as one instruction.
+    pub fused: usize,
+    /// Elementary functions.
+    pub calls: usize,
+}
+
+impl Size {
+    fn of<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
+        let mut size = Size::default();
+        for program in programs {
+            size.operations += program.counts.total();
+            size.fused += program.instructions.len() - program.counts.calls;
+            size.calls += program.counts.calls;
+        }
+        size
+    }
+}
+
+/// Everything that the compiler derives of a mechanism.
+pub struct Operations {
+    output: Output,
+    /// Number of nodes of the expressions' graph.
+    pub nodes: usize,
+    /// Number of velocities.
+    pub velocities: usize,
+}
+
+impl Operations {
+    /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if there is a mistake in it.
+    pub fn of(arguments: &str, item: &str) -> Operations {
+        let tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
+        let cx = &mut Diagnostics::new();
+        let graph = Graph::new();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let found = read(tokens(arguments), tokens(item), folder, cx);
+        let found = found.and_then(|source| compile(&source, &graph, cx));
+        let Some((model, output)) = found else {
+            panic!("{}", cx.messages().join("\n"));
+        };
+        Operations { output, nodes: graph.len(), velocities: model.nv() }
+    }
+
+    /// Those of a generated function; none if it does not exist.
+    pub fn function(&self, name: &str) -> Size {
+        let found = self.output.functions.iter().filter(|f| f.name == name);
+        Size::of(found.map(|f| &f.program))
+    }
+
+    /// Those of a frame's Jacobian: the steps along the path to its link.
+    pub fn jacobian(&self, frame: &str) -> Size {
+        let frame = self.output.frames.iter().find(|f| f.name == frame);
+        let mut programs: Vec<&Program> = frame.map(|f| &f.placement).into_iter().collect();
+        let mut at = frame.and_then(|f| f.link);
+        while let Some(k) = at {
+            let link = &self.output.links[k];
+            programs.extend([&link.placement, &link.columns]);
+            at = link.parent;
+        }
+        Size::of(programs)
+    }
+}

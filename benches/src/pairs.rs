@@ -1,0 +1,249 @@
+//! Generated functions next to the generic implementation of the same, on the same random states.
+
+use crate::generic::{Data, Model, Motion, Options};
+use crate::operations::{Operations, Size};
+use crate::random::Random;
+use crate::robots::{Humanoid, Panda, PandaArm, Solo12, Ur5};
+use linkwork::{Mechanism, frame};
+use nalgebra::{DMatrix, DVector, Matrix6xX, SMatrix, SVector};
+use std::hint::black_box;
+use std::rc::Rc;
+
+/// Number of states that the calls go through, one after another.
+pub const STATES: usize = 256;
+
+/// A function of a robot, twice. The functions take the number of a state.
+pub struct Pair {
+    /// Its name.
+    pub function: &'static str,
+    /// Runs the generated code.
+    pub generated: Box<dyn FnMut(usize)>,
+    /// Runs the generic implementation.
+    pub generic: Box<dyn FnMut(usize)>,
+    /// The largest difference of the two results, relative to one plus their size.
+    pub difference: Box<dyn FnMut(usize) -> f64>,
+    /// Operations of the generated code.
+    pub size: Size,
+}
+
+/// A robot with its functions.
+pub struct Robot {
+    /// Its name.
+    pub name: &'static str,
+    /// Its functions.
+    pub pairs: Vec<Pair>,
+}
+
+/// All robots.
+pub fn robots() -> Vec<Robot> {
+    macro_rules! robot {
+        ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
+            let source = Source {
+                name: $name,
+                text: include_str!(concat!("../../models/urdf/", $file, ".urdf")),
+                options: $options,
+                arguments: concat!("urdf = \"../models/urdf/", $file, ".urdf\"", $arguments),
+                frame: $frame,
+            };
+            robot(&source, &$robot, |q| $robot.frame_jacobian(frame!($robot, $frame), q))
+        }};
+    }
+    let fixed = Options::default();
+    let free = Options { free: true, ..fixed };
+    let lock = &["panda_finger_joint1", "panda_finger_joint2"];
+    let locked = Options { lock, ..fixed };
+    vec![
+        robot!("ur5", Ur5, "ur5", "", fixed, "tool0"),
+        robot!(
+            "panda arm",
+            PandaArm,
+            "panda",
+            ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]",
+            locked,
+            "panda_hand"
+        ),
+        robot!("panda", Panda, "panda", ", mimic = independent", fixed, "panda_leftfinger"),
+        robot!("solo12", Solo12, "solo12", ", base = free", free, "HR_FOOT"),
+        robot!("simple_humanoid", Humanoid, "simple_humanoid", ", base = free", free, "r_wrist"),
+    ]
+}
+
+/// Where a robot comes from.
+struct Source {
+    name: &'static str,
+    /// The file's text and how the generic implementation reads it.
+    text: &'static str,
+    options: Options<'static>,
+    /// The attribute's arguments.
+    arguments: &'static str,
+    /// The frame of the Jacobian.
+    frame: &'static str,
+}
+
+/// What the functions take.
+struct State<const NQ: usize, const NV: usize> {
+    q: SVector<f64, NQ>,
+    v: SVector<f64, NV>,
+    a: SVector<f64, NV>,
+    tau: SVector<f64, NV>,
+}
+
+/// Random coordinates, unit quaternions; everything else of the order of one.
+fn random_state<const NQ: usize, const NV: usize>(model: &Model, random: &mut Random) -> State<NQ, NV> {
+    let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.within(3.0));
+    for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
+        let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
+        quaternion.normalize_mut();
+    }
+    let mut vector = || SVector::from_fn(|_, _| random.within(2.0));
+    State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
+}
+
+/// A generic model with all that its functions write to.
+struct Generic {
+    model: Rc<Model>,
+    data: Data,
+    vector: DVector<f64>,
+    matrix: DMatrix<f64>,
+    jacobian: Matrix6xX<f64>,
+    frame: usize,
+}
+
+/// Runs a generic function; its result.
+type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut Generic, &State<NQ, NV>) -> &'s [f64];
+
+fn robot<M, J, const NQ: usize, const NV: usize, const NU: usize>(
+    source: &Source,
+    robot: &'static M,
+    jacobian: J,
+) -> Robot
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+    J: Fn(&SVector<f64, NQ>) -> SMatrix<f64, 6, NV> + Copy + 'static,
+{
+    let model = Model::from_urdf(source.text, &source.options);
+    let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
+    assert_eq!((model.nq, model.nv), (NQ, NV), "{}", source.name);
+    let operations = Operations::of(source.arguments, "pub struct Robot;");
+    let mut random = Random::new(1);
+    let states: Vec<State<NQ, NV>> = (0..STATES).map(|_| random_state(&model, &mut random)).collect();
+    let bench =
+        Bench { frame: model.frame(source.frame).unwrap_or_default(), model, states: Rc::new(states) };
+    let pairs = vec![
+        bench.pair(
+            "mass matrix",
+            operations.function("mass_matrix"),
+            |s| robot.mass_matrix(&s.q),
+            |g, s| {
+                g.model.mass_matrix(&mut g.data, s.q.as_slice(), &mut g.matrix);
+                g.matrix.as_slice()
+            },
+        ),
+        bench.pair(
+            "bias forces",
+            operations.function("bias_forces"),
+            |s| robot.bias_forces(&s.q, &s.v),
+            |g, s| {
+                let tau = g.vector.as_mut_slice();
+                let (q, v) = (s.q.as_slice(), s.v.as_slice());
+                g.model.inverse_dynamics(&mut g.data, q, v, None, tau);
+                g.vector.as_slice()
+            },
+        ),
+        bench.pair(
+            "inverse dynamics",
+            operations.function("inverse_dynamics"),
+            |s| robot.inverse_dynamics(&s.q, &s.v, &s.a),
+            |g, s| {
+                let tau = g.vector.as_mut_slice();
+                let (q, v, a) = (s.q.as_slice(), s.v.as_slice(), s.a.as_slice());
+                g.model.inverse_dynamics(&mut g.data, q, v, Some(a), tau);
+                g.vector.as_slice()
+            },
+        ),
+        bench.pair(
+            "forward dynamics",
+            operations.function("forward_dynamics"),
+            |s| robot.forward_dynamics(&s.q, &s.v, &s.tau),
+            |g, s| {
+                let a = g.vector.as_mut_slice();
+                let (q, v, tau) = (s.q.as_slice(), s.v.as_slice(), s.tau.as_slice());
+                g.model.forward_dynamics(&mut g.data, q, v, tau, a);
+                g.vector.as_slice()
+            },
+        ),
+        bench.pair(
+            "kinetic energy",
+            operations.function("kinetic_energy"),
+            |s| SVector::<f64, 1>::new(robot.kinetic_energy(&s.q, &s.v)),
+            |g, s| {
+                let energy = g.model.kinetic_energy(&mut g.data, s.q.as_slice(), s.v.as_slice());
+                g.vector[0] = energy;
+                &g.vector.as_slice()[..1]
+            },
+        ),
+        bench.pair(
+            "frame Jacobian",
+            operations.jacobian(source.frame),
+            move |s| jacobian(&s.q),
+            |g, s| {
+                let q = s.q.as_slice();
+                g.model.frame_jacobian(&mut g.data, g.frame, q, &mut g.jacobian);
+                g.jacobian.as_slice()
+            },
+        ),
+    ];
+    Robot { name: source.name, pairs }
+}
+
+/// A model with its states.
+struct Bench<const NQ: usize, const NV: usize> {
+    model: Rc<Model>,
+    frame: usize,
+    states: Rc<Vec<State<NQ, NV>>>,
+}
+
+impl<const NQ: usize, const NV: usize> Bench<NQ, NV> {
+    fn generic(&self) -> Generic {
+        Generic {
+            model: self.model.clone(),
+            data: self.model.data(),
+            vector: DVector::zeros(NV),
+            matrix: DMatrix::zeros(NV, NV),
+            jacobian: Matrix6xX::zeros(NV),
+            frame: self.frame,
+        }
+    }
+
+    fn pair<F, const R: usize, const C: usize>(
+        &self,
+        function: &'static str,
+        size: Size,
+        generated: F,
+        generic: Run<NQ, NV>,
+    ) -> Pair
+    where
+        F: Fn(&State<NQ, NV>) -> SMatrix<f64, R, C> + Copy + 'static,
+    {
+        let (mut room, mut room_again) = (self.generic(), self.generic());
+        let [states, states_again, states_too] = [(); 3].map(|()| self.states.clone());
+        Pair {
+            function,
+            generated: Box::new(move |k| {
+                let result = generated(black_box(&states[k % STATES]));
+                black_box(&result);
+            }),
+            generic: Box::new(move |k| {
+                black_box(generic(&mut room, black_box(&states_again[k % STATES])));
+            }),
+            difference: Box::new(move |k| {
+                let state = &states_too[k % STATES];
+                let (found, expected) = (generated(state), generic(&mut room_again, state));
+                assert_eq!(found.as_slice().len(), expected.len(), "{function}");
+                let errors = found.as_slice().iter().zip(expected);
+                errors.map(|(x, y)| (x - y).abs() / (1.0 + y.abs())).fold(0.0, f64::max)
+            }),
+            size,
+        }
+    }
+}

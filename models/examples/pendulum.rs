@@ -1,0 +1,53 @@
+//! A first mechanism: declare it, look at its equations, let it swing.
+//!
+//! ```text
+//! cargo run --example pendulum -p linkwork-models
+//! ```
+
+use linkwork::prelude::*;
+
+/// A uniform rod on a hinge, with some friction and a motor.
+#[mechanism(gravity = -9.81 * y)]
+struct Pendulum {
+    // Plain fields are parameters. They stay in the struct.
+    mass: f64,
+    length: f64,
+    friction: f64,
+
+    // Elements say what the mechanism is made of. The compiler reads them and removes them.
+    #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, damping = friction)]
+    grease: Dashpot,
+    #[acts(on = hinge)]
+    motor: Torque,
+}
+
+fn main() -> Result<(), Error> {
+    let pendulum = Pendulum { mass: 2.0, length: 1.5, friction: 0.3 };
+    println!("{}", Pendulum::EQUATIONS);
+
+    // Every function is generated for this mechanism alone. Configuration q, velocity v and forces are vectors.
+    let (q, v) = (SVector::from([0.5]), SVector::from([0.0]));
+    println!("moment of inertia about the hinge  {:.3} kg·m²", pendulum.mass_matrix(&q)[0]);
+    println!("torque that holds it at 0.5 rad    {:.3} N·m", pendulum.bias_forces(&q, &v)[0]);
+    println!("acceleration if it is let go       {:.3} rad/s²\n", {
+        pendulum.forward_dynamics(&q, &v, &SVector::zeros())[0]
+    });
+
+    // A motion: released at 0.5 rad, the motor pushing to and fro, a sample every half second.
+    let run = simulate(&pendulum)
+        .from([0.5], [0.0])
+        .inputs(|t, _q, _v| SVector::from([0.5 * t.sin()]))
+        .duration(5.0)
+        .sample_every(0.5);
+    println!("  t, s   {}, rad   motor, N·m   energy, J", Pendulum::CONFIGURATION[0]);
+    for sample in run {
+        let Sample { t, q, v, u, .. } = sample?;
+        let energy = pendulum.kinetic_energy(&q, &v) + pendulum.potential_energy(&q);
+        println!("{t:6.1}   {:10.4}   {:10.4}   {energy:9.4}", q[0], u[0]);
+    }
+    Ok(())
+}

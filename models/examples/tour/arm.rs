@@ -1,0 +1,343 @@
+//! A Panda arm draws a figure eight with a load that its controller does not know of.
+
+use crate::plot::{Plot, Series};
+use crate::report::{Check, Section, Table, declaration, figure};
+use crate::scene::{Part, Point, Scene, Tone, View, point};
+use linkwork::nalgebra::{IsometryMatrix3, Vector3, Vector6};
+use linkwork::prelude::*;
+use linkwork_models::{LoadedPanda, PandaArm};
+use std::f64::consts::{FRAC_PI_4, TAU};
+use std::hint::black_box;
+use std::time::Instant;
+
+type Seven = SVector<f64, 7>;
+
+/// Elbow up, hand straight down.
+const HOME: [f64; 7] = [0.0, -0.3, 0.0, -2.2, 0.0, 1.9, FRAC_PI_4];
+/// Mass of the load, kg.
+const LOAD: f64 = 1.5;
+/// Period of the control loop, s.
+const PERIOD: f64 = 1e-3;
+const DURATION: f64 = 10.0;
+/// The eight is drawn twice in this time, s; then the arm rests.
+const DRAWING: f64 = 8.5;
+/// Half width and half height of the eight, m.
+const EIGHT: [f64; 2] = [0.28, 0.14];
+/// Stiffness and damping of the error, 1/s² and 1/s: critically damped at 20 rad/s.
+const STIFFNESS: f64 = 400.0;
+const DAMPING: f64 = 40.0;
+/// Bandwidth of the disturbance observer, 1/s.
+const BANDWIDTH: f64 = 60.0;
+/// Pictures per second.
+const RATE: f64 = 50.0;
+
+/// One run of the arm.
+struct Run {
+    samples: Vec<Sample<f64, 7, 7, 7>>,
+    /// Distance of the fingertips from where they should be, m.
+    error: Vec<f64>,
+    /// What the observer felt at the end, N·m.
+    felt: Seven,
+    /// Nanoseconds of each control step.
+    cost: Vec<f64>,
+}
+
+/// Computed torque in the space of the hand, from the model without a load.
+struct Controller {
+    /// Whether the observer is used.
+    observing: bool,
+    /// Where the hand is to point.
+    home: IsometryMatrix3<f64>,
+    /// Torque from outside, as felt.
+    felt: Seven,
+    /// Momentum that the model would have by now.
+    momentum: Seven,
+}
+
+pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+    let cases = [
+        ("no load", draw(0.0, false)?),
+        ("unknown load", draw(LOAD, false)?),
+        ("unknown load, observed", draw(LOAD, true)?),
+    ];
+    let row = |(name, run): &(&str, Run)| {
+        let weighed = weigh(run);
+        let last = run.error.last().copied().unwrap_or(f64::NAN);
+        vec![
+            name.to_string(),
+            figure(1e3 * run.rms()),
+            figure(1e3 * run.worst()),
+            figure(1e3 * last),
+            if run.felt.amax() > 0.0 { format!("{weighed:.3} kg") } else { "–".into() },
+            format!("{:.1} µs", 1e-3 * median(&run.cost)),
+        ]
+    };
+    let table = Table {
+        head: vec!["", "rms error, mm", "largest, mm", "at rest, mm", "load weighed", "control step"],
+        rows: cases.iter().map(row).collect(),
+    };
+    let [exact, loaded, observed] = &cases.each_ref().map(|(_, run)| run);
+    let checks = vec![
+        Check::new("no load: largest error, mm", 1e3 * exact.worst(), 0.05),
+        Check::new("unknown load: largest error, mm", 1e3 * loaded.worst(), 40.0),
+        Check::new("unknown load, observed: largest error, mm", 1e3 * observed.worst(), 5.0),
+        Check::new("load weighed by joint torques, error in kg", (weigh(observed) - LOAD).abs(), 0.01),
+        Check::new("largest torque / limit of the joint", observed.strain(), 1.0),
+        Check::new("median time of a control step, µs", 1e-3 * median(&observed.cost), 1e6 * PERIOD),
+    ];
+    let call = |(name, times): (&str, [f64; 2])| {
+        [vec![name.to_string()], times.map(|ns| format!("{ns:.0} ns")).to_vec()].concat()
+    };
+    let calls = Table {
+        head: vec!["generated function", "median", "least"],
+        rows: timings(&observed.samples).map(call).into(),
+    };
+    let scene = scene(observed);
+    let curve = |(name, run): &(&str, Run)| {
+        let points = run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| [s.t, 1e3 * e]);
+        Series::new(*name, points.collect())
+    };
+    let plots = vec![
+        Plot {
+            title: "Tracking error of the fingertips",
+            x: "time, s",
+            y: "error, mm",
+            logarithmic: true,
+            series: cases.iter().map(curve).collect(),
+            marks: vec![(DRAWING, "at rest")],
+        },
+        Plot {
+            title: "Torques of the first four motors, unknown load, observed",
+            x: "time, s",
+            y: "torque, N·m",
+            logarithmic: false,
+            series: (0..4)
+                .map(|k| {
+                    let points = observed.samples.iter().step_by(10).map(|s| [s.t, s.u[k]]);
+                    Series::new(format!("joint {}", k + 1), points.collect())
+                })
+                .collect(),
+            marks: Vec::new(),
+        },
+    ];
+    Ok(Section {
+        title: "A seven-axis arm draws a figure eight".into(),
+        text: format!(
+            "Franka's Panda from its URDF file under computed torque at {:.0} kHz, the hand pointing down. The controller's \
+             model is the bare arm; the arm carries {LOAD} kg. Without a force sensor, a momentum observer built on the \
+             generated momentum and its rate feels the load, cancels it and weighs it.",
+            1e-3 / PERIOD
+        ),
+        declaration: declaration(include_str!("../../src/arm7.rs"), "LoadedPanda"),
+        equations: "",
+        tables: vec![table, calls],
+        checks,
+        scenes: vec![scene],
+        plots,
+    })
+}
+
+/// Where the fingertips are to be: position, velocity, acceleration, relative to the start.
+fn eight(t: f64) -> [Vector3<f64>; 3] {
+    // A phase from 0 to 2 turns with no velocity or acceleration at its ends.
+    let s = (t / DRAWING).clamp(0.0, 1.0);
+    let turns = 2.0 * TAU;
+    let phase = turns * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+    let rate = turns * 30.0 * s * s * (1.0 - s) * (1.0 - s) / DRAWING;
+    let growth = turns * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (DRAWING * DRAWING);
+    let [width, height] = EIGHT;
+    let along = Vector3::new(0.0, width * phase.cos(), 2.0 * height * (2.0 * phase).cos());
+    let curved = Vector3::new(0.0, -width * phase.sin(), -4.0 * height * (2.0 * phase).sin());
+    let at = Vector3::new(0.0, width * phase.sin(), height * (2.0 * phase).sin());
+    [at, along * rate, along * growth + curved * rate * rate]
+}
+
+fn hand(q: &Seven) -> IsometryMatrix3<f64> {
+    PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), q)
+}
+
+/// The small rotation from one frame to another, rad: half the sum of the cross products of their axes.
+fn turn(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>) -> Vector3<f64> {
+    let axis = |frame: &IsometryMatrix3<f64>, k| frame.rotation.matrix().column(k).into_owned();
+    (0..3).map(|k| axis(from, k).cross(&axis(to, k))).sum::<Vector3<f64>>() / 2.0
+}
+
+impl Controller {
+    fn new(observing: bool) -> Self {
+        Self { observing, home: hand(&HOME.into()), felt: Seven::zeros(), momentum: Seven::zeros() }
+    }
+
+    /// One step of the control loop.
+    fn torque(&mut self, t: f64, q: &Seven, v: &Seven) -> Seven {
+        let arm = PandaArm;
+        let tip = frame!(PandaArm, "panda_hand_tcp");
+        let [at, velocity, acceleration] = eight(t);
+        let hand = arm.frame_placement(tip, q);
+        let twist = arm.frame_velocity(tip, q, v);
+        let jacobian = arm.frame_jacobian(tip, q);
+
+        // What the hand's acceleration should be, linear and angular.
+        let offset = self.home.translation.vector + at - hand.translation.vector;
+        let turn = turn(&hand, &self.home);
+        let stack = |a: Vector3<f64>, b: Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
+        let wanted = stack(acceleration, Vector3::zeros())
+            + DAMPING * (stack(velocity, Vector3::zeros()) - twist)
+            + STIFFNESS * stack(offset, turn);
+        let drift = arm.frame_acceleration(tip, q, v, &Seven::zeros());
+
+        // Joint accelerations that give it; the seventh freedom keeps the elbow near home.
+        let square = jacobian * jacobian.transpose() + SMatrix::<f64, 6, 6>::identity() * 1e-6;
+        let inverse = square.try_inverse().unwrap_or_default();
+        let posture = -20.0 * (q - Seven::from(HOME)) - 9.0 * v;
+        let a = posture + jacobian.transpose() * (inverse * (wanted - drift - jacobian * posture));
+        let tau = arm.inverse_dynamics(q, v, &a) - self.felt;
+
+        if self.observing {
+            // De Luca and Mattone's observer (ICRA 2003): the felt torque follows what the momentum lacks.
+            let rate = arm.momentum_rate(q, v) + tau + self.felt;
+            let lacking = arm.generalized_momentum(q, v) - self.momentum;
+            self.momentum += PERIOD * rate;
+            self.felt = BANDWIDTH * lacking;
+        }
+        tau
+    }
+}
+
+fn draw(load: f64, observing: bool) -> Result<Run, Error> {
+    let arm = LoadedPanda { load };
+    let mut controller = Controller::new(observing);
+    let mut cost = Vec::new();
+    let run = simulate(&arm)
+        .from(HOME, Seven::zeros())
+        .control_every(PERIOD, |t, q, v| {
+            let start = Instant::now();
+            let tau = controller.torque(t, q, v);
+            cost.push(start.elapsed().as_nanos() as f64);
+            tau
+        })
+        .method(Rk4::step(PERIOD))
+        .duration(DURATION)
+        .sample_every(PERIOD);
+    let samples: Vec<_> = run.collect::<Result<_, _>>()?;
+    let home = hand(&HOME.into()).translation.vector;
+    let error = |s: &Sample<f64, 7, 7, 7>| (hand(&s.q).translation.vector - home - eight(s.t)[0]).norm();
+    Ok(Run { error: samples.iter().map(error).collect(), felt: controller.felt, samples, cost })
+}
+
+impl Run {
+    fn rms(&self) -> f64 {
+        (self.error.iter().map(|e| e * e).sum::<f64>() / self.error.len() as f64).sqrt()
+    }
+
+    fn worst(&self) -> f64 {
+        self.error.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Largest torque of any motor as a part of what its joint is rated for.
+    fn strain(&self) -> f64 {
+        let rated = |k: usize| if k < 4 { 87.0 } else { 12.0 };
+        self.samples.iter().flat_map(|s| (0..7).map(move |k| s.u[k].abs() / rated(k))).fold(0.0, f64::max)
+    }
+}
+
+/// The mass whose weight at the fingertips explains the felt torques best.
+fn weigh(run: &Run) -> f64 {
+    let Some(last) = run.samples.last() else { return f64::NAN };
+    let jacobian = PandaArm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &last.q);
+    let lift = jacobian.row(2).transpose();
+    -run.felt.dot(&lift) / (9.81 * lift.norm_squared())
+}
+
+fn median(times: &[f64]) -> f64 {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Time of one call of some generated functions, ns: median and least over batches, each over the states of the motion.
+fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
+    let arm = PandaArm;
+    let states: Vec<(Seven, Seven, Seven)> =
+        samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
+    let time = |f: &dyn Fn(&Seven, &Seven, &Seven) -> f64| {
+        let batch = || {
+            let start = Instant::now();
+            for (q, v, a) in &states {
+                black_box(f(black_box(q), black_box(v), black_box(a)));
+            }
+            start.elapsed().as_nanos() as f64 / states.len() as f64
+        };
+        let times: Vec<f64> = (0..400).map(|_| batch()).collect();
+        [median(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
+    };
+    let tip = frame!(PandaArm, "panda_hand_tcp");
+    [
+        ("inverse_dynamics", time(&|q, v, a| black_box(arm.inverse_dynamics(q, v, a))[0])),
+        ("forward_dynamics", time(&|q, v, a| black_box(arm.forward_dynamics(q, v, a))[0])),
+        ("mass_matrix", time(&|q, _, _| black_box(arm.mass_matrix(q))[0])),
+        ("frame_jacobian", time(&|q, _, _| black_box(arm.frame_jacobian(tip, q))[0])),
+    ]
+}
+
+fn scene(run: &Run) -> Scene {
+    let index = |name: &str| PandaArm::frame_index(name).unwrap_or(0);
+    let joints: [usize; 7] = std::array::from_fn(|k| index(&format!("panda_link{}", k + 1)));
+    let (flange, palm) = (index("panda_link8"), index("panda_hand"));
+    let tip = index("panda_hand_tcp");
+    let frame = |s: &Sample<f64, 7, 7, 7>| {
+        let at = PandaArm.frame_placements(&s.q);
+        let mut points: Vec<Point> = vec![[0.0; 3]];
+        // The links' origins, then the ends of each joint's housing.
+        points.extend(joints.map(|k| point(&at[k], [0.0; 3])));
+        points.push(point(&at[flange], [0.0; 3]));
+        for end in [-1.0, 1.0] {
+            points.extend(joints.map(|k| point(&at[k], [0.0, 0.0, 0.055 * end])));
+        }
+        // Palm, fingers, load, and the edge of the base.
+        for [y, z] in
+            [[-0.085, 0.035], [0.085, 0.035], [-0.03, 0.05], [-0.03, 0.11], [0.03, 0.05], [0.03, 0.11]]
+        {
+            points.push(point(&at[palm], [0.0, y, z]));
+        }
+        points.push(point(&at[tip], [0.0, 0.0, 0.02]));
+        points.push(point(&at[tip], [0.0; 3]));
+        points.push(point(&at[flange], [0.0, 0.0, 0.02]));
+        points
+    };
+    let mut parts = vec![Part::Rod(0, 1, 0.06, Tone::Body)];
+    let thick = [0.055, 0.055, 0.055, 0.05, 0.05, 0.05, 0.04];
+    parts.extend((1..8).map(|k| Part::Rod(k, k + 1, thick[k - 1], Tone::Body)));
+    parts.extend(
+        (0..7).map(|k| {
+            Part::Rod(9 + k, 16 + k, [0.062, 0.062, 0.06, 0.058, 0.055, 0.05, 0.042][k], Tone::Dark)
+        }),
+    );
+    parts.extend([
+        Part::Rod(23, 24, 0.028, Tone::Body),
+        Part::Rod(31, 8, 0.04, Tone::Body),
+        Part::Rod(25, 26, 0.011, Tone::Dark),
+        Part::Rod(27, 28, 0.011, Tone::Dark),
+        Part::Ball(29, 0.045, Tone::Second),
+    ]);
+    let home = hand(&HOME.into()).translation.vector;
+    let guide = (0..=120).map(|k| (home + eight(DRAWING * k as f64 / 120.0)[0]).into());
+    let every = (1.0 / (RATE * PERIOD)).round() as usize;
+    Scene {
+        title: "Figure eight with an unknown load",
+        rate: RATE,
+        speed: 1.0,
+        parts,
+        frames: run.samples.iter().step_by(every).map(frame).collect(),
+        captions: vec![(0, "drawing".into()), ((DRAWING * RATE) as usize, "at rest: load weighed".into())],
+        guides: vec![guide.collect()],
+        trail: Some((30, 90)),
+        view: View {
+            target: [0.25, 0.0, 0.38],
+            size: [1.2, 1.2],
+            yaw: -55.0,
+            pitch: 18.0,
+            turning: 6.0,
+            floor: Some([0.0, 0.6]),
+        },
+    }
+}

@@ -1,0 +1,200 @@
+//! A cart-pole: swung up by its energy, caught and held by a linear–quadratic regulator.
+
+use crate::lqr::{gains, linearise};
+use crate::plot::{Plot, Series};
+use crate::report::{Check, Section, Table, declaration, figure};
+use crate::scene::{Part, Scene, Tone, View, corners, faces, point};
+use linkwork::nalgebra::IsometryMatrix3;
+use linkwork::prelude::*;
+use linkwork_models::CartPole;
+use std::f64::consts::{PI, TAU};
+
+const CART_POLE: CartPole = CartPole { cart_mass: 1.0, pole_mass: 0.3, pole_length: 1.0, rail_damping: 0.5 };
+/// The motor's strength, N.
+const STRENGTH: f64 = 15.0;
+/// Period of the digital controller, s.
+const PERIOD: f64 = 0.005;
+/// When somebody shoves the cart, s, and how hard, N.
+const SHOVE: std::ops::Range<f64> = 8.0..8.1;
+const SHOVING: f64 = 18.0;
+const DURATION: f64 = 12.0;
+/// Pictures per second.
+const RATE: f64 = 50.0;
+
+type State = SVector<f64, 2>;
+
+/// Swings up until it can hold.
+struct Controller {
+    gains: SMatrix<f64, 1, 4>,
+    /// When it last began to hold.
+    caught: Option<f64>,
+}
+
+pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+    let linear = linearise::<_, 2, 1, 4>(&CART_POLE, &State::zeros());
+    let gains = gains(&linear, PERIOD, [20.0, 10.0, 1.0, 1.0], [0.05]).ok_or("no gains")?;
+    let mut controller = Controller { gains, caught: None };
+    let mut forces = Vec::new();
+    let run = simulate(&CART_POLE)
+        .from([0.0, PI - 0.05], [0.0, 0.0])
+        .control_every(PERIOD, |t, q, v| {
+            let push = controller.push(t, q, v).clamp(-STRENGTH, STRENGTH);
+            forces.push([t, push]);
+            [push + if SHOVE.contains(&t) { SHOVING } else { 0.0 }].into()
+        })
+        .duration(DURATION)
+        .sample_every(1.0 / RATE);
+    let samples: Vec<_> = run.collect::<Result<_, _>>()?;
+    let caught = controller.caught.unwrap_or(f64::NAN);
+
+    let largest = |from: f64, f: &dyn Fn(&State) -> f64| {
+        samples.iter().filter(|s| s.t >= from).map(|s| f(&s.q).abs()).fold(0.0, f64::max)
+    };
+    let strongest = forces.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
+    let table = Table {
+        head: Vec::new(),
+        rows: vec![
+            vec!["gains for x, θ and their rates".into(), list(&gains)],
+            vec!["caught upright after".into(), format!("{caught:.2} s")],
+            vec!["strongest push".into(), format!("{strongest:.1} N")],
+            vec!["track used".into(), format!("±{:.2} m", largest(0.0, &|q| q[0]))],
+            vec![
+                format!("tilt after a shove of {SHOVING} N for {:.1} s", SHOVE.end - SHOVE.start),
+                format!("{:.1}°", largest(SHOVE.start, &|q| upright(q[1])).to_degrees()),
+            ],
+        ],
+    };
+    let checks = vec![
+        Check::new("caught upright, s", caught, SHOVE.start - 1.0),
+        Check::new("track used, m", largest(0.0, &|q| q[0]), 1.0),
+        Check::new("tilt at the end, rad", largest(DURATION - 0.5, &|q| upright(q[1])), 5e-3),
+        Check::new("cart's distance from the middle at the end, m", largest(DURATION - 0.5, &|q| q[0]), 0.02),
+    ];
+    // Upright is a multiple of a full turn; the one that was reached is drawn as zero.
+    let turns = samples.last().map_or(0.0, |s| (s.q[1] / TAU).round() * TAU);
+    let column = |f: &dyn Fn(&State) -> f64| samples.iter().map(|s| [s.t, f(&s.q)]).collect();
+    let marks = vec![(caught, "caught"), (SHOVE.start, "shove")];
+    let plots = vec![
+        Plot {
+            title: "Cart and pole",
+            x: "time, s",
+            y: "position, m; angle, rad",
+            logarithmic: false,
+            series: vec![
+                Series::new("cart x", column(&|q| q[0])),
+                Series::new("pole θ from upright", column(&|q| q[1] - turns)),
+            ],
+            marks: marks.clone(),
+        },
+        Plot {
+            title: "Force of the motor on the cart",
+            x: "time, s",
+            y: "force, N",
+            logarithmic: false,
+            series: vec![Series::new("push", forces)],
+            marks,
+        },
+    ];
+    Ok(Section {
+        title: "A cart-pole swings itself up".into(),
+        text: format!(
+            "It hangs down; a digital controller at {:.0} Hz pumps energy into the pole, catches it upright with a \
+             linear–quadratic regulator (gains from the linearised generated equations) and holds it against a shove.",
+            1.0 / PERIOD
+        ),
+        declaration: declaration(include_str!("../../src/cart_pole.rs"), "CartPole"),
+        equations: CartPole::EQUATIONS,
+        tables: vec![table],
+        checks,
+        scenes: vec![scene(&samples, caught)],
+        plots,
+    })
+}
+
+impl Controller {
+    fn push(&mut self, t: f64, q: &State, v: &State) -> f64 {
+        let x = SVector::from([q[0], upright(q[1]), v[0], v[1]]);
+        let hold = -(self.gains * x)[0];
+        // Catch where the motor is strong enough to hold; let go only if the pole falls.
+        let holding = self.caught.is_some() && x[1].abs() < 1.0;
+        if holding || (x[1].abs() < 0.4 && hold.abs() < STRENGTH) {
+            self.caught.get_or_insert(t);
+            return hold;
+        }
+        self.caught = None;
+        self.swing(q, v)
+    }
+
+    /// Åström and Furuta's energy shaping, *Automatica* 36 (2000): the pole's energy `E` seen from the cart is to be
+    /// that of standing upright, and `Ė` is in proportion to the cart's acceleration.
+    fn swing(&self, q: &State, v: &State) -> f64 {
+        let turning = State::new(0.0, v[1]);
+        let top = CART_POLE.potential_energy(&State::zeros());
+        let energy = CART_POLE.kinetic_energy(q, &turning) + CART_POLE.potential_energy(q) - top;
+        let acceleration = -3.0 * energy * v[1] * q[1].cos() - 14.0 * q[0] - 4.0 * v[0];
+        // The push that gives the cart this acceleration while the pole turns freely: two rows of M v̇ + h = τ.
+        let (m, h) = (CART_POLE.mass_matrix(q), CART_POLE.bias_forces(q, v));
+        let turn = -(h[1] + m[(1, 0)] * acceleration) / m[(1, 1)];
+        m[(0, 0)] * acceleration + m[(0, 1)] * turn + h[0]
+    }
+}
+
+/// The angle from upright, between −π and π.
+fn upright(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+fn list(gains: &SMatrix<f64, 1, 4>) -> String {
+    gains.iter().map(|k| figure(*k).replace('-', "−")).collect::<Vec<_>>().join(", ")
+}
+
+fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
+    // The mechanism's y points up, the picture's z does.
+    let turned = |body: &IsometryMatrix3<f64>, at| {
+        let [x, y, z] = point(body, at);
+        [x, -z, y]
+    };
+    let frame = |s: &Sample<f64, 2, 2, 1>| {
+        let cart = CART_POLE.frame_placement(frame!(CartPole, "cart"), &s.q);
+        let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
+        let mut points = vec![turned(&pole, [0.0; 3]), turned(&pole, [0.0, CART_POLE.pole_length, 0.0])];
+        points.extend(corners(&cart, [0.0, -0.04, 0.0], [0.16, 0.07, 0.1]).map(|[x, y, z]| [x, -z, y]));
+        // The force as an arrow that ends at the cart.
+        let side = -0.17 * s.u[0].signum();
+        points.push(turned(&cart, [side - 0.03 * s.u[0], -0.04, 0.0]));
+        points.push(turned(&cart, [side, -0.04, 0.0]));
+        points.extend([[-1.2, 0.0, -0.127], [1.2, 0.0, -0.127]]);
+        points
+    };
+    let mut parts = vec![
+        Part::Rod(12, 13, 0.014, Tone::Dark),
+        Part::Rod(0, 1, 0.022, Tone::Accent),
+        Part::Ball(0, 0.035, Tone::Dark),
+        Part::Arrow(10, 11, Tone::Second),
+    ];
+    parts.extend(faces(2, Tone::Body));
+    let at = |t: f64| (t * RATE) as usize;
+    Scene {
+        title: "Swing-up, catch, shove",
+        rate: RATE,
+        speed: 1.0,
+        parts,
+        frames: samples.iter().map(frame).collect(),
+        captions: vec![
+            (0, "pumping energy".into()),
+            (at(caught), "caught: regulator holds".into()),
+            (at(SHOVE.start), format!("shoved with {SHOVING} N")),
+            (at(SHOVE.end) + 20, "regulator holds".into()),
+        ],
+        guides: Vec::new(),
+        trail: Some((1, 40)),
+        view: View {
+            target: [0.0, 0.0, 0.0],
+            size: [4.4, 2.4],
+            yaw: 0.0,
+            pitch: 6.0,
+            turning: 0.0,
+            floor: None,
+        },
+    }
+}

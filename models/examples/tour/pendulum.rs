@@ -1,0 +1,146 @@
+//! A pendulum over a thousand seconds: what three integrators make of its energy and its phase.
+
+use crate::plot::{Plot, Series};
+use crate::report::{Check, Section, Table, declaration, figure};
+use linkwork::integrate::Method;
+use linkwork::prelude::*;
+use linkwork_models::Pendulum;
+use std::time::Instant;
+
+const PENDULUM: Pendulum<f64> = Pendulum { g: 9.81, mass: 1.0, length: 1.0 };
+const START: f64 = 2.5;
+const DURATION: f64 = 1000.0;
+/// Samples are this far apart, s; of the errors in each window, longer than a swing, the largest is shown.
+const INTERVAL: f64 = 0.05;
+const WINDOW: f64 = 5.0;
+
+/// What one integrator made of the run.
+struct Run {
+    /// Largest error of the energy in every window, relative to m g l.
+    energy: Vec<[f64; 2]>,
+    /// Largest error of the angle in every window, rad.
+    angle: Vec<[f64; 2]>,
+    /// Milliseconds of computing.
+    cost: f64,
+}
+
+pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+    let methods = [
+        ("Runge–Kutta 4", "10 ms", swing(Rk4::step(0.01))?),
+        ("implicit midpoint", "10 ms", swing(ImplicitMidpoint::step(0.01))?),
+        ("Dormand–Prince", "adaptive", swing(DormandPrince::new())?),
+    ];
+    let row = |(name, step, run): &(&str, &str, Run)| {
+        vec![
+            name.to_string(),
+            step.to_string(),
+            figure(worst(&run.energy)),
+            figure(worst(&run.angle)),
+            format!("{:.1} ms", run.cost),
+        ]
+    };
+    let table = Table {
+        head: vec!["integrator", "step", "energy error / mgl", "angle error, rad", "computing time"],
+        rows: methods.iter().map(row).collect(),
+    };
+    let [rk4, midpoint, adaptive] = &methods;
+    let growth = {
+        let (early, late) = midpoint.2.energy.split_at(midpoint.2.energy.len() / 2);
+        (worst(late) / worst(early) - 1.0).abs()
+    };
+    let checks = vec![
+        Check::new("Runge–Kutta: energy error after 1000 s", worst(&rk4.2.energy), 1e-5),
+        Check::new("implicit midpoint: energy error, second half over first", growth, 1e-2),
+        Check::new("Dormand–Prince: energy error after 1000 s", worst(&adaptive.2.energy), 1e-5),
+        Check::new(
+            "Dormand–Prince: angle against Jacobi's elliptic function, rad",
+            worst(&adaptive.2.angle),
+            1e-2,
+        ),
+    ];
+    let energy = Plot {
+        title: "Energy error of the pendulum",
+        x: "time, s",
+        y: "|E − E₀| / mgl",
+        logarithmic: true,
+        series: methods.each_ref().map(|(name, _, run)| Series::new(*name, run.energy.clone())).into(),
+        marks: Vec::new(),
+    };
+    let phase = Plot {
+        title: "Angle against the exact solution",
+        x: "time, s",
+        y: "|θ − θ exact|, rad",
+        logarithmic: true,
+        series: methods.map(|(name, _, run)| Series::new(name, run.angle)).into(),
+        marks: Vec::new(),
+    };
+    Ok(Section {
+        title: format!("A pendulum swings for {DURATION} s"),
+        text: format!(
+            "Released at rest {:.0}° from the vertical, without friction. Its exact motion is an elliptic function, so \
+             that both energy and angle can be held against the truth.",
+            START.to_degrees()
+        ),
+        declaration: declaration(include_str!("../../src/pendulum.rs"), "Pendulum"),
+        equations: Pendulum::<f64>::EQUATIONS,
+        tables: vec![table],
+        checks,
+        scenes: Vec::new(),
+        plots: vec![energy, phase],
+    })
+}
+
+fn swing(method: impl Method<f64>) -> Result<Run, Error> {
+    let energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
+        PENDULUM.kinetic_energy(q, v) + PENDULUM.potential_energy(q)
+    };
+    let scale = PENDULUM.mass * PENDULUM.g * PENDULUM.length;
+    let e0 = energy(&[START].into(), &[0.0].into());
+    let start = Instant::now();
+    let mut samples = Vec::new();
+    for sample in
+        simulate(&PENDULUM).from([START], [0.0]).method(method).duration(DURATION).sample_every(INTERVAL)
+    {
+        samples.push(sample?);
+    }
+    let cost = start.elapsed().as_secs_f64() * 1e3;
+
+    let windows = |error: &dyn Fn(&Sample<f64, 1, 1, 0>) -> f64| {
+        let window = |samples: &[Sample<f64, 1, 1, 0>]| {
+            let worst = samples.iter().map(error).fold(0.0, f64::max);
+            [samples.last().map_or(0.0, |s| s.t), worst]
+        };
+        samples[1..].chunks((WINDOW / INTERVAL).round() as usize).map(window).collect::<Vec<_>>()
+    };
+    Ok(Run {
+        energy: windows(&|s| (energy(&s.q, &s.v) - e0).abs() / scale),
+        angle: windows(&|s| (s.q[0] - exact(s.t)).abs()),
+        cost,
+    })
+}
+
+fn worst(errors: &[[f64; 2]]) -> f64 {
+    errors.iter().map(|e| e[1]).fold(0.0, f64::max)
+}
+
+/// The exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`; Jacobi's functions by the descending
+/// Landen transformation (Abramowitz and Stegun, 16.4).
+fn exact(t: f64) -> f64 {
+    let k = (START / 2.0).sin();
+    let (mut a, mut b) = (1.0, (START / 2.0).cos());
+    let mut ratios = Vec::new();
+    while a - b > 1e-16 * a {
+        let next: (f64, f64) = ((a + b) / 2.0, f64::sqrt(a * b));
+        ratios.push((a - b) / 2.0 / next.0);
+        (a, b) = next;
+        if ratios.len() > 8 {
+            break;
+        }
+    }
+    let mut phi = 2.0_f64.powi(ratios.len() as i32) * a * (PENDULUM.g / PENDULUM.length).sqrt() * t;
+    for ratio in ratios.iter().rev() {
+        phi = (phi + (ratio * phi.sin()).asin()) / 2.0;
+    }
+    let (sn, cn) = phi.sin_cos();
+    2.0 * (k * cn / (1.0 - k * k * sn * sn).sqrt()).asin()
+}

@@ -1,0 +1,251 @@
+//! A quadruped turns a somersault: nothing holds it, so its centre of mass and its angular momentum obey Newton alone.
+
+use crate::plot::{Plot, Series};
+use crate::report::{Check, Section, Table, declaration, figure};
+use crate::scene::{Part, Point, Scene, Tone, View, corners, faces, point};
+use linkwork::integrate::Method;
+use linkwork::nalgebra::{Matrix3, Vector3};
+use linkwork::prelude::*;
+use linkwork_models::Solo12;
+
+type Sample12 = Sample<f64, 19, 18, 12>;
+
+const G: f64 = 9.81;
+/// Velocity of the centre of mass at take-off, m/s, and the time until it is as high again, s.
+const TAKE_OFF: [f64; 3] = [-0.35, 0.0, 4.2];
+const FLIGHT: f64 = 2.0 * TAKE_OFF[2] / G;
+const PERIOD: f64 = 1e-3;
+/// Hip and knee of a front leg, rad; hind legs bend the other way.
+const STANDING: [f64; 2] = [0.7, -1.4];
+const TUCKED: [f64; 2] = [1.5, -2.7];
+/// When the legs are drawn in and stretched out, parts of the flight.
+const TUCKING: [f64; 2] = [0.12, 0.3];
+const OPENING: [f64; 2] = [0.68, 0.86];
+/// Pictures per second.
+const RATE: f64 = 200.0;
+
+pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+    let (spin, landing) = aim()?;
+    let runs = [
+        ("implicit midpoint", "1 ms", fly(spin, ImplicitMidpoint::step(PERIOD))?),
+        ("Runge–Kutta 4", "1 ms", fly(spin, Rk4::step(PERIOD))?),
+        (
+            "Dormand–Prince, tolerance 1e-13",
+            "adaptive",
+            fly(spin, DormandPrince::new().tolerance(1e-13, 1e-13))?,
+        ),
+    ];
+    let worst = |errors: &[[f64; 2]]| errors.iter().map(|e| e[1]).fold(0.0, f64::max);
+    let row = |(name, step, samples): &(&str, &str, Vec<Sample12>)| {
+        let errors = [parabola(samples), drift(samples)].map(|e| figure(worst(&e)));
+        [vec![name.to_string(), step.to_string()], errors.to_vec()].concat()
+    };
+    let table = Table {
+        head: vec![
+            "integrator",
+            "step",
+            "centre of mass off parabola, m",
+            "angular momentum, relative drift",
+        ],
+        rows: runs.iter().map(row).collect(),
+    };
+    let [_, _, (_, _, samples)] = &runs;
+    let rates = |k: usize| samples.iter().map(|s| [s.t, s.v[3 + k]]).collect::<Vec<_>>();
+    let fastest = rates(1).iter().map(|r| r[1].abs()).fold(0.0, f64::max);
+    let checks = vec![
+        Check::new("centre of mass off its parabola, m", worst(&parabola(samples)), 1e-11),
+        Check::new("angular momentum about it, relative drift", worst(&drift(samples)), 1e-11),
+        Check::new("trunk against level at landing, rad", landing, 1e-6),
+        Check::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
+    ];
+    let marks = vec![(TUCKING[0] * FLIGHT, "tuck"), (OPENING[0] * FLIGHT, "open")];
+    let plots = vec![
+        Plot {
+            title: "Angular velocity of the trunk",
+            x: "time, s",
+            y: "angular velocity, rad/s",
+            logarithmic: false,
+            series: ["roll", "pitch", "yaw"]
+                .iter()
+                .enumerate()
+                .map(|(k, n)| Series::new(*n, rates(k)))
+                .collect(),
+            marks,
+        },
+        Plot {
+            title: "Conservation (Dormand–Prince)",
+            x: "time, s",
+            y: "deviation",
+            logarithmic: true,
+            series: vec![
+                Series::new("centre of mass off parabola, m", parabola(samples)),
+                Series::new("angular momentum, relative", drift(samples)),
+            ],
+            marks: Vec::new(),
+        },
+    ];
+    Ok(Section {
+        title: "A quadruped turns a somersault".into(),
+        text: format!(
+            "Solo 12 from its URDF file, floating base, 18 degrees of freedom, {FLIGHT:.2} s in the air. Joint controllers \
+             draw the legs in and stretch them out, not quite evenly; like a skater it spins faster when small. Newton's \
+             method has found the take-off spin ({}) rad/s for which it lands level.",
+            spin.iter().map(|w| format!("{w:.2}").replace('-', "−")).collect::<Vec<_>>().join(", ")
+        ),
+        declaration: declaration(include_str!("../../src/quadruped.rs"), "Solo12"),
+        equations: "",
+        tables: vec![table],
+        checks,
+        scenes: vec![scene(samples)],
+        plots,
+    })
+}
+
+/// Where the joints are to be at a time.
+fn posture(t: f64) -> SVector<f64, 12> {
+    let part = t / FLIGHT;
+    let smooth = |[from, to]: [f64; 2], part: f64| {
+        let s = ((part - from) / (to - from)).clamp(0.0, 1.0);
+        s * s * (3.0 - 2.0 * s)
+    };
+    SVector::from_fn(|k, _| {
+        let (leg, joint) = (k / 3, k % 3);
+        // The left hind leg is late.
+        let late = if leg == 2 { 0.04 } else { 0.0 };
+        let tuck = smooth(TUCKING, part - late) - smooth(OPENING, part - late);
+        let bend = if leg < 2 { 1.0 } else { -1.0 };
+        match joint {
+            0 => 0.0,
+            _ => bend * (STANDING[joint - 1] + tuck * (TUCKED[joint - 1] - STANDING[joint - 1])),
+        }
+    })
+}
+
+/// The state at take-off: feet on the floor, centre of mass and trunk moving as wanted.
+fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
+    let robot = Solo12;
+    let mut q = robot.neutral();
+    q.fixed_rows_mut::<12>(7).copy_from(&posture(0.0));
+    q[2] = FOOT - robot.frame_placement(frame!(Solo12, "FL_FOOT"), &q).translation.z;
+    let arm = robot.center_of_mass(&q) - q.fixed_rows::<3>(0);
+    let mut v = SVector::<f64, 18>::zeros();
+    v.fixed_rows_mut::<3>(0).copy_from(&(Vector3::from(TAKE_OFF) - spin.cross(&arm)));
+    v.fixed_rows_mut::<3>(3).copy_from(&spin);
+    (q, v)
+}
+
+/// Radius of a foot, m.
+const FOOT: f64 = 0.018;
+
+fn fly(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Error> {
+    let (q, v) = take_off(spin);
+    simulate(&Solo12)
+        .from(q, v)
+        .control_every(PERIOD, |t, q, v| {
+            8.0 * (posture(t) - q.fixed_rows::<12>(7)) - 0.15 * v.fixed_rows::<12>(6)
+        })
+        .method(method)
+        .duration(FLIGHT)
+        .sample_every(1.0 / RATE)
+        .collect()
+}
+
+/// The spin at take-off for which the trunk is level again at the end, and how level it is.
+fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
+    let tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
+        let samples = fly(spin, Rk4::step(PERIOD))?;
+        let (first, last) = samples.first().zip(samples.last()).ok_or("no samples")?;
+        Ok(Solo12.difference(&first.q, &last.q).fixed_rows::<3>(3).into_owned())
+    };
+    let mut spin = Vector3::new(0.0, -5.0, 0.0);
+    let mut error = tilt(spin)?;
+    for _ in 0..12 {
+        if error.norm() < 1e-9 {
+            break;
+        }
+        let mut slope = Matrix3::zeros();
+        for k in 0..3 {
+            let mut other = spin;
+            other[k] += 1e-4;
+            slope.set_column(k, &((tilt(other)? - error) / 1e-4));
+        }
+        let step = slope.try_inverse().ok_or("a spin that changes nothing")? * error;
+        spin -= step * (0.5 / step.norm()).min(1.0);
+        error = tilt(spin)?;
+    }
+    Ok((spin, error.norm()))
+}
+
+/// Distance of the centre of mass from where free fall takes it, m.
+fn parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
+    let start = Solo12.center_of_mass(&samples[0].q);
+    let fall = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
+    samples.iter().skip(1).map(|s| [s.t, (Solo12.center_of_mass(&s.q) - fall(s.t)).norm()]).collect()
+}
+
+/// Change of the angular momentum about the centre of mass, relative to what it was.
+fn drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
+    let angular = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
+    let start = angular(&samples[0]);
+    samples.iter().skip(1).map(|s| [s.t, (angular(s) - start).norm() / start.norm()]).collect()
+}
+
+fn scene(samples: &[Sample12]) -> Scene {
+    let index = |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
+    let legs = ["FL", "FR", "HL", "HR"];
+    let frame = |s: &Sample12| {
+        let at = Solo12.frame_placements(&s.q);
+        let trunk = Solo12.frame_placement(frame!(Solo12, "base_link"), &s.q);
+        let mut points: Vec<Point> = corners(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();
+        for leg in legs {
+            for link in ["SHOULDER", "UPPER_LEG", "LOWER_LEG", "FOOT"] {
+                points.push(point(&at[index(leg, link)], [0.0; 3]));
+            }
+            // The shoulder's axle, from inside the trunk.
+            let inwards = if leg.ends_with('L') { -0.05 } else { 0.05 };
+            points.push(point(&at[index(leg, "SHOULDER")], [0.0, inwards, 0.0]));
+        }
+        points.push(Solo12.center_of_mass(&s.q).into());
+        points
+    };
+    let mut parts: Vec<Part> = faces(0, Tone::Body).collect();
+    for k in 0..4 {
+        let first = 8 + 5 * k;
+        let tone = if k % 2 == 0 { Tone::Accent } else { Tone::Second };
+        parts.extend([
+            Part::Rod(first + 4, first + 1, 0.022, Tone::Dark),
+            Part::Rod(first + 1, first + 2, 0.018, tone),
+            Part::Rod(first + 2, first + 3, 0.011, tone),
+            Part::Ball(first + 2, 0.02, Tone::Dark),
+            Part::Ball(first + 3, FOOT, Tone::Dark),
+        ]);
+    }
+    let start = Solo12.center_of_mass(&samples[0].q);
+    let fall = |k: usize| {
+        let t = FLIGHT * k as f64 / 60.0;
+        (start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0)).into()
+    };
+    let at = |part: f64| (part * FLIGHT * RATE) as usize;
+    Scene {
+        title: "Somersault of Solo 12, a quarter of its speed",
+        rate: RATE,
+        speed: 0.25,
+        parts,
+        frames: samples.iter().map(frame).collect(),
+        captions: vec![
+            (0, "take-off".into()),
+            (at(TUCKING[0]), "tucking: spins faster".into()),
+            (at(OPENING[0]), "opening: spins slower".into()),
+        ],
+        guides: vec![(0..=60).map(fall).collect()],
+        trail: Some((28, 400)),
+        view: View {
+            target: [TAKE_OFF[0] * FLIGHT / 2.0, 0.0, 0.66],
+            size: [1.7, 1.55],
+            yaw: -18.0,
+            pitch: 9.0,
+            turning: 0.0,
+            floor: Some([0.0, 0.8]),
+        },
+    }
+}

@@ -1,0 +1,174 @@
+//! A heavy top: its precession and its nutation against Lagrange's closed forms.
+
+use crate::plot::{Plot, Series};
+use crate::report::{Check, Section, Table, declaration, figure};
+use crate::scene::{Part, Point, Scene, Tone, View, point};
+use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion, Vector3};
+use linkwork::prelude::*;
+use linkwork_models::HeavyTop;
+use std::f64::consts::TAU;
+
+const TOP: HeavyTop<f64> = HeavyTop { g: 9.81, mass: 0.3, height: 0.05, axial: 2.4e-4, transverse: 1.8e-4 };
+/// Inclination at the start, rad.
+const TILT: f64 = 0.5;
+/// Spin about the axis, rad/s.
+const SPIN: f64 = 150.0;
+/// Turns of steady precession.
+const TURNS: f64 = 10.0;
+/// How long the released top is shown, s.
+const SHOWN: f64 = 2.8;
+/// Pictures per second.
+const RATE: f64 = 240.0;
+
+pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+    let across = TOP.transverse + TOP.mass * TOP.height * TOP.height;
+    let (spin, weight) = (TOP.axial * SPIN, TOP.mass * TOP.g * TOP.height);
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), TILT);
+    let q = [tilt.i, tilt.j, tilt.k, tilt.w];
+    let method = DormandPrince::new().tolerance(1e-12, 1e-12);
+    let mut table = Table { head: vec!["", "simulated", "closed form"], rows: Vec::new() };
+    let mut checks = Vec::new();
+    let mut compare = |row: &str, what, unit: &str, simulated: f64, closed: f64| {
+        let cells = [simulated, closed].map(|x| format!("{x:.9} {unit}"));
+        table.rows.push([vec![row.to_string()], cells.to_vec()].concat());
+        checks.push(Check::new(what, (simulated / closed - 1.0).abs(), 1e-9));
+    };
+
+    // Steady: A Ω² cos θ − C n Ω + m g h = 0, the slower of both solutions.
+    let rate = 2.0 * weight / (spin + (spin * spin - 4.0 * across * TILT.cos() * weight).sqrt());
+    let mut omega = tilt.inverse() * Vector3::new(0.0, 0.0, rate);
+    omega.z = SPIN;
+    let end = simulate(&TOP).from(q, omega).method(method).duration(TURNS * TAU / rate).finish()?;
+    let tip = axis(&end.q);
+    let missed = tip.x.atan2(-tip.y);
+    compare(
+        "steady precession",
+        "steady precession, relative error",
+        "rad/s",
+        rate * (1.0 + missed / (TURNS * TAU)),
+        rate,
+    );
+
+    // Released with its axis at rest it falls, to the other root of β (1 − u²) = a² (u₀ − u), and rises to a cusp.
+    let (a2, b) = ((spin / across) * (spin / across), 2.0 * weight / across);
+    let lowest = (a2 - (a2 * a2 - 4.0 * b * (a2 * TILT.cos() - b)).sqrt()) / (2.0 * b);
+    let released = simulate(&TOP).from(q, [0.0, 0.0, SPIN]).method(method);
+    let falling =
+        |_: f64, q: &SVector<f64, 4>, v: &SVector<f64, 3>| (rotation(q) * Vector3::new(v.y, -v.x, 0.0)).z;
+    let bottom = released.until_crossing(Crossing::Rising, falling).finish()?;
+    compare(
+        "released: lowest inclination",
+        "lowest inclination, relative error",
+        "rad",
+        axis(&bottom.q).z.acos(),
+        lowest.acos(),
+    );
+
+    let samples: Vec<_> = simulate(&TOP)
+        .from(q, [0.0, 0.0, SPIN])
+        .method(method)
+        .duration(SHOWN)
+        .sample_every(1.0 / RATE)
+        .collect::<Result<_, _>>()?;
+    let nutation = vec![
+        Series::new("simulated", samples.iter().map(|s| [s.t, axis(&s.q).z.acos()]).collect()),
+        level("closed form, highest", TILT),
+        level("closed form, lowest", lowest.acos()),
+    ];
+    // Both angular momenta are constant: φ̇ = (L − C n cos θ) / (A sin²θ), and L = C n cos θ₀.
+    let fastest = spin * (TILT.cos() - lowest) / (across * (1.0 - lowest * lowest));
+    let precession = vec![
+        Series::new("simulated", samples.iter().map(|s| [s.t, precession(s)]).collect()),
+        level("closed form, fastest", fastest),
+    ];
+    let plot =
+        |title, y, series| Plot { title, x: "time, s", y, logarithmic: false, series, marks: Vec::new() };
+
+    let vertical = |s: &Sample<f64, 4, 3, 0>| (rotation(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
+    let momentum =
+        samples.iter().map(|s| (vertical(s) / vertical(&samples[0]) - 1.0).abs()).fold(0.0, f64::max);
+    let slowed = samples.iter().map(|s| (s.v[2] / SPIN - 1.0).abs()).fold(0.0, f64::max);
+    checks.push(Check::new("angular momentum about the vertical, drift", momentum, 1e-9));
+    checks.push(Check::new("spin about the axis, drift", slowed, 1e-9));
+
+    Ok(Section {
+        title: "A heavy top precesses and nutates".into(),
+        text: format!(
+            "On a ball joint (a quaternion, no Euler angles), spinning at {} rad/s. Steady precession is followed for \
+             {TURNS} turns; then the top is let go with its axis at rest and draws cusps.",
+            figure(SPIN)
+        ),
+        declaration: declaration(include_str!("../../src/heavy_top.rs"), "HeavyTop"),
+        equations: HeavyTop::<f64>::EQUATIONS,
+        tables: vec![table],
+        checks,
+        scenes: vec![scene(&samples)],
+        plots: vec![
+            plot("Inclination of the axis", "inclination, rad", nutation),
+            plot("Rate of precession: zero at the cusps", "rate, rad/s", precession),
+        ],
+    })
+}
+
+fn level(name: &str, value: f64) -> Series {
+    Series::new(name, vec![[0.0, value], [SHOWN, value]])
+}
+
+fn rotation(q: &SVector<f64, 4>) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_quaternion((*q).into())
+}
+
+fn axis(q: &SVector<f64, 4>) -> Vector3<f64> {
+    rotation(q) * Vector3::z()
+}
+
+/// How fast the axis goes round the vertical, rad/s.
+fn precession(s: &Sample<f64, 4, 3, 0>) -> f64 {
+    let (at, rate) = (axis(&s.q), rotation(&s.q) * Vector3::new(s.v.y, -s.v.x, 0.0));
+    (at.x * rate.y - at.y * rate.x) / (at.x * at.x + at.y * at.y)
+}
+
+/// Corners around the top.
+const CORNERS: usize = 20;
+
+fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
+    let ring = |body: &IsometryMatrix3<f64>, radius: f64, z: f64| {
+        (0..CORNERS)
+            .map(|k| TAU * k as f64 / CORNERS as f64)
+            .map(|a| point(body, [radius * a.cos(), radius * a.sin(), z]))
+            .collect::<Vec<Point>>()
+    };
+    let frame = |s: &Sample<f64, 4, 3, 0>| {
+        let body = TOP.frame_placement(frame!(HeavyTop<f64>, "top"), &s.q);
+        let mut points = vec![[0.0; 3], point(&body, [0.0, 0.0, 0.07]), point(&body, [0.0, 0.0, 0.105])];
+        points.extend(ring(&body, 0.042, 0.052));
+        points.extend(ring(&body, 0.016, 0.07));
+        points
+    };
+    let mut parts = vec![Part::Rod(1, 2, 0.003, Tone::Dark), Part::Ball(2, 0.0045, Tone::Accent)];
+    for k in 0..CORNERS {
+        let (a, b) = (3 + k, 3 + (k + 1) % CORNERS);
+        let tone = if k < 3 { Tone::Second } else { Tone::Body };
+        parts.push(Part::Face(vec![0, a, b], tone));
+        parts.push(Part::Face(vec![a, b, b + CORNERS, a + CORNERS], tone));
+    }
+    parts.push(Part::Face((3 + CORNERS..3 + 2 * CORNERS).collect(), Tone::Body));
+    Scene {
+        title: "Released with its axis at rest, a quarter of its speed",
+        rate: RATE,
+        speed: 0.25,
+        parts,
+        frames: samples.iter().map(frame).collect(),
+        captions: Vec::new(),
+        guides: Vec::new(),
+        trail: Some((2, 1000)),
+        view: View {
+            target: [0.0, 0.0, 0.052],
+            size: [0.19, 0.16],
+            yaw: 20.0,
+            pitch: 20.0,
+            turning: 0.0,
+            floor: Some([0.0, 0.1]),
+        },
+    }
+}

@@ -1,0 +1,46 @@
+//! A robot from a file: where its tool is, how it moves, what its motors have to do.
+//!
+//! ```text
+//! cargo run --example urdf_arm -p linkwork-models
+//! ```
+
+use linkwork::nalgebra::Vector6;
+use linkwork::prelude::*;
+
+/// A UR5. The path is relative to the package; all of its numbers become constants of the program.
+#[mechanism(urdf = "urdf/ur5.urdf")]
+struct Arm;
+
+fn main() {
+    println!("joints {:?}", Arm::VELOCITIES);
+    println!("frames {:?}\n", Arm::FRAMES);
+
+    let q = SVector::from([0.0, -1.2, 1.5, -0.3, 1.57, 0.0]);
+    let v = SVector::from([0.2, 0.1, -0.3, 0.0, 0.5, 0.0]);
+
+    // Frames are named at compile time: a slip in the name does not compile.
+    let tool = frame!(Arm, "tool0");
+    let placement = Arm.frame_placement(tool, &q);
+    println!("tool at           {:.4?}", placement.translation.vector.as_slice());
+
+    // The Jacobian turns joint velocities into the velocity of the tool: linear, then angular, in ground axes.
+    let jacobian = Arm.frame_jacobian(tool, &q);
+    println!("moves with        {:.4?}", (jacobian * v).as_slice());
+
+    // Joint velocities that move the tool straight up at 0.1 m/s without turning it.
+    let up = Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 0.0);
+    if let Some(inverse) = jacobian.try_inverse() {
+        println!("straight up by    {:.4?}", (inverse * up).as_slice());
+    }
+
+    // Torques that hold the arm still, and torques that also accelerate its elbow by 2 rad/s².
+    let rest = SVector::zeros();
+    let mut a = SVector::zeros();
+    a[2] = 2.0;
+    println!("held by           {:.3?}", Arm.inverse_dynamics(&q, &rest, &rest).as_slice());
+    let tau = Arm.inverse_dynamics(&q, &rest, &a);
+    println!("accelerated by    {:.3?}", tau.as_slice());
+
+    // And back: what these torques do is that acceleration.
+    println!("check             {:.3?}", Arm.forward_dynamics(&q, &rest, &tau).as_slice());
+}

@@ -1,0 +1,85 @@
+use linkwork::{Real, mechanism};
+
+/// The heavy symmetric top: a body of revolution that spins about a fixed point on its axis. Also called Lagrange's top.
+///
+/// Source: Landau and Lifshitz, *Mechanics* (1976), §35, problem 1; Goldstein, Poole and Safko, *Classical Mechanics*
+/// (2002), §5.7.
+///
+/// - Configuration: the unit quaternion of the ball joint `tip`; velocity: the angular velocity in the top's axes; z is
+///   the axis of the top, and up in the ground.
+/// - Euler's equations about the fixed point: `M = diag(A, A, C)` with `A = transverse + m h²`, and
+///   `h(q, ω) = ω × M ω − h e₃ × m g`, all in the top's axes.
+/// - Steady precession `Ω` at the inclination `θ` with the axial spin `n`: `A Ω² cos θ − C n Ω + m g h = 0`.
+/// - Upright it sleeps if `C² n² > 4 A m g h`.
+///
+/// Generic over its numbers.
+#[mechanism(gravity = -g * z)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTop<T: Real> {
+    /// Acceleration of free fall, m/s².
+    pub g: T,
+    /// Mass, kg.
+    pub mass: T,
+    /// Height of the centre of mass above the tip, m.
+    pub height: T,
+    /// Moment of inertia about the axis, kg·m².
+    pub axial: T,
+    /// Moment of inertia across the axis, about the centre of mass, kg·m².
+    pub transverse: T,
+
+    #[body(mass = mass, com = height * z, inertia = diagonal(transverse, transverse, axial))]
+    top: Body,
+    #[joint(ground -> top)]
+    tip: Ball,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near};
+    use linkwork::nalgebra::{UnitQuaternion, Vector3};
+    use linkwork::prelude::*;
+
+    const TOP: HeavyTop<f64> =
+        HeavyTop { g: 9.81, mass: 0.3, height: 0.05, axial: 2.4e-4, transverse: 1.8e-4 };
+
+    fn across() -> f64 {
+        TOP.transverse + TOP.mass * TOP.height * TOP.height
+    }
+
+    #[test]
+    fn eulers_equations() {
+        let turn = UnitQuaternion::from_euler_angles(0.4, -0.9, 1.7);
+        let omega = Vector3::new(3.0, -2.0, 40.0);
+        let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(across(), across(), TOP.axial));
+        let weight = turn.inverse() * Vector3::new(0.0, 0.0, -TOP.mass * TOP.g);
+        let torque = Vector3::new(0.0, 0.0, TOP.height).cross(&weight);
+        let q = SVector::from([turn.i, turn.j, turn.k, turn.w]);
+        assert_near(TOP.mass_matrix(&q), inertia, 1e-16);
+        assert_near(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
+    }
+
+    /// Slow and fast precession for the same spin: the axis stays at its inclination and turns at the rate foretold.
+    #[test]
+    fn steady_precession() -> Result<(), Error> {
+        let (theta, spin) = (0.5_f64, 150.0);
+        let (a, b, c) = (across() * theta.cos(), TOP.axial * spin, TOP.mass * TOP.g * TOP.height);
+        let root = (b * b - 4.0 * a * c).sqrt();
+        for rate in [2.0 * c / (b + root), (b + root) / (2.0 * a)] {
+            let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta);
+            let mut omega = tilt.inverse() * Vector3::new(0.0, 0.0, rate);
+            omega.z = spin;
+            let end = simulate(&TOP)
+                .from([tilt.i, tilt.j, tilt.k, tilt.w], omega)
+                .method(DormandPrince::new().tolerance(1e-11, 1e-11))
+                .duration(1.0 / rate)
+                .finish()?;
+            let axis = UnitQuaternion::from_quaternion(end.q.into()) * Vector3::z();
+            // The axis starts towards −y and turns by one radian.
+            assert_close(axis.z, theta.cos(), 1e-8);
+            assert_close(axis.x, theta.sin() * 1.0_f64.sin(), 1e-8);
+            assert_close(axis.y, -theta.sin() * 1.0_f64.cos(), 1e-8);
+        }
+        Ok(())
+    }
+}

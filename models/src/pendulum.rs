@@ -1,0 +1,71 @@
+use linkwork::{Real, mechanism};
+
+/// The simple pendulum: a particle at the end of a massless rod that turns about a horizontal pin.
+///
+/// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 1; the period: Landau and Lifshitz,
+/// *Mechanics* (1976), §11.
+///
+/// - Coordinate: `pin`, the angle from the vertical, rad, counter-clockwise seen from +z; y points up.
+/// - Equation of motion: `m l² θ̈ + m g l sin θ = τ`.
+/// - Period from rest at `θ₀`: `T = 4 √(l/g) K(sin ½θ₀) = 2π √(l/g) / agm(1, cos ½θ₀)`, with the
+///   arithmetic–geometric mean `agm`.
+///
+/// Generic over its numbers: `Pendulum<f32>`, `Pendulum<f64>` or anything that is [`Real`].
+#[mechanism(gravity = -g * y)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pendulum<T: Real> {
+    /// Acceleration of free fall, m/s².
+    pub g: T,
+    /// Mass of the particle, kg.
+    pub mass: T,
+    /// Length of the rod, m.
+    pub length: T,
+
+    #[body]
+    rod: Body,
+    #[particle(mass = mass, at = rod.at(-length * y))]
+    bob: Particle,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near};
+    use linkwork::prelude::*;
+
+    #[test]
+    fn equation_of_motion() {
+        let p = Pendulum { g: 9.81, mass: 1.3, length: 0.7 };
+        let (q, v, a) = (SVector::from([2.1]), SVector::from([-1.7]), SVector::from([0.4]));
+        let ml2 = 1.3 * 0.7 * 0.7;
+        let torque = ml2 * 0.4 + 1.3 * 9.81 * 0.7 * 2.1_f64.sin();
+        assert_near(p.inverse_dynamics(&q, &v, &a), SVector::from([torque]), 1e-14);
+        assert_close(p.kinetic_energy(&q, &v), ml2 * 1.7 * 1.7 / 2.0, 1e-14);
+        assert_close(p.potential_energy(&q), -1.3 * 9.81 * 0.7 * 2.1_f64.cos(), 1e-14);
+    }
+
+    #[test]
+    fn single_precision() {
+        let p = Pendulum { g: 10.0_f32, mass: 2.0, length: 0.5 };
+        let a = p.forward_dynamics(&SVector::from([0.3]), &SVector::from([0.0]), &SVector::from([0.0]));
+        assert!((a[0] + 20.0 * 0.3_f32.sin()).abs() < 1e-5);
+    }
+
+    #[test]
+    fn period_of_large_swings() {
+        let p = Pendulum { g: 9.81, mass: 1.0, length: 0.8 };
+        for start in [0.1_f64, 1.5, 3.0] {
+            let (mut a, mut b) = (1.0, (start / 2.0).cos());
+            while (a - b).abs() > 1e-15 {
+                (a, b) = ((a + b) / 2.0, f64::sqrt(a * b));
+            }
+            let period = 2.0 * std::f64::consts::PI * (0.8_f64 / 9.81).sqrt() / a;
+            let method = DormandPrince::new().tolerance(1e-12, 1e-12);
+            let run = simulate(&p).from([start], [0.0]).method(method);
+            let back = run.until_crossing(Crossing::Falling, |_, _, v| v[0]).finish();
+            assert_close(back.map_or(f64::NAN, |s| s.t), period, 1e-9);
+        }
+    }
+}

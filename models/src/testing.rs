@@ -1,0 +1,36 @@
+//! What the tests of the mechanisms share.
+
+use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, Translation3, Vector3};
+
+/// Holds what was generated against the closed form: relative to the largest entry, or absolute below one.
+#[track_caller]
+pub fn assert_near<const R: usize, const C: usize>(
+    found: SMatrix<f64, R, C>,
+    expected: SMatrix<f64, R, C>,
+    tolerance: f64,
+) {
+    let error = (found - expected).amax() / expected.amax().max(1.0);
+    assert!(error <= tolerance, "error {error:e}: found {found} expected {expected}");
+}
+
+/// The same for a number.
+#[track_caller]
+pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    let error = (found - expected).abs() / expected.abs().max(1.0);
+    assert!(error <= tolerance, "error {error:e}: found {found}, expected {expected}");
+}
+
+/// A turn about z and a displacement along it: one half of a Denavit–Hartenberg step.
+pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
+    placed(Vector3::z(), angle, d)
+}
+
+/// A turn about x and a displacement along it: the other half.
+pub fn about_x(angle: f64, a: f64) -> Isometry3<f64> {
+    placed(Vector3::x(), angle, a)
+}
+
+fn placed(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f64> {
+    let turn = Rotation3::new(axis * angle);
+    Isometry3::from_parts(Translation3::from(axis * distance), turn.into())
+}
