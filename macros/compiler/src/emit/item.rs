@@ -167,7 +167,9 @@ fn write_constants(out: &mut String, i: &Interface<'_>, equations: &str) {
         );
     }
     let about = match equations {
-        "" => "Empty: the equations of this mechanism are too long to be read. Those of small ones stand here as text.",
+        "" => {
+            "Empty: the equations of this mechanism are too long to be read. Those of small ones stand here as text."
+        }
         _ => "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
     };
     let _ = writeln!(out, "/// {about}\npub const EQUATIONS: &'static str = {equations:?};");
@@ -351,13 +353,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 }
 
 /// Puts struct and implementations together.
-fn assemble(
-    i: &Interface<'_>,
-    s: &Signature<'_>,
-    methods: &str,
-    frames: &[String],
-    docs: &str,
-) -> Emitted {
+fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
     let mut generics = i.shell.generics.clone();
     let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();

@@ -200,7 +200,8 @@ fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
     }
     let factor = rest.over(Monomial::atom(x));
     let square = Item { coefficient: leading.coefficient, factor, sum, power: 2 };
-    let there = |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && near(t.coefficient, s.coefficient));
+    let there =
+        |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && near(t.coefficient, s.coefficient));
     (square.sum.len() > 1 && expanded(&square).iter().all(there)).then_some(square)
 }
 

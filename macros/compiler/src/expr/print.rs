@@ -218,6 +218,5 @@ fn break_at(text: &str, room: usize) -> Option<usize> {
     best.map(|(_, at)| at)
 }
 
-
 #[cfg(test)]
 mod tests;

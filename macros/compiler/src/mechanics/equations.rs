@@ -172,7 +172,9 @@ fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> String {
         Quantity::Parameter(k) => model.parameters[k].clone(),
         Quantity::Configuration(k) => model.configuration[k].clone(),
         Quantity::Velocity(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "'" } else { "" }),
-        Quantity::Acceleration(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" }),
+        Quantity::Acceleration(k) => {
+            format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" })
+        }
         Quantity::Input(k) => model.inputs[k].0.clone(),
         Quantity::Time => "t".to_string(),
         Quantity::Force(k) => format!("tau{k}"),
@@ -184,7 +186,9 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> String {
     match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {
             let x = &model.velocities[k].0;
-            format!("L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}.")
+            format!(
+                "L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}."
+            )
         }
         None => {
             let w = &model.velocities[0].0;

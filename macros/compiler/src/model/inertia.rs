@@ -108,7 +108,13 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely the
     /// arguments stand in another order.
-    fn confused(&self, solid: &Name, names: &[&str], arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+    fn confused(
+        &self,
+        solid: &Name,
+        names: &[&str],
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> bool {
         for (name, argument) in names.iter().zip(arguments) {
             let mut silent = Diagnostics::new();
             let found = match (self.value(argument, &mut silent), *name == "axis") {
@@ -116,8 +122,11 @@ impl<'g> Scope<'_, 'g> {
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
                 _ => continue,
             };
-            cx.error(argument.place.clone(), format!("expected the {name} of the {}, found {found}", solid.text))
-                .help(format!("write `{}({})`", solid.text, names.join(", ")));
+            cx.error(
+                argument.place.clone(),
+                format!("expected the {name} of the {}, found {found}", solid.text),
+            )
+            .help(format!("write `{}({})`", solid.text, names.join(", ")));
             return true;
         }
         false

@@ -2,8 +2,8 @@
 //! ones with massless frames between.
 
 use super::Coordinate;
-use super::axis::sample;
 use super::axis::always;
+use super::axis::sample;
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
@@ -205,8 +205,7 @@ fn several<'a, 'g>(
         0 => format!("missing `{key}`: {what} has {number}"),
         n => format!("{what} has {number} in `{key}`, found {n}"),
     };
-    cx.error(place.clone(), message)
-        .help(format!("write `{key} = {example}`"));
+    cx.error(place.clone(), message).help(format!("write `{key} = {example}`"));
     None
 }
 

@@ -90,10 +90,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     {
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
-        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`"))
-            .help(
-                "remove the type parameter, or give it to a parameter: then all generated functions use it",
-            );
+        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
+            "remove the type parameter, or give it to a parameter: then all generated functions use it",
+        );
     }
     check_duplicates(&description, cx);
     Some(Mechanism { description, shell, urdf })
@@ -171,6 +170,14 @@ fn empty_description(item: &ItemStruct) -> Description {
         particles: Vec::new(),
         joints: Vec::new(),
         actions: Vec::new(),
+        coordinates: Vec::new(),
+        inputs: Vec::new(),
+        frames: Vec::new(),
+        points: Vec::new(),
+        definitions: Vec::new(),
+        outputs: Vec::new(),
+        energies: Vec::new(),
+        dissipations: Vec::new(),
     }
 }
 
@@ -320,6 +327,11 @@ fn check_duplicates(description: &Description, cx: &mut Diagnostics) {
     names.extend(description.particles.iter().map(|p| &p.name));
     names.extend(description.joints.iter().map(|j| &j.name));
     names.extend(description.actions.iter().map(|a| &a.name));
+    names.extend(description.coordinates.iter().map(|c| &c.name));
+    names.extend(description.frames.iter().map(|f| &f.name));
+    names.extend(description.points.iter().map(|p| &p.name));
+    names.extend(description.definitions.iter().chain(&description.outputs).map(|d| &d.name));
+    names.extend(description.energies.iter().chain(&description.dissipations).map(|(name, _)| name));
     check_distinct(&names, cx);
 }
 

@@ -208,7 +208,11 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     };
     if !matches!(suffix.as_str(), "" | "f64" | "f32") {
         let message = format!("a number cannot have the suffix `{suffix}`");
-        return Err(syn_error(literal.span(), &message, "all quantities are in SI units, all angles in radians"));
+        return Err(syn_error(
+            literal.span(),
+            &message,
+            "all quantities are in SI units, all angles in radians",
+        ));
     }
     match digits.parse::<f64>() {
         Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), 1),

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::diag::Diagnostics;
-use crate::expr::{Graph, Rotation, Vec3};
 use crate::expr::eval::eval;
 use crate::expr::polynomial::tests::Random;
+use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};
 use crate::model::{Motion, Pose};
@@ -30,7 +30,8 @@ fn equations_of(gravity: &str, item: &str) -> String {
 /// A number for every symbol; quaternions are unit.
 fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let mut r = Random(seed * 2 + 1);
-    let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| r.below(2000) as f64 / 1000.0 - 1.0).collect() };
+    let mut numbers =
+        |n: usize| -> Vec<f64> { (0..n).map(|_| r.below(2000) as f64 / 1000.0 - 1.0).collect() };
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
     for chart in &model.charts {
@@ -99,8 +100,7 @@ fn normal_forms_are_what_is_generated() {
 fn put<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
-    model.links[link].placement =
-        Pose { rotation: Rotation::about_axis(2, angle), translation: Vec3(place) };
+    model.links[link].placement = Pose { rotation: Rotation::about_axis(2, angle), translation: Vec3(place) };
 }
 
 /// Each rod of a double pendulum by its angle from the vertical.
@@ -145,12 +145,13 @@ fn large_mechanisms_have_no_text() {
     assert_eq!(equations_of("-9.81 * z", SKEW), "");
     let (mut bodies, mut parent) = (String::new(), "ground".to_string());
     for k in 0..5 {
-        bodies += &format!("#[body(mass = 1, com = x)] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,");
+        bodies += &format!(
+            "#[body(mass = 1, com = x)] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,"
+        );
         parent = format!("b{k}.at(x)");
     }
     assert_eq!(equations_of("-9.81 * y", &format!("struct Five {{ {bodies} }}")), "");
 }
-
 
 #[test]
 fn cart_pole_as_text() {
@@ -215,7 +216,15 @@ L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 
 #[test]
 fn timing() {
-    for (g, item) in [("-9.81 * y", CART_POLE), ("-g * y", DOUBLE_PENDULUM), ("-g * z", GYROSCOPE), ("-g * y", SHAFT), ("-g * y", TRIPLE), ("-g * z", ARM), ("-9.81 * z", SKEW)] {
+    for (g, item) in [
+        ("-9.81 * y", CART_POLE),
+        ("-g * y", DOUBLE_PENDULUM),
+        ("-g * z", GYROSCOPE),
+        ("-g * y", SHAFT),
+        ("-g * y", TRIPLE),
+        ("-g * z", ARM),
+        ("-9.81 * z", SKEW),
+    ] {
         with_model(g, item, |model| {
             let t0 = std::time::Instant::now();
             let joints = crate::mechanics::joints(&model);
