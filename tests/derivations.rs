@@ -144,6 +144,7 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
         power += u * match input {
+            Input::Named => g.zero(),
             Input::Coordinate(c) => mechanics::rate(model, c),
             Input::Force { link, point, along } => {
                 let (r, p) = &world[link.0];

@@ -4,9 +4,11 @@ use crate::diag::Diagnostics;
 use crate::emit::frames::{FrameSteps, LinkSteps};
 use crate::emit::{Argument, Function, Output, Shape};
 use crate::expr::Expr;
+use crate::expr::diff::Derivative;
 use crate::lower::{Program, lower};
 use crate::mechanics::{self, Joint, crba, energy, forces, frames, momentum, rnea};
-use crate::model::{Chart, Model, Quantity};
+use crate::model::kinematics::{symbols_in, time_derivative};
+use crate::model::{Chart, Model, OutputValue, Quantity};
 
 /// Up to how many velocities both algorithms of forward dynamics are derived and compared.
 const COMPARE: usize = 18;
@@ -25,6 +27,7 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     for f in &mut functions {
         f.program = program(model, &joints, &mass, &f.name);
     }
+    functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output)));
     Some(Output {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
@@ -89,6 +92,52 @@ fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Ma
         }
         None => done(&mechanics::ldl::solve(mass.clone(), r, joints)),
     }
+}
+
+/// The function of an output, and its Jacobian: how it changes with the velocities, or how its rate does if it depends
+/// on the configuration alone.
+fn output_functions(model: &Model<'_>, output: &OutputValue<'_>) -> Vec<Function> {
+    let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
+    let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+    let by_v = has(|q| matches!(q, Quantity::Velocity(_)));
+    let by_a = has(|q| matches!(q, Quantity::Acceleration(_)));
+    let by_u = has(|q| matches!(q, Quantity::Input(_)));
+    let mut arguments = vec![Argument::Q];
+    arguments.extend((by_v || by_a).then_some(Argument::V));
+    arguments.extend(by_a.then_some(Argument::A));
+    arguments.extend(by_u.then_some(Argument::U));
+    if model.time {
+        arguments.insert(0, Argument::T);
+    }
+    let shape = if output.values.len() == 1 { Shape::Scalar } else { Shape::Vector(output.values.len()) };
+    let mut functions = vec![Function {
+        name: output.name.clone(),
+        docs: vec![format!("The output `{}`.", output.name)],
+        arguments: arguments.clone(),
+        shape,
+        program: done(&output.values),
+    }];
+    if by_a {
+        return functions;
+    }
+    let rates: Vec<Expr<'_>> = match by_v {
+        true => output.values.clone(),
+        false => output.values.iter().map(|e| time_derivative(model.space(), *e)).collect(),
+    };
+    let mut entries = Vec::new();
+    for k in 0..model.nv() {
+        let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
+        entries.extend(rates.iter().map(|e| d.of(*e)));
+    }
+    let what = if by_v { "it changes with the velocities" } else { "its rate is this times `v`" };
+    functions.push(Function {
+        name: format!("{}_jacobian", output.name),
+        docs: vec![format!("Jacobian of the output `{}`: {what}.", output.name)],
+        arguments,
+        shape: Shape::Matrix(output.values.len(), model.nv()),
+        program: done(&entries),
+    });
+    functions
 }
 
 fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

@@ -320,7 +320,7 @@ fn scene(run: &Run) -> Scene {
         Part::Ball(29, 0.045, Tone::Second),
     ]);
     let home = hand(&HOME.into()).translation.vector;
-    let guide = (0..=120).map(|k| (home + eight(DRAWING * k as f64 / 120.0)[0]).into());
+    let guide = (0..=120).map(|k| (home + eight(DRAWING / 2.0 * k as f64 / 120.0)[0]).into());
     let every = (1.0 / (RATE * PERIOD)).round() as usize;
     Scene {
         title: "Figure eight with an unknown load",

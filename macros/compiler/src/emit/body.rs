@@ -271,7 +271,7 @@ fn write_result(out: &mut String, shape: Shape, outputs: &[Piece]) {
         Shape::Scalar => out.push_str(&outputs.first().map_or(String::new(), |p| p.text.clone())),
         Shape::Array(_) => out.push_str(&list(outputs)),
         Shape::Vector(_) => out.push_str(&storage(format!("[{}]", list(outputs)), "SVector")),
-        Shape::Square(n) => {
+        Shape::Square(n) | Shape::Matrix(n, _) => {
             let columns: Vec<String> = outputs.chunks(n.max(1)).map(list).collect();
             out.push_str(&storage(format!("[{}]", columns.join(", ")), "SMatrix"));
         }

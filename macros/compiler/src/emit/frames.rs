@@ -182,7 +182,8 @@ fn write_jacobian(
 ) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
-    let _ = writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
+    let _ =
+        writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
     for &link in path {
         write_link_placement(out, link, &links[link], s);
     }
@@ -198,7 +199,8 @@ fn write_jacobian(
         let state = if links[link].driven { format!("{}q, ", time(s)) } else { String::new() };
         let entries: Vec<String> =
             names.iter().map(|n| format!("{n}_0, {n}_1, {n}_2, {n}_3, {n}_4, {n}_5")).collect();
-        let _ = writeln!(out, "let [{}] = self.__link{link}_columns({state}&x{link}, &o);", entries.join(", "));
+        let _ =
+            writeln!(out, "let [{}] = self.__link{link}_columns({state}&x{link}, &o);", entries.join(", "));
         for (name, v) in names.iter().zip(velocities) {
             columns[*v].push(name.clone());
         }

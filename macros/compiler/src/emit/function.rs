@@ -64,6 +64,8 @@ pub enum Shape {
     Vector(usize),
     /// A square matrix; the outputs are its columns one after another.
     Square(usize),
+    /// A matrix; the outputs are its columns one after another.
+    Matrix(usize, usize),
     /// A plain array.
     Array(usize),
 }
@@ -121,6 +123,7 @@ impl Signature<'_> {
             Shape::Scalar => s.to_string(),
             Shape::Vector(n) => self.vector(n),
             Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
+            Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
         }
     }

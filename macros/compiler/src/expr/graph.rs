@@ -498,6 +498,12 @@ impl Graph {
                 return self.constant(y);
             }
         }
+        if f == Function::Sqrt
+            && let Node::Mul(x, y) = self.node(a)
+            && x == y
+        {
+            return self.call(Function::Abs, x);
+        }
         if f.is_odd() || f.is_even() {
             let (negative, a) = self.unsigned(a);
             return self.signed(f.is_odd() && negative, self.intern(Node::Call(f, a)));

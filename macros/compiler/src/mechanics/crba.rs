@@ -1,7 +1,7 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
-use super::Spatial;
 use super::kinematics::Joint;
+use super::{Spatial, inertances};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::model::{Inertia, Model};
 
@@ -19,6 +19,7 @@ pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
             add_column(model, joints, k, row, wrench, &mut m);
         }
     }
+    inertances::add_to_mass_matrix(model, &mut m);
     m
 }
 

@@ -2,7 +2,7 @@
 
 use super::crba::{composites, momentum, to_parent};
 use super::kinematics::{Joint, twists};
-use super::position;
+use super::{inertances, position};
 use crate::expr::{Expr, Vec3};
 use crate::model::Model;
 
@@ -14,7 +14,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
         .iter()
         .zip(&twists)
         .fold(model.graph.zero(), |sum, (link, twist)| sum + twist.dot(&momentum(&link.inertia, twist)));
-    twice * 0.5
+    twice * 0.5 + inertances::kinetic_energy(model)
 }
 
 /// Total mass of what moves, and its first moment about the ground's origin in ground axes.
@@ -46,5 +46,5 @@ pub fn potential_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g>
         let stretch = position(model, &spring.on) - spring.free;
         energy += spring.stiffness * 0.5 * stretch.square();
     }
-    energy
+    model.potentials.iter().fold(energy, |sum, e| sum + *e)
 }

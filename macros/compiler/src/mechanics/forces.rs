@@ -1,7 +1,8 @@
 //! Generalized forces of the inputs: by virtual work, `τ = Σ Sᵀ W` over the links that a wrench's link hangs from.
 
 use super::Spatial;
-use super::kinematics::Joint;
+use super::kinematics::{Joint, change_axes, velocity_gradient};
+use crate::expr::replace::replace;
 use crate::expr::{Expr, Vec3};
 use crate::model::{Direction, Input, LinkId, Model, Quantity};
 
@@ -13,6 +14,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
         match input {
+            Input::Named => {}
             Input::Coordinate(c) => tau[c.v] += u * g.num(c.ratio),
             Input::Force { link, point, along } => {
                 let force = resolve(joints, along, *link, Vec3::zero(g)) * u;
@@ -22,6 +24,16 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
             Input::Torque { link, about } => {
                 let moment = resolve(joints, about, *link, Vec3::zero(g)) * u;
                 wrenches[link.0].angular += moment;
+            }
+        }
+    }
+    for load in &model.loads {
+        // What acts without inputs is part of the bias.
+        let alone = replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()));
+        let by_inputs = load.force - alone;
+        if !by_inputs.is_zero() {
+            for (k, d) in velocity_gradient(load.rate) {
+                tau[k] += by_inputs * d;
             }
         }
     }
@@ -40,30 +52,4 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
 /// A direction in the axes of a link, by way of the nearest common ancestor's.
 fn resolve<'g>(joints: &[Joint<'g>], direction: &Direction<'g>, link: LinkId, zero: Vec3<'g>) -> Vec3<'g> {
     direction.iter().fold(zero, |sum, (from, v)| sum + change_axes(joints, *v, *from, Some(link)))
-}
-
-/// Components in the axes of `to` of a vector given in the axes of `from`.
-pub fn change_axes<'g>(
-    joints: &[Joint<'g>],
-    mut v: Vec3<'g>,
-    mut from: Option<LinkId>,
-    to: Option<LinkId>,
-) -> Vec3<'g> {
-    // Parents have smaller indices, so the deeper of two links is the one with the larger index.
-    let mut down: Vec<LinkId> = Vec::new();
-    let mut at = to;
-    while from != at {
-        match (from, at) {
-            (Some(f), a) if a.is_none_or(|a| f > a) => {
-                v = joints[f.0].rotation.to_parent(v);
-                from = joints[f.0].parent;
-            }
-            (_, Some(a)) => {
-                down.push(a);
-                at = joints[a.0].parent;
-            }
-            _ => break,
-        }
-    }
-    down.iter().rev().fold(v, |v, link| joints[link.0].rotation.to_child(v))
 }

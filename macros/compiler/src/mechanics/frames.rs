@@ -87,22 +87,8 @@ pub fn link_acceleration<'g>(
     v: &[Expr<'g>],
     a: &[Expr<'g>],
 ) -> Spatial<'g> {
-    let (rate, mut own) = (joint.twist(model, v), joint.relative(model, a));
-    if let Some(drift) = &joint.drift {
-        own = own.plus(&drift.acceleration);
-    }
-    let turning = rate.angular.cross(rate.linear);
-    if joint.parent.is_none() {
-        return Spatial { linear: own.linear + turning, angular: own.angular };
-    }
     let (twist, parent) = (given_spatial(model, 0), given_spatial(model, 6));
-    let w = joint.rotation.to_child(twist.angular);
-    let p = joint.translation;
-    let carried = parent.linear + parent.angular.cross(p) + twist.angular.cross(twist.angular.cross(p));
-    Spatial {
-        linear: joint.rotation.to_child(carried) + (w + w).cross(rate.linear) + turning + own.linear,
-        angular: joint.rotation.to_child(parent.angular) + w.cross(rate.angular) + own.angular,
-    }
+    joint.acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
 }
 
 /// Twist of a named frame in ground axes, from its link's placement and twist (18 given numbers).

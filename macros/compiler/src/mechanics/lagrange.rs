@@ -27,7 +27,7 @@ pub struct Lagrange<'g> {
 
 /// Rate of every entry of `q`, as an expression of `q` and `v`.
 pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nq()).map(|k| configuration_rate(model, k)).collect()
+    (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect()
 }
 
 /// Derives Lagrange's equations.
@@ -140,5 +140,9 @@ fn energies<'g>(
         let stretch = position(model, &spring.on) - spring.free;
         potential += spring.stiffness * 0.5 * stretch.square();
     }
+    for energy in &model.potentials {
+        potential += *energy;
+    }
+    kinetic += super::inertances::kinetic_energy(model);
     (kinetic, potential)
 }

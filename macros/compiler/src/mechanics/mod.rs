@@ -11,6 +11,7 @@ pub mod energy;
 pub mod equations;
 pub mod forces;
 pub mod frames;
+pub mod inertances;
 pub mod lagrange;
 pub mod ldl;
 pub mod momentum;
@@ -31,11 +32,12 @@ pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// True if every velocity belongs to one joint coordinate, so that the articulated-body algorithm applies.
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
-    model.links.iter().all(|link| match &link.motion {
-        Motion::Turn { coordinate, .. }
-        | Motion::Slide { coordinate, .. }
-        | Motion::Helix { coordinate, .. } => coordinate.ratio == 1.0 && coordinate.offset == 0.0,
-        Motion::Ball { .. } | Motion::Free { .. } => true,
-        Motion::Placed => false,
-    })
+    model.inertances.is_empty()
+        && model.links.iter().all(|link| match &link.motion {
+            Motion::Turn { coordinate, .. }
+            | Motion::Slide { coordinate, .. }
+            | Motion::Helix { coordinate, .. } => coordinate.ratio == 1.0 && coordinate.offset == 0.0,
+            Motion::Ball { .. } | Motion::Free { .. } => true,
+            Motion::Placed => false,
+        })
 }

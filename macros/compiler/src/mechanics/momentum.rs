@@ -1,9 +1,9 @@
 //! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the momentum of the whole.
 
-use super::Spatial;
 use super::crba::momentum;
 use super::energy::center_of_mass;
 use super::kinematics::{Joint, resistance, twists};
+use super::{Spatial, inertances};
 use crate::expr::{Expr, Vec3};
 use crate::model::Model;
 
@@ -40,7 +40,9 @@ fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]
 /// `p = M v`, without forming `M`.
 pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let momenta = composite_momenta(model, joints, &twists(model, joints, v));
-    project(model, joints, &momenta)
+    let mut p = project(model, joints, &momenta);
+    inertances::add_to_momentum(model, &mut p);
+    p
 }
 
 /// `ṗ − τ`. For a joint with subspace `S`, constant in link axes, `p = Sᵀ F` with `F` the momentum of all that the
@@ -66,6 +68,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
         }
     }
+    inertances::add_to_momentum_rate(model, &mut rate);
     for (rate, resistance) in rate.iter_mut().zip(resistance(model, true)) {
         *rate -= resistance;
     }

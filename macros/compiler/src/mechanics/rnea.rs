@@ -2,8 +2,8 @@
 //! the acceleration of the points of a link given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
-use super::Spatial;
 use super::kinematics::{Joint, resistance};
+use super::{Spatial, inertances};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::model::{Inertia, Model};
 
@@ -18,6 +18,7 @@ pub fn inverse_dynamics<'g>(
     let mut wrenches: Vec<Spatial<'g>> =
         model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect();
     let mut tau = resistance(model, true);
+    inertances::add_to_forces(model, a, &mut tau);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
         for dof in &joint.dofs {

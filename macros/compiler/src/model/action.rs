@@ -1,12 +1,12 @@
 //! Force elements and inputs: what they act on, and with which parameters.
 
 use super::build::Builder;
-use super::resolve::Axes;
 use super::tree::GROUND;
-use super::{Coordinate, Dashpot, Direction, Input, Spring};
+use super::world::{Level, View};
+use super::{Coordinate, Dashpot, Direction, Input, Load, Spring};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
-use crate::syntax::{Action, ActionKind, Expr, ExprKind};
+use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
 
 /// What an element acts on.
 enum Target<'g> {
@@ -19,80 +19,268 @@ enum Target<'g> {
 impl<'g> Builder<'_, 'g> {
     /// Adds one force element or input to the model.
     pub fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
-        let target = self.target(&action.on, cx);
-        match &action.kind {
-            ActionKind::Spring { stiffness, free: given } => {
-                let stiffness = self.scope.scalar(stiffness, cx);
-                let free = match given {
-                    Some((free, _)) => self.scope.scalar(free, cx),
-                    None => Some(self.scope.graph.zero()),
-                };
-                if let (Some((free, is_angle)), Some(Target::Coordinate(_, angle))) = (given, &target)
-                    && is_angle != angle
-                {
-                    let (is, key) =
-                        if *angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
-                    cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
-                        .help(format!("write `{key} = …`"));
-                }
-                let on = self.coordinate_of(target, "Spring", &action.on.place, cx);
-                if let (Some(on), Some(stiffness), Some(free)) = (on, stiffness, free) {
-                    self.model.springs.push(Spring { on, stiffness, free });
-                }
+        match (&action.kind, &action.on) {
+            (ActionKind::Force { along, value: None }, On::On(on)) => {
+                let target = self.target(on, cx);
+                self.add_input(action, on, target, along.as_ref(), false, cx);
             }
-            ActionKind::Dashpot { damping } => {
-                let written = damping;
-                let damping = self.scope.scalar(written, cx);
-                let on = self.coordinate_of(target, "Dashpot", &action.on.place, cx);
-                if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
-                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
-                }
-                if let (Some(on), Some(damping)) = (on, damping) {
-                    self.model.dashpots.push(Dashpot { on, damping });
-                }
+            (ActionKind::Torque { about, value: None }, On::On(on)) => {
+                let target = self.target(on, cx);
+                self.add_input(action, on, target, about.as_ref(), true, cx);
             }
-            ActionKind::Force { along } => self.add_input(action, target, along.as_ref(), false, cx),
-            ActionKind::Torque { about } => self.add_input(action, target, about.as_ref(), true, cx),
+            (ActionKind::Force { along, value: Some(value) }, On::On(on)) => {
+                self.add_value(on, along.as_ref(), value, false, cx);
+            }
+            (ActionKind::Torque { about, value: Some(value) }, On::On(on)) => {
+                self.add_value(on, about.as_ref(), value, true, cx);
+            }
+            (ActionKind::Gravity { constant, mu }, on) => {
+                self.add_gravity(action, on, constant.as_ref(), mu.as_ref(), cx);
+            }
+            (_, on) => self.add_element(action, on, cx),
         }
     }
 
-    fn coordinate_of(
+    /// What works on a length or an angle.
+    fn add_element(&mut self, action: &Action, on: &On, cx: &mut Diagnostics) {
+        let (stretch, angle) = match on {
+            On::On(e) => match self.target(e, cx) {
+                Some(Target::Coordinate(c, angle)) => {
+                    if self.add_plain(action, c, angle, cx) {
+                        return;
+                    }
+                    (self.coordinate_stretch(&c), Some(angle))
+                }
+                Some(Target::Body(..)) => {
+                    let what = kind_word(&action.kind);
+                    cx.error(
+                        e.place.clone(),
+                        format!("{what} acts on the coordinate of a joint, but this is a body"),
+                    )
+                    .help("name a joint, as in `on = hinge`, or two points: `between = (first, second)`");
+                    return;
+                }
+                None => return,
+            },
+            On::Between(a, b) => match self.distance(a, b, cx) {
+                Some(stretch) => (stretch, None),
+                None => return,
+            },
+        };
+        match &action.kind {
+            ActionKind::Spring { law, free } => {
+                if let Some(free) = self.free_length(free, angle.unwrap_or(false), cx) {
+                    self.add_spring(stretch, law, free, cx);
+                }
+            }
+            ActionKind::Dashpot { law } => self.add_dashpot(&stretch, law, cx),
+            ActionKind::Inerter { inertance } => self.add_inerter(&stretch, inertance, cx),
+            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
+                let all = [
+                    Some(coulomb),
+                    stiction.as_ref(),
+                    stribeck_speed.as_ref(),
+                    viscous.as_ref(),
+                    speed.as_ref(),
+                ];
+                self.add_friction(&stretch, all, on.place(), cx);
+            }
+            ActionKind::Attraction { strength } => {
+                if let Some(strength) = self.scope.scalar(strength, cx) {
+                    self.add_attraction(&stretch, strength);
+                }
+            }
+            ActionKind::Gravity { .. } | ActionKind::Force { .. } | ActionKind::Torque { .. } => {}
+        }
+    }
+
+    fn free_length(
         &self,
-        target: Option<Target<'g>>,
-        what: &str,
-        place: &Place,
+        given: &Option<(Expr, bool)>,
+        angle: bool,
         cx: &mut Diagnostics,
-    ) -> Option<Coordinate> {
-        match target? {
-            Target::Coordinate(c, _) => Some(c),
-            Target::Body(..) => {
-                cx.error(
-                    place.clone(),
-                    format!("a {what} acts on the coordinate of a joint, but this is a body"),
-                )
-                .help("name a joint, as in `on = hinge`; between two bodies it is not yet supported");
-                None
+    ) -> Option<crate::expr::Expr<'g>> {
+        let Some((free, is_angle)) = given else { return Some(self.scope.graph.zero()) };
+        if *is_angle != angle {
+            let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+            cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+                .help(format!("write `{key} = …`"));
+        }
+        self.scope.scalar(free, cx)
+    }
+
+    /// Linear springs and dashpots on a coordinate; false for everything else.
+    fn add_plain(&mut self, action: &Action, on: Coordinate, angle: bool, cx: &mut Diagnostics) -> bool {
+        match &action.kind {
+            ActionKind::Spring { law: Law::Linear(stiffness), free } => {
+                let stiffness = self.scope.scalar(stiffness, cx);
+                let free = self.free_length(free, angle, cx);
+                if let (Some(stiffness), Some(free)) = (stiffness, free) {
+                    self.model.springs.push(Spring { on, stiffness, free });
+                }
+            }
+            ActionKind::Dashpot { law: Law::Linear(written) } => {
+                let damping = self.scope.scalar(written, cx);
+                if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
+                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
+                }
+                if let Some(damping) = damping {
+                    self.model.dashpots.push(Dashpot { on, damping });
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Central gravity: between two bodies with a gravitational constant, or towards a point with a gravitational
+    /// parameter, which also turns a body with inertia.
+    fn add_gravity(
+        &mut self,
+        action: &Action,
+        on: &On,
+        constant: Option<&Expr>,
+        mu: Option<&Expr>,
+        cx: &mut Diagnostics,
+    ) {
+        let On::Between(a, b) = on else {
+            cx.error(on.place().clone(), "gravity acts between two bodies, or a point and a body").help(
+                "write `between = (sun, planet), constant = G` or `between = (ground, satellite), mu = mu`",
+            );
+            return;
+        };
+        let stretch = self.distance(a, b, cx);
+        match (constant, mu) {
+            (Some(constant), None) => {
+                let constant = self.scope.scalar(constant, cx);
+                let (first, second) = (self.mass_of(a, cx), self.mass_of(b, cx));
+                if let (Some(g), Some(m1), Some(m2), Some(stretch)) = (constant, first, second, stretch) {
+                    self.add_attraction(&stretch, g * m1 * m2);
+                }
+            }
+            (None, Some(mu)) => {
+                let mu = self.scope.scalar(mu, cx);
+                if let (Some(mu), Some(m), Some(stretch)) = (mu, self.mass_of(b, cx), stretch) {
+                    self.add_attraction(&stretch, mu * m);
+                    self.turn_by_gravity(a, b, mu, cx);
+                }
+            }
+            _ => {
+                cx.error(action.name.place.clone(), "gravity has a `constant` or a `mu`").help(
+                    "`constant` is that of two masses, `mu` the gravitational parameter of the first place",
+                );
             }
         }
+    }
+
+    fn turn_by_gravity(&mut self, a: &Expr, b: &Expr, mu: crate::expr::Expr<'g>, cx: &mut Diagnostics) {
+        let ExprKind::Name(name) = &b.kind else { return };
+        let Some(index) = self.held_index(name).filter(|k| *k < self.description.bodies.len()) else {
+            return;
+        };
+        if let (Some(center), Some(body)) = (self.scope.place(a, cx), self.scope.place(b, cx)) {
+            self.add_gravity_gradient(&body, &center, mu, index);
+        }
+    }
+
+    /// The mass of a body or particle; its centre of mass must be its origin.
+    fn mass_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<crate::expr::Expr<'g>> {
+        if let ExprKind::Name(name) = &e.kind {
+            if let Some(p) = self.description.particles.iter().find(|p| p.name.text == *name) {
+                return self.scope.scalar(&p.mass, cx);
+            }
+            if let Some(k) = self.description.bodies.iter().position(|b| b.name.text == *name) {
+                let (mass, com, _) = self.masses.get(k).copied().flatten()?;
+                if !com.is_zero() {
+                    cx.error(
+                        e.place.clone(),
+                        format!("gravity acts at the origin of `{name}`, which is not its centre of mass"),
+                    )
+                    .help("put the body's origin at its centre of mass");
+                    return None;
+                }
+                return Some(mass);
+            }
+        }
+        cx.error(e.place.clone(), "expected a body or a particle, which has mass");
+        None
+    }
+
+    /// A force or torque with a value.
+    fn add_value(
+        &mut self,
+        on: &Expr,
+        direction: Option<&Expr>,
+        value: &Expr,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        if let Some(direction) = direction {
+            cx.error(direction.place.clone(), "a value has a direction of its own")
+                .help("write the direction into the value: `value = magnitude * x`");
+            return;
+        }
+        let ground = Some((None, super::Pose::identity(self.scope.graph)));
+        // A named point can be pushed as well.
+        let point = match &on.kind {
+            ExprKind::Name(name)
+                if self.joint_coordinates(name).is_none() && self.held_index(name).is_none() =>
+            {
+                self.placeable.contains(name)
+            }
+            _ => false,
+        };
+        let target = match point {
+            true => None,
+            false => match self.target(on, cx) {
+                Some(target) => Some(target),
+                None => return,
+            },
+        };
+        if let Some(Target::Coordinate(c, angle)) = &target {
+            if *angle != torque {
+                wrong_kind(on, *angle, cx);
+                return;
+            }
+            let force =
+                self.scope.with_view(View::new(Level::Motion, ground), |scope| scope.scalar(value, cx));
+            if let Some(force) = force {
+                let rate = self.coordinate_stretch(c).rate;
+                self.model.loads.push(Load { rate, force, dissipative: false });
+            }
+            return;
+        }
+        let Some(place) = self.scope.place(on, cx) else { return };
+        let Some(link) = place.link else {
+            cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
+            return;
+        };
+        let view = View::new(Level::Motion, Some((place.link, place.pose.clone())));
+        let Some(terms) = self.scope.with_view(view, |scope| scope.terms(value, cx)) else { return };
+        let world = self.scope.world.borrow();
+        let zero = Vec3::zero(self.scope.graph);
+        let force = world.resolve(&terms, place.link, zero);
+        let twist = world.twists[link.0];
+        drop(world);
+        let rate = match torque {
+            true => twist.angular,
+            false => twist.linear + twist.angular.cross(place.pose.translation),
+        };
+        self.add_load(rate, force);
     }
 
     fn add_input(
         &mut self,
         action: &Action,
+        on: &Expr,
         target: Option<Target<'g>>,
         direction: Option<&Expr>,
         torque: bool,
         cx: &mut Diagnostics,
     ) {
         let Some(target) = target else { return };
-        let place = &action.on.place;
         let input = match target {
-            Target::Coordinate(_, angle) if angle != torque => {
-                let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
-                cx.error(place.clone(), format!("this coordinate is {is}"))
-                    .help(format!("what acts on it is a {other}"));
-                return;
-            }
+            Target::Coordinate(_, angle) if angle != torque => return wrong_kind(on, angle, cx),
             Target::Coordinate(c, _) => {
                 if let Some(direction) = direction {
                     cx.error(direction.place.clone(), "the joint itself gives the direction")
@@ -100,17 +288,25 @@ impl<'g> Builder<'_, 'g> {
                 }
                 Input::Coordinate(c)
             }
-            Target::Body(body, at) => match self.body_input(action, body, at, direction, torque, cx) {
+            Target::Body(body, at) => match self.body_input(action, on, body, at, direction, torque, cx) {
                 Some(input) => input,
                 None => return,
             },
         };
-        self.model.inputs.push((action.name.text.clone(), input));
+        self.set_input(&action.name.text, input);
+    }
+
+    /// Puts an input at its place in the order of declaration.
+    fn set_input(&mut self, name: &str, input: Input<'g>) {
+        if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
+            *slot = input;
+        }
     }
 
     fn body_input(
         &mut self,
         action: &Action,
+        on: &Expr,
         body: usize,
         at: Vec3<'g>,
         direction: Option<&Expr>,
@@ -123,28 +319,17 @@ impl<'g> Builder<'_, 'g> {
                 .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
             return None;
         };
-        let terms = self.scope.vector(direction, cx)?;
         let (link, pose) = self.placed(body)?;
+        let view = View::new(Level::Constant, Some((link, pose.clone())));
+        let terms = self.scope.with_view(view, |scope| scope.terms(direction, cx))?;
         let Some(link) = link else {
             cx.error(
-                action.on.place.clone(),
+                on.place.clone(),
                 "this body is fixed to the ground: nothing that acts on it has an effect",
             );
             return None;
         };
-        let mut sum: Direction<'g> = Vec::new();
-        for (axes, v) in terms {
-            let (link, v) = match &axes {
-                Axes::Own => (Some(link), pose.rotation.to_parent(v)),
-                Axes::Of(name) if name == GROUND => (None, v),
-                Axes::Of(name) => {
-                    let other = self.held_index(name)?;
-                    let (link, pose) = self.placed(other)?;
-                    (link, pose.rotation.to_parent(v))
-                }
-            };
-            sum.push((link, v));
-        }
+        let sum: Direction<'g> = terms;
         if sum.iter().all(|(_, v)| v.is_zero()) {
             cx.error(direction.place.clone(), "this direction is zero");
             return None;
@@ -245,5 +430,25 @@ impl<'g> Builder<'_, 'g> {
                 .suggest(name, known.iter().map(String::as_str));
         }
         found
+    }
+}
+
+fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+    let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
+    cx.error(on.place.clone(), format!("this coordinate is {is}"))
+        .help(format!("what acts on it is a {other}"));
+}
+
+/// The word of an element with its article.
+fn kind_word(kind: &ActionKind) -> &'static str {
+    match kind {
+        ActionKind::Spring { .. } => "a Spring",
+        ActionKind::Dashpot { .. } => "a Dashpot",
+        ActionKind::Inerter { .. } => "an Inerter",
+        ActionKind::Friction { .. } => "a Friction",
+        ActionKind::Gravity { .. } => "a Gravity",
+        ActionKind::Attraction { .. } => "an Attraction",
+        ActionKind::Force { .. } => "a Force",
+        ActionKind::Torque { .. } => "a Torque",
     }
 }

@@ -2,15 +2,19 @@
 
 use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
+use super::kinematics::{accelerations, twists};
 use super::resolve::Scope;
-use super::tree::{GROUND, Held, Order, find_tree};
+use super::tree::{GROUND, Held, find_tree};
+use super::world::{Level, Placed, PlacedKind, View, World};
 use super::{
     Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
-    Pose,
+    Pose, Quantity,
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};
-use crate::syntax::{ActionKind, Body, Description, Endpoint, ExprKind, Joint, JointKind, Name, Particle};
+use crate::syntax::{
+    Action, ActionKind, Body, Description, Endpoint, Joint, JointKind, Name, Particle, Target,
+};
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
 const MAX_VELOCITIES: usize = 128;
@@ -29,17 +33,25 @@ struct JointCoordinates {
     plain: Vec<(String, Coordinate, bool)>,
 }
 
+/// Mass, centre of mass in body axes, inertia about it.
+pub type MassProperties<'g> = (crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>);
+
 /// The model under construction.
 pub struct Builder<'a, 'g> {
     /// Where names are looked up.
     pub scope: Scope<'a, 'g>,
     /// What is built.
     pub model: Model<'g>,
-    description: &'a Description,
+    /// What the user wrote.
+    pub description: &'a Description,
     /// Bodies and jointed particles.
     held: Vec<Held<'a>>,
     /// Their placement, once known.
-    places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
+    pub places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
+    /// Names of everything that has a place or axes.
+    pub placeable: Vec<String>,
+    /// By body: mass, centre of mass, central inertia.
+    pub masses: Vec<Option<MassProperties<'g>>>,
     /// By joint.
     coordinates: Vec<JointCoordinates>,
 }
@@ -71,13 +83,16 @@ pub fn build_model<'g>(
     }
     let order = find_tree(description, &builder.held, &builder.scope, cx);
     match &order {
-        Some(order) => builder.build_links(order, cx),
+        Some(order) => builder.place_all(order, cx),
         None => builder.check_joints(cx),
     }
     builder.add_masses(cx);
-    if order.is_some() {
+    if order.is_some() && builder.is_placed() {
+        builder.know_motion();
         builder.add_actions(cx);
-        builder.add_frames(cx);
+        builder.add_expressions(cx);
+        builder.find_dependencies();
+        builder.add_frames();
         builder.check_finite(cx);
     }
     builder.check_unused(cx);
@@ -99,11 +114,19 @@ impl<'a, 'g> Builder<'a, 'g> {
             graph,
             parameters: &description.parameters,
             used: vec![false; description.parameters.len()].into(),
-            bodies: all.clone().map(|n| n.text.clone()).collect(),
+            bodies: all
+                .clone()
+                .chain(description.frames.iter().map(|f| &f.name))
+                .map(|n| n.text.clone())
+                .collect(),
             joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
+            inputs: &description.inputs,
+            definitions: &description.definitions,
+            view: View::new(Level::Constant, None).into(),
+            world: World::default().into(),
         };
-        for name in all.filter(|n| n.text == GROUND) {
+        for name in all.clone().filter(|n| n.text == GROUND) {
             cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move");
         }
         check_parameter_names(&description.parameters, cx);
@@ -135,15 +158,33 @@ impl<'a, 'g> Builder<'a, 'g> {
             springs: Vec::new(),
             dashpots: Vec::new(),
             frictions: Vec::new(),
+            potentials: Vec::new(),
+            dissipations: Vec::new(),
+            loads: Vec::new(),
+            inertances: Vec::new(),
+            outputs: Vec::new(),
         };
         let places = vec![None; held.len()];
-        Builder { scope, model, description, held, places, coordinates: Vec::new() }
+        let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
+        placeable.extend(description.frames.iter().map(|f| f.name.text.clone()));
+        placeable.extend(description.points.iter().map(|p| p.name.text.clone()));
+        Builder {
+            scope,
+            model,
+            description,
+            held,
+            places,
+            coordinates: Vec::new(),
+            placeable,
+            masses: Vec::new(),
+        }
     }
 
     /// Numbers `q` and `v` in the order of declaration. Joints that follow another one come after, since their
     /// masters may be declared later.
     fn number_coordinates(&mut self, cx: &mut Diagnostics) {
-        for joint in &self.description.joints {
+        for (j, joint) in self.description.joints.iter().enumerate() {
+            self.number_free_coordinates(j);
             let (q, v) = (self.model.nq(), self.model.nv());
             let mut plain = Vec::new();
             if joint.mimic.is_none() {
@@ -160,8 +201,10 @@ impl<'a, 'g> Builder<'a, 'g> {
                     self.model.velocities.push((full, joint.name.place.clone()));
                 }
             }
+            self.scope.world.borrow_mut().coordinates.extend(plain.iter().cloned());
             self.coordinates.push(JointCoordinates { q, v, plain });
         }
+        self.number_free_coordinates(self.description.joints.len());
         for (k, joint) in self.description.joints.iter().enumerate() {
             let Some(mimic) = &joint.mimic else { continue };
             let master = self.description.joints.iter().position(|j| j.name.text == mimic.joint.text);
@@ -173,6 +216,11 @@ impl<'a, 'g> Builder<'a, 'g> {
                         ..*c
                     };
                     let angle = is_angle(joint.kind, "");
+                    self.scope.world.borrow_mut().coordinates.push((
+                        joint.name.text.clone(),
+                        coordinate,
+                        angle,
+                    ));
                     self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
                 }
                 _ => {
@@ -183,13 +231,30 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
+    /// Free coordinates that are declared after the given number of joints.
+    fn number_free_coordinates(&mut self, joints: usize) {
+        for free in self.description.coordinates.iter().filter(|c| c.joints_before == joints) {
+            let (q, v) = (self.model.nq(), self.model.nv());
+            self.model.configuration.push(free.name.text.clone());
+            self.model.velocities.push((free.name.text.clone(), free.name.place.clone()));
+            self.model.charts.push(Chart::Plain(q, v));
+            let mut world = self.scope.world.borrow_mut();
+            world.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
+        }
+    }
+
     /// Resolves what the joints say although the tree is broken, so that all mistakes are reported at once.
     fn check_joints(&self, cx: &mut Diagnostics) {
         for joint in &self.description.joints {
-            let _ = self.scope.motions(joint, cx);
-            let _ = self.endpoint(&joint.parent, cx);
-            let _ = self.endpoint(&joint.child, cx);
+            self.check_joint(joint, cx);
         }
+    }
+
+    /// Resolves what one joint says, for its mistakes alone.
+    pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
+        let _ = self.scope.motions(joint, cx);
+        let _ = self.endpoint(&joint.parent, cx);
+        let _ = self.endpoint(&joint.child, cx);
     }
 
     fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
@@ -201,23 +266,47 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some(Pose { rotation: rotation?, translation: translation? })
     }
 
-    fn build_links(&mut self, order: &Order, cx: &mut Diagnostics) {
-        for (j, parent, child) in &order.joints {
-            let joint = &self.description.joints[*j];
-            let motions = self.scope.motions(joint, cx);
-            let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
-            let start = match parent {
-                None => Some((None, Pose::identity(self.scope.graph))),
-                Some(body) => self.places[*body].clone(),
-            };
-            if let (Some(motions), Some(on_parent), Some(on_child), Some((link, pose))) =
-                (motions, on_parent, on_child, start)
-            {
-                let (link, pose) = self.add_chain(*j, &motions, link, pose.then(&on_parent));
-                self.places[*child] = Some((link, pose.then(&on_child.inverse())));
-            }
-            self.add_passive(*j, joint, cx);
+    /// Places the child of a joint.
+    pub fn place_joint(&mut self, j: usize, _parent: Option<usize>, child: usize, cx: &mut Diagnostics) {
+        let joint = &self.description.joints[j];
+        let motions = self.scope.motions(joint, cx);
+        let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
+        let start = self.joint_parent(&joint.parent.body, cx);
+        if let (Some(motions), Some(on_parent), Some(on_child), Some((link, pose))) =
+            (motions, on_parent, on_child, start)
+        {
+            let (link, pose) = self.add_chain(j, &motions, link, pose.then(&on_parent));
+            let pose = pose.then(&on_child.inverse());
+            let kind =
+                if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };
+            self.remember(&self.held[child].name.text, link, pose.clone(), kind);
+            self.places[child] = Some((link, pose));
         }
+        self.add_passive(j, joint, cx);
+    }
+
+    /// True if every body has its place.
+    fn is_placed(&self) -> bool {
+        self.places.iter().all(Option::is_some)
+    }
+
+    /// Twists and accelerations of the links, for the expressions that name velocities.
+    fn know_motion(&mut self) {
+        let g = self.scope.graph;
+        let v: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
+        let a: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Acceleration(k).expr(g)).collect();
+        // Robots are large, and few of them name a velocity.
+        let d = self.description;
+        let plain = d.actions.iter().all(|a| !needs_motion(a))
+            && d.outputs.is_empty()
+            && d.dissipations.is_empty()
+            && d.definitions.is_empty();
+        if plain {
+            return;
+        }
+        let mut world = self.scope.world.borrow_mut();
+        world.twists = twists(&self.model, &world.joints, &v);
+        world.accelerations = accelerations(&self.model, &world.joints, &world.twists, &v, &a);
     }
 
     /// Adds one link for each motion; returns the last link and the joint's child frame on it.
@@ -248,8 +337,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 Elementary::Free => Motion::Free { q: own.q, v: own.v },
             };
             let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
-            self.model.links.push(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) });
-            link = Some(LinkId(self.model.links.len() - 1));
+            link =
+                Some(self.add_link(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) }));
             pose = Pose { rotation: aligned.inverse(), translation: Vec3::zero(graph) };
         }
         (link, pose)
@@ -272,7 +361,9 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn add_masses(&mut self, cx: &mut Diagnostics) {
         for (k, body) in self.description.bodies.iter().enumerate() {
-            if let Some(inertia) = self.body_inertia(body, cx)
+            let inertia = self.body_inertia(body, cx);
+            self.masses.push(inertia);
+            if let Some(inertia) = inertia
                 && let Some((Some(link), pose)) = self.places[k].clone()
             {
                 self.attach(link, &pose, inertia);
@@ -351,71 +442,31 @@ impl<'a, 'g> Builder<'a, 'g> {
                 format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
             );
         }
-        let Some(placed) = self.particle_place(particle, cx) else {
-            return;
-        };
-        if let (Some(mass), (Some(link), pose)) = (mass, &placed) {
-            self.attach(*link, pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
+        let placed = self.scope.world.borrow().places.get(&particle.name.text).cloned();
+        if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
+            self.attach(link, &pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
         }
-    }
-
-    /// Where a particle sits: its own joint's frame, or a point of a body.
-    fn particle_place(
-        &self,
-        particle: &Particle,
-        cx: &mut Diagnostics,
-    ) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let Some(at) = &particle.at else {
-            return self.held_index(&particle.name.text).and_then(|k| self.placed(k));
-        };
-        if let ExprKind::Method(body, method, arguments) = &at.kind
-            && let (ExprKind::Name(name), "at", [vector]) =
-                (&body.kind, method.text.as_str(), arguments.as_slice())
-        {
-            let vector = self.scope.own_vector(vector, cx);
-            if name == GROUND {
-                return Some((
-                    None,
-                    Pose { rotation: Rotation::identity(self.scope.graph), translation: vector? },
-                ));
-            }
-            let Some(k) = self.held_index(name) else {
-                let known = self.held_names();
-                cx.error(body.place.clone(), format!("unknown body `{name}`"))
-                    .suggest(name, known.iter().map(String::as_str));
-                return None;
-            };
-            let (link, pose) = self.placed(k)?;
-            return Some((link, Pose { translation: pose.point(vector?), rotation: pose.rotation }));
-        }
-        cx.error(at.place.clone(), "a particle sits at a point of a body")
-            .help("write `at = body.at(length * x)`");
-        None
     }
 
     fn add_actions(&mut self, cx: &mut Diagnostics) {
+        // Inputs without an element of their own appear in expressions; the others are filled in by their elements.
+        for input in &self.description.inputs {
+            self.model.inputs.push((input.text.clone(), Input::Named));
+        }
         for action in &self.description.actions {
             self.add_action(action, cx);
         }
     }
 
-    fn add_frames(&mut self, cx: &mut Diagnostics) {
-        for (k, body) in self.description.bodies.iter().enumerate() {
-            if let Some((link, pose)) = self.places[k].clone() {
-                self.model.frames.push(NamedFrame { name: body.name.text.clone(), link, pose });
+    fn add_frames(&mut self) {
+        let d = self.description;
+        let names = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
+        let world = self.scope.world.borrow();
+        for name in names.chain(d.points.iter().map(|p| &p.name)) {
+            if let Some(p) = world.places.get(&name.text) {
+                let (name, link, pose) = (name.text.clone(), p.link, p.pose.clone());
+                self.model.frames.push(NamedFrame { name, link, pose });
             }
-        }
-        let mut silent = Diagnostics::new();
-        for particle in &self.description.particles {
-            if let Some((link, pose)) = self.particle_place(particle, &mut silent) {
-                self.model.frames.push(NamedFrame { name: particle.name.text.clone(), link, pose });
-            }
-        }
-        if self.model.frames.len() < self.description.bodies.len() && cx.is_empty() {
-            cx.error(
-                self.description.name.place.clone(),
-                "a body has no place (this is a mistake of Linkwork's)",
-            );
         }
     }
 
@@ -484,20 +535,40 @@ fn check_parameter_names(parameters: &[Name], cx: &mut Diagnostics) {
     }
 }
 
+/// True for force elements that are not on a coordinate, or have a law or a value.
+fn needs_motion(action: &Action) -> bool {
+    let value = |v: &Option<crate::syntax::Expr>| v.is_some();
+    match &action.kind {
+        ActionKind::Force { value: v, .. } | ActionKind::Torque { value: v, .. } => value(v),
+        ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
+        ActionKind::Dashpot { law } => !matches!(law, crate::syntax::Law::Linear(_)),
+        _ => matches!(action.on, Target::Between(..)),
+    }
+}
+
 /// Names of the entries of `q`, `v` and `u` and of the frames of a description that may be wrong: enough for the
 /// signatures of what would have been generated.
 pub fn outline(description: &Description) -> (Vec<String>, Vec<String>, Vec<String>, Vec<String>) {
-    let (mut q, mut v, mut u) = (Vec::new(), Vec::new(), Vec::new());
-    for joint in description.joints.iter().filter(|j| j.mimic.is_none()) {
+    let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
+    for (j, joint) in description.joints.iter().enumerate() {
+        let free =
+            description.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
+        let free: Vec<String> = free.collect();
+        q.extend(free.iter().cloned());
+        v.extend(free);
+        if joint.mimic.is_some() {
+            continue;
+        }
         let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));
     }
-    for action in &description.actions {
-        if matches!(action.kind, ActionKind::Force { .. } | ActionKind::Torque { .. }) {
-            u.push(action.name.text.clone());
-        }
+    let last = description.coordinates.iter().filter(|c| c.joints_before == description.joints.len());
+    for free in last {
+        q.push(free.name.text.clone());
+        v.push(free.name.text.clone());
     }
+    u.extend(description.inputs.iter().map(|i| i.text.clone()));
     (q, v, u, description.bodies.iter().map(|b| b.name.text.clone()).collect())
 }

@@ -37,9 +37,22 @@ impl<'g> Spatial<'g> {
     }
 }
 
+/// The configuration space, for rates of expressions of the coordinates.
+#[derive(Clone, Copy)]
+pub struct Space<'a, 'g> {
+    /// Owner of the expressions.
+    pub graph: &'g Graph,
+    /// Its parts.
+    pub charts: &'a [Chart],
+}
+
 /// Value of a coordinate as an expression of `q`.
 pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
-    let g = model.graph;
+    position_in(model.graph, c)
+}
+
+/// Value of a coordinate as an expression of `q`.
+pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
     Quantity::Configuration(c.q).expr(g) * g.num(c.ratio) + g.num(c.offset)
 }
 
@@ -47,7 +60,6 @@ pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     Quantity::Velocity(c.v).expr(model.graph) * model.graph.num(c.ratio)
 }
-
 
 /// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there but for links
 /// that are placed by expressions.
@@ -123,12 +135,12 @@ impl<'g> Joint<'g> {
 
 /// The joints of all links, at the configuration `q`.
 pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
-    model.links.iter().map(|link| joint(model, link)).collect()
+    model.links.iter().map(|link| joint(model.space(), link)).collect()
 }
 
 /// The joint of a link.
-pub fn joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
-    let g = model.graph;
+pub fn joint<'g>(space: Space<'_, 'g>, link: &super::Link<'g>) -> Joint<'g> {
+    let g = space.graph;
     let zero = Vec3::zero(g);
     let q = |k: usize| Quantity::Configuration(k).expr(g);
     let single = |c: &Coordinate, linear, angular| {
@@ -136,30 +148,30 @@ pub fn joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
     };
     let (motion, shift, dofs) = match &link.motion {
         Motion::Turn { axis, coordinate } => {
-            (Rotation::eigenaxis(*axis, position(model, coordinate)), zero, single(coordinate, zero, *axis))
+            (Rotation::eigenaxis(*axis, position_in(g, coordinate)), zero, single(coordinate, zero, *axis))
         }
         Motion::Slide { axis, coordinate } => {
-            (Rotation::identity(g), *axis * position(model, coordinate), single(coordinate, *axis, zero))
+            (Rotation::identity(g), *axis * position_in(g, coordinate), single(coordinate, *axis, zero))
         }
         Motion::Helix { axis, pitch, coordinate } => {
-            let angle = position(model, coordinate);
+            let angle = position_in(g, coordinate);
             let shift = *axis * (*pitch * angle);
             (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
         }
         Motion::Ball { q: first, v } => {
             let rotation = Rotation::quaternion([q(*first), q(first + 1), q(first + 2), q(first + 3)]);
-            let dofs = (0..3).map(|k| unit_dof(model, v + k, None, Some(k))).collect();
+            let dofs = (0..3).map(|k| unit_dof(g, v + k, None, Some(k))).collect();
             (rotation, zero, dofs)
         }
         Motion::Free { q: first, v } => {
             let rotation = Rotation::quaternion([q(first + 3), q(first + 4), q(first + 5), q(first + 6)]);
             let dofs = (0..6).map(|k| match k {
-                0..3 => unit_dof(model, v + k, Some(k), None),
-                _ => unit_dof(model, v + k, None, Some(k - 3)),
+                0..3 => unit_dof(g, v + k, Some(k), None),
+                _ => unit_dof(g, v + k, None, Some(k - 3)),
             });
             (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
         }
-        Motion::Placed => return placed_joint(model, link),
+        Motion::Placed => return placed_joint(space, link),
     };
     Joint {
         parent: link.parent,
@@ -172,19 +184,19 @@ pub fn joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
 
 /// The joint of a link whose placement is an expression of coordinates and time: its twist is the rate of the
 /// placement, and its subspace what each velocity adds to that.
-fn placed_joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
+fn placed_joint<'g>(space: Space<'_, 'g>, link: &super::Link<'g>) -> Joint<'g> {
     let place = &link.placement;
-    let twist = rate_of_placement(model, &place.rotation, place.translation);
-    let acceleration = map_spatial(&twist, |c| time_derivative(model, c));
+    let twist = rate_of_placement(space, &place.rotation, place.translation);
+    let acceleration = map_spatial(&twist, |c| time_derivative(space, c));
     let mut dofs = Vec::new();
     let mut subspace_rates = Vec::new();
     let mut drift = twist;
-    for index in velocities_in(model, &twist) {
-        let mut d = Derivative::with_respect_to(Quantity::Velocity(index).symbol(), model.graph);
+    for index in velocities_in(&twist) {
+        let mut d = Derivative::with_respect_to(Quantity::Velocity(index).symbol(), space.graph);
         let subspace = map_spatial(&twist, |c| d.of(c));
         // The twist is linear in the velocities: what is left when all are taken away is what time does.
-        drift = map_spatial(&drift, |c| without(model.graph, c, index));
-        subspace_rates.push(map_spatial(&subspace, |c| time_derivative(model, c)));
+        drift = map_spatial(&drift, |c| without(space.graph, c, index));
+        subspace_rates.push(map_spatial(&subspace, |c| time_derivative(space, c)));
         dofs.push(Dof { index, ratio: 1.0, subspace });
     }
     Joint {
@@ -197,15 +209,19 @@ fn placed_joint<'g>(model: &Model<'g>, link: &super::Link<'g>) -> Joint<'g> {
 }
 
 /// Twist of a frame from the rates of its placement, in the frame's axes: `Rᵀ ṗ`, and `[ω]× = Rᵀ Ṙ`.
-pub fn rate_of_placement<'g>(model: &Model<'g>, rotation: &Rotation<'g>, translation: Vec3<'g>) -> Spatial<'g> {
+pub fn rate_of_placement<'g>(
+    space: Space<'_, 'g>,
+    rotation: &Rotation<'g>,
+    translation: Vec3<'g>,
+) -> Spatial<'g> {
     let matrix = rotation.matrix();
-    let rate = Mat3::from_fn(|i, j| time_derivative(model, matrix.0[i][j]));
+    let rate = Mat3::from_fn(|i, j| time_derivative(space, matrix.0[i][j]));
     let angular = Vec3([
         matrix.column(2).dot(rate.column(1)),
         matrix.column(0).dot(rate.column(2)),
         matrix.column(1).dot(rate.column(0)),
     ]);
-    Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(model, c))), angular }
+    Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(space, c))), angular }
 }
 
 /// Every component with a function applied.
@@ -214,15 +230,15 @@ pub fn map_spatial<'g>(s: &Spatial<'g>, mut f: impl FnMut(Expr<'g>) -> Expr<'g>)
 }
 
 /// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
-pub fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
     let mut sum = e.zero();
     for symbol in symbols_in(&[e]) {
         let rate = match Quantity::of(symbol) {
-            Quantity::Configuration(k) => configuration_rate(model, k),
-            Quantity::Time => model.graph.one(),
+            Quantity::Configuration(k) => configuration_rate(space, k),
+            Quantity::Time => space.graph.one(),
             _ => continue,
         };
-        sum += Derivative::with_respect_to(symbol, model.graph).of(e) * rate;
+        sum += Derivative::with_respect_to(symbol, space.graph).of(e) * rate;
     }
     sum
 }
@@ -248,10 +264,10 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     symbols
 }
 
-fn velocities_in(model: &Model<'_>, twist: &Spatial<'_>) -> Vec<usize> {
+fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
     let index = |s: Symbol| match Quantity::of(s) {
-        Quantity::Velocity(k) if k < model.velocities.len() => Some(k),
+        Quantity::Velocity(k) => Some(k),
         _ => None,
     };
     symbols_in(&all).into_iter().filter_map(index).collect()
@@ -264,15 +280,19 @@ fn without<'g>(graph: &'g Graph, e: Expr<'g>, velocity: usize) -> Expr<'g> {
 
 /// Rate of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain coordinates, half of the product of
 /// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint.
-pub fn configuration_rate<'g>(model: &Model<'g>, k: usize) -> Expr<'g> {
-    let g = model.graph;
+pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
+    let g = space.graph;
     let q = |k: usize| Quantity::Configuration(k).expr(g);
     let v = |k: usize| Quantity::Velocity(k).expr(g);
-    for chart in &model.charts {
+    for chart in space.charts {
         match *chart {
             Chart::Plain(a, b) if a == k => return v(b),
             Chart::Ball(a, b) if (a..a + 4).contains(&k) => {
-                return quaternion_rate([q(a), q(a + 1), q(a + 2), q(a + 3)], [v(b), v(b + 1), v(b + 2)], k - a);
+                return quaternion_rate(
+                    [q(a), q(a + 1), q(a + 2), q(a + 3)],
+                    [v(b), v(b + 1), v(b + 2)],
+                    k - a,
+                );
             }
             Chart::Free(a, b) if (a..a + 7).contains(&k) => {
                 let quaternion = [q(a + 3), q(a + 4), q(a + 5), q(a + 6)];
@@ -299,8 +319,8 @@ fn quaternion_rate<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize
     }
 }
 
-fn unit_dof<'g>(model: &Model<'g>, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
-    let axis = |k: Option<usize>| k.map_or(Vec3::zero(model.graph), |k| Vec3::axis(model.graph, k));
+fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
+    let axis = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::axis(g, k));
     Dof { index, ratio: 1.0, subspace: Spatial { linear: axis(linear), angular: axis(angular) } }
 }
 
@@ -317,13 +337,20 @@ pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Ve
     twists
 }
 
-/// Sum of the generalized forces of springs, dashpots and friction, with the sign of `h`: what resists motion is positive.
+/// Sum of the generalized forces of springs, dashpots and the like, with the sign of `h`: what resists motion is
+/// positive. Without velocity, those of potential energies alone.
 pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {
         let stretch = position(model, &spring.on) - spring.free;
         h[spring.on.v] += spring.stiffness * stretch * g.num(spring.on.ratio);
+    }
+    for energy in &model.potentials {
+        // ∂U/∂q along the velocities, at a given time: time itself does no work on the coordinates.
+        for (k, d) in velocity_gradient(time_derivative(model.space(), *energy)) {
+            h[k] += d;
+        }
     }
     if with_velocity {
         for dashpot in &model.dashpots {
@@ -333,6 +360,102 @@ pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
             let slip = (rate(model, &dry.on) / model.friction_speed).call(crate::expr::Function::Tanh);
             h[dry.on.v] += dry.friction * slip * g.num(dry.on.ratio);
         }
+        for function in &model.dissipations {
+            for (k, d) in velocity_gradient(*function) {
+                h[k] += d;
+            }
+        }
+        for load in &model.loads {
+            let no_input = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
+            let force = crate::expr::replace::replace(load.force, &no_input);
+            for (k, d) in velocity_gradient(load.rate) {
+                h[k] -= force * d;
+            }
+        }
     }
     h
+}
+
+/// Derivatives by all velocities that an expression depends on.
+pub fn velocity_gradient(e: Expr<'_>) -> Vec<(usize, Expr<'_>)> {
+    let graph = e.graph();
+    let index = |s: Symbol| match Quantity::of(s) {
+        Quantity::Velocity(k) => Some((k, s)),
+        _ => None,
+    };
+    symbols_in(&[e])
+        .into_iter()
+        .filter_map(index)
+        .map(|(k, s)| (k, Derivative::with_respect_to(s, graph).of(e)))
+        .collect()
+}
+
+/// Components in the axes of `to` of a vector given in the axes of `from`.
+pub fn change_axes<'g>(
+    joints: &[Joint<'g>],
+    mut v: Vec3<'g>,
+    mut from: Option<LinkId>,
+    to: Option<LinkId>,
+) -> Vec3<'g> {
+    // Parents have smaller indices, so the deeper of two links is the one with the larger index.
+    let mut down: Vec<LinkId> = Vec::new();
+    let mut at = to;
+    while from != at {
+        match (from, at) {
+            (Some(f), a) if a.is_none_or(|a| f > a) => {
+                v = joints[f.0].rotation.to_parent(v);
+                from = joints[f.0].parent;
+            }
+            (_, Some(a)) => {
+                down.push(a);
+                at = joints[a.0].parent;
+            }
+            _ => break,
+        }
+    }
+    down.iter().rev().fold(v, |v, link| joints[link.0].rotation.to_child(v))
+}
+
+/// Accelerations of all links (of the origin, angular; relative to the ground; link axes) for rates `v` and their
+/// derivatives `a`.
+pub fn accelerations<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    twists: &[Spatial<'g>],
+    v: &[Expr<'g>],
+    a: &[Expr<'g>],
+) -> Vec<Spatial<'g>> {
+    let mut all: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let parent = joint.parent.map(|p| (twists[p.0], all[p.0]));
+        all.push(joint.acceleration(model, parent.as_ref().map(|(t, a)| (t, a)), v, a));
+    }
+    all
+}
+
+impl<'g> Joint<'g> {
+    /// The link's acceleration from its parent's twist and acceleration (none for the ground).
+    pub fn acceleration(
+        &self,
+        model: &Model<'g>,
+        parent: Option<(&Spatial<'g>, &Spatial<'g>)>,
+        v: &[Expr<'g>],
+        a: &[Expr<'g>],
+    ) -> Spatial<'g> {
+        let (rate, mut own) = (self.twist(model, v), self.relative(model, a));
+        if let Some(drift) = &self.drift {
+            own = own.plus(&drift.acceleration);
+        }
+        let turning = rate.angular.cross(rate.linear);
+        let Some((twist, parent)) = parent else {
+            return Spatial { linear: own.linear + turning, angular: own.angular };
+        };
+        let w = self.rotation.to_child(twist.angular);
+        let p = self.translation;
+        let carried = parent.linear + parent.angular.cross(p) + twist.angular.cross(twist.angular.cross(p));
+        Spatial {
+            linear: self.rotation.to_child(carried) + (w + w).cross(rate.linear) + turning + own.linear,
+            angular: self.rotation.to_child(parent.angular) + w.cross(rate.angular) + own.angular,
+        }
+    }
 }

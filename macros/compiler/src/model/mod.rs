@@ -12,8 +12,11 @@ mod build;
 mod inertia;
 mod joint;
 pub mod kinematics;
+mod place;
 mod resolve;
+mod terms;
 mod tree;
+mod world;
 
 pub use axis::sample;
 pub use build::{build_model, outline};
@@ -264,6 +267,8 @@ pub struct CoulombFriction<'g> {
 /// What an entry of `u` does.
 #[derive(Clone, Debug)]
 pub enum Input<'g> {
+    /// Nothing by itself: expressions name it.
+    Named,
     /// A force or torque on a coordinate.
     Coordinate(Coordinate),
     /// A force on a link.
@@ -323,9 +328,54 @@ pub struct Model<'g> {
     pub dashpots: Vec<Dashpot<'g>>,
     /// Dry friction.
     pub frictions: Vec<CoulombFriction<'g>>,
+    /// Potential energies beside those of gravity and springs on coordinates.
+    pub potentials: Vec<Expr<'g>>,
+    /// Rayleigh dissipation functions.
+    pub dissipations: Vec<Expr<'g>>,
+    /// Other forces.
+    pub loads: Vec<Load<'g>>,
+    /// Inertances.
+    pub inertances: Vec<Inertance<'g>>,
+    /// Outputs.
+    pub outputs: Vec<OutputValue<'g>>,
 }
 
-impl Model<'_> {
+/// A force with the rate that it does work on: its power is `force × rate`, and it contributes `force × ∂rate/∂v` to the
+/// generalized forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<'g> {
+    /// Linear in the velocities.
+    pub rate: Expr<'g>,
+    /// An expression of state, time and inputs.
+    pub force: Expr<'g>,
+    /// It takes energy out, as a dashpot does; otherwise it is applied from outside.
+    pub dissipative: bool,
+}
+
+/// An inertance on a rate: kinetic energy `½ b rate²`.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertance<'g> {
+    /// Linear in the velocities.
+    pub rate: Expr<'g>,
+    /// Inertance `b`.
+    pub inertance: Expr<'g>,
+}
+
+/// An expression that becomes a function.
+#[derive(Clone, Debug)]
+pub struct OutputValue<'g> {
+    /// Its name.
+    pub name: String,
+    /// One component, or three.
+    pub values: Vec<Expr<'g>>,
+}
+
+impl<'g> Model<'g> {
+    /// The configuration space.
+    pub fn space(&self) -> kinematics::Space<'_, 'g> {
+        kinematics::Space { graph: self.graph, charts: &self.charts }
+    }
+
     /// Number of entries of `q`.
     pub fn nq(&self) -> usize {
         self.configuration.len()

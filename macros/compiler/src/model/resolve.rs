@@ -2,10 +2,12 @@
 
 use super::axis::check_rotation_matrix;
 use super::tree::GROUND;
-use super::{Quantity, Rotation};
+use super::world::{View, World};
+use super::{LinkId, Quantity, Rotation};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
+use std::cell::RefCell;
 
 /// What names mean where an expression stands.
 pub struct Scope<'a, 'g> {
@@ -19,8 +21,16 @@ pub struct Scope<'a, 'g> {
     pub bodies: Vec<String>,
     /// Names of joints.
     pub joints: Vec<String>,
-    /// Names of force elements and inputs.
+    /// Names of force elements.
     pub actions: Vec<String>,
+    /// Names of inputs, in order.
+    pub inputs: &'a [Name],
+    /// Names for expressions.
+    pub definitions: &'a [syntax::Definition],
+    /// What expressions may depend on, and what `x`, `y` and `z` alone mean.
+    pub view: RefCell<View<'g>>,
+    /// What is placed so far, and how it moves.
+    pub world: RefCell<World<'g>>,
 }
 
 /// The axes that a vector is given in.
@@ -28,8 +38,10 @@ pub struct Scope<'a, 'g> {
 pub enum Axes {
     /// Those of the frame that the attribute belongs to.
     Own,
-    /// Those of a named body (or `ground`).
+    /// Those of a named body (or `ground`), where the links are not yet known.
     Of(String),
+    /// Those of a link, or of the ground.
+    Link(Option<LinkId>),
 }
 
 /// A value: a scalar, or a vector as a sum over axes.
@@ -54,10 +66,10 @@ impl Value<'_> {
 const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 /// Functions of the language beside the elementary ones.
-const FUNCTIONS: [&str; 8] = ["atan2", "pow", "min", "max", "dot", "cross", "norm", "unit"];
-
-/// Functions that come with frames and points.
-const LATER: [&str; 7] = ["r", "v", "a", "omega", "alpha", "rate", "angle"];
+const FUNCTIONS: [&str; 16] = [
+    "atan2", "pow", "min", "max", "dot", "cross", "norm", "unit", "r", "v", "a", "omega", "alpha", "rate",
+    "angle", "project",
+];
 
 impl<'a, 'g> Scope<'a, 'g> {
     /// What a known name stands for, with its article.
@@ -67,6 +79,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
             _ if name == GROUND || is(&self.bodies) => Some("a body"),
             _ if is(&self.joints) => Some("a joint"),
+            _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
+            _ if self.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
             _ if is(&self.actions) => Some("a force element"),
             "x" | "y" | "z" => Some("a direction"),
             "pi" => Some("a number"),
@@ -211,7 +225,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             ExprKind::Array(items) if items.len() == 3 => {
                 let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.scalar(i, cx)).collect();
                 let vector = Vec3([parts[0]?, parts[1]?, parts[2]?]);
-                Some(Value::Vector(vec![(Axes::Own, vector)]))
+                Some(self.own_axes(vector))
             }
             ExprKind::Method(_, method, _) => {
                 let diagnostic =
@@ -241,14 +255,15 @@ impl<'a, 'g> Scope<'a, 'g> {
             return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
         if let Some(k) = ["x", "y", "z"].iter().position(|a| *a == name) {
-            return Some(Value::Vector(vec![(Axes::Own, Vec3::axis(self.graph, k))]));
+            return Some(self.own_axes(Vec3::axis(self.graph, k)));
         }
         if let Some((_, value)) = CONSTANTS.iter().find(|(c, _)| *c == name) {
             return Some(Value::Scalar(self.graph.num(*value)));
         }
-        if name == "t" {
-            cx.error(e.place.clone(), "an expression of time is not yet supported");
-        } else if self.bodies.iter().any(|b| b == name) || name == "ground" {
+        if let Some(value) = self.moving_name(name, e, cx) {
+            return value;
+        }
+        if self.bodies.iter().any(|b| b == name) || name == "ground" {
             cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
                 .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
         } else if let Some(what) = self.what(name) {
@@ -263,6 +278,11 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 
     fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let ExprKind::Name(joint) = &inner.kind
+            && let Some(value) = self.coordinate_member(joint, member, cx)
+        {
+            return value;
+        }
         let ExprKind::Name(body) = &inner.kind else {
             let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
             if ["x", "y", "z"].contains(&member.text.as_str()) {
@@ -290,7 +310,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 .help("its axes are `x`, `y` and `z`");
             return None;
         };
-        Some(Value::Vector(vec![(Axes::Of(body.clone()), Vec3::axis(self.graph, k))]))
+        self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
     }
 
     fn binary(
@@ -369,36 +389,35 @@ impl<'a, 'g> Scope<'a, 'g> {
                 let twice = if text == "max" { a + b + gap } else { a + b - gap };
                 Value::Scalar(twice * 0.5)
             }),
-            "dot" | "cross" => {
+            "dot" | "cross" | "project" => {
                 let [a, b] = arguments else {
                     return wrong_count(function, 2, cx);
                 };
-                let (a, b) = (self.own_vector(a, cx), self.own_vector(b, cx));
-                let (a, b) = (a?, b?);
-                Some(if text == "dot" {
-                    Value::Scalar(a.dot(b))
-                } else {
-                    Value::Vector(vec![(Axes::Own, a.cross(b))])
+                let (axes, v) = self.common_axes(&[a, b], cx)?;
+                let (a, b) = (v[0], v[1]);
+                Some(match text {
+                    "dot" => Value::Scalar(a.dot(b)),
+                    "cross" => Value::Vector(vec![(axes, a.cross(b))]),
+                    _ => Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]),
                 })
             }
             "norm" | "unit" => {
                 let [a] = arguments else {
                     return wrong_count(function, 1, cx);
                 };
-                let v = self.own_vector(a, cx)?;
+                let (axes, v) = self.common_axes(&[a], cx)?;
                 if text == "norm" {
-                    return Some(Value::Scalar(v.norm()));
+                    return Some(Value::Scalar(v[0].norm()));
                 }
-                if v.is_zero() {
+                if v[0].is_zero() {
                     cx.error(a.place.clone(), "the zero vector has no direction");
                     return None;
                 }
-                Some(Value::Vector(vec![(Axes::Own, v.map(|c| c / v.norm()))]))
+                Some(Value::Vector(vec![(axes, unit(v[0]))]))
             }
-            _ if LATER.contains(&text) => {
-                cx.error(function.place.clone(), format!("`{text}(…)` is not yet supported"));
-                None
-            }
+            "angle" => self.angle(function, arguments, cx),
+            "r" | "v" | "a" | "omega" | "alpha" => self.slash(function, arguments, cx),
+            "rate" => self.rate_of(function, arguments, cx),
             _ => {
                 let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS);
                 cx.error(function.place.clone(), format!("unknown function `{text}`")).suggest(text, known);
@@ -428,3 +447,17 @@ fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option
     cx.error(function.place.clone(), format!("`{}` takes {count} argument{plural}", function.text));
     None
 }
+
+/// A vector divided by its length. The zero vector has no direction; the result is zero then, not NaN.
+pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
+    match v.values() {
+        Some(_) => v.map(|c| c / v.norm()),
+        None => {
+            let norm = v.norm() + v[0].num(TINY);
+            v.map(|c| c / norm)
+        }
+    }
+}
+
+/// Added to a length before it divides: too small to matter, large enough for `f32`.
+pub const TINY: f64 = 1e-37;

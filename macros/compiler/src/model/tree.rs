@@ -31,7 +31,9 @@ pub fn find_tree(
     cx: &mut Diagnostics,
 ) -> Option<Order> {
     let index = |name: &Name, cx: &mut Diagnostics| -> Result<Option<BodyIndex>, ()> {
-        if name.text == GROUND {
+        let is_point = description.points.iter().any(|p| p.name.text == name.text)
+            || description.particles.iter().any(|p| p.at.is_some() && p.name.text == name.text);
+        if name.text == GROUND || is_point {
             return Ok(None);
         }
         match held.iter().position(|h| h.name.text == name.text) {
@@ -89,14 +91,16 @@ pub fn find_tree(
     if !sound {
         return None;
     }
+    let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in held.iter().enumerate() {
-        if parents[k].is_none() {
+        if parents[k].is_none() && !is_placed(k) {
             cx.error(body.name.place.clone(), format!("nothing holds `{}`", body.name.text))
                 .help(format!("add a joint `ground -> {}`, a Free one if it moves freely", body.name.text));
             sound = false;
         }
     }
-    let order = sort(&ends, held.len());
+    let roots: Vec<BodyIndex> = (0..held.len()).filter(|k| is_placed(*k)).collect();
+    let order = sort(&ends, held.len(), &roots);
     if sound && order.len() < ends.len() {
         report_cycles(description, &ends, held, cx);
         sound = false;
@@ -108,13 +112,15 @@ pub fn find_tree(
 fn sort(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,
+    roots: &[BodyIndex],
 ) -> Vec<(usize, Option<BodyIndex>, BodyIndex)> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); bodies + 1];
     for (k, (_, parent, _)) in ends.iter().enumerate() {
         children[parent.map_or(bodies, |p| p)].push(k);
     }
     let mut order = Vec::new();
-    let mut todo: Vec<usize> = children[bodies].iter().rev().copied().collect();
+    let mut todo: Vec<usize> = roots.iter().rev().flat_map(|r| children[*r].iter().rev()).copied().collect();
+    todo.extend(children[bodies].iter().rev());
     while let Some(k) = todo.pop() {
         order.push(ends[k]);
         todo.extend(children[ends[k].2].iter().rev());

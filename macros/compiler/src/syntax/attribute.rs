@@ -170,6 +170,14 @@ fn empty_description(item: &ItemStruct) -> Description {
         particles: Vec::new(),
         joints: Vec::new(),
         actions: Vec::new(),
+        coordinates: Vec::new(),
+        inputs: Vec::new(),
+        frames: Vec::new(),
+        points: Vec::new(),
+        definitions: Vec::new(),
+        outputs: Vec::new(),
+        energies: Vec::new(),
+        dissipations: Vec::new(),
     }
 }
 
@@ -323,6 +331,11 @@ fn check_duplicates(description: &Description, cx: &mut Diagnostics) {
     names.extend(description.particles.iter().map(|p| &p.name));
     names.extend(description.joints.iter().map(|j| &j.name));
     names.extend(description.actions.iter().map(|a| &a.name));
+    names.extend(description.coordinates.iter().map(|c| &c.name));
+    names.extend(description.frames.iter().map(|f| &f.name));
+    names.extend(description.points.iter().map(|p| &p.name));
+    names.extend(description.definitions.iter().chain(&description.outputs).map(|d| &d.name));
+    names.extend(description.energies.iter().chain(&description.dissipations).map(|(name, _)| name));
     check_distinct(&names, cx);
 }
 

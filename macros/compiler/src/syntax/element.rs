@@ -2,7 +2,8 @@
 
 use super::expression::{parse_expr, parse_name};
 use super::{
-    Action, ActionKind, Body, Description, Endpoint, Expr, ExprKind, Joint, JointKind, Name, Particle,
+    Action, ActionKind, Body, Definition, Description, Endpoint, Expr, ExprKind, Frame, FreeCoordinate,
+    Joint, JointKind, Law, Name, Particle, Point, Target,
 };
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
@@ -41,25 +42,23 @@ const JOINTS: [(&str, JointKind); 11] = [
 ];
 
 /// Elements that act, by their type's name.
-const ACTIONS: [&str; 4] = ["Spring", "Dashpot", "Force", "Torque"];
+const ACTIONS: [&str; 8] =
+    ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
-/// Elements of the language that are not yet compiled, with the attribute that belongs to them.
-const LATER: [(&str, &str); 14] = [
-    ("Inerter", "acts"),
-    ("Friction", "acts"),
-    ("Gravity", "acts"),
-    ("Attraction", "acts"),
-    ("Coordinate", ""),
-    ("Input", ""),
-    ("Frame", "frame"),
-    ("Point", "point"),
-    ("Potential", "energy"),
-    ("Rayleigh", "dissipation"),
-    ("Holonomic", "constraint"),
-    ("Nonholonomic", "constraint"),
-    ("Rolling", "constraint"),
-    ("Scalar", "output"),
+/// Other elements with the attributes that belong to them.
+const OTHERS: [(&str, &[&str]); 8] = [
+    ("Coordinate", &[]),
+    ("Input", &[]),
+    ("Frame", &["frame"]),
+    ("Point", &["point"]),
+    ("Potential", &["energy"]),
+    ("Rayleigh", &["dissipation"]),
+    ("Scalar", &["define", "output"]),
+    ("Vector", &["define", "output"]),
 ];
+
+/// Elements of the language that are not yet compiled.
+const LATER: [&str; 3] = ["Holonomic", "Nonholonomic", "Rolling"];
 
 /// Words of other trades, and the element that they mean.
 const SYNONYMS: [(&str, &str); 23] = [
@@ -114,10 +113,11 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
 
 /// Every element type of the language.
 fn element_types() -> Vec<&'static str> {
-    let mut all = vec!["Body", "Particle", "Vector", "f64"];
+    let mut all = vec!["Body", "Particle", "f64"];
     all.extend(JOINTS.iter().map(|(name, _)| *name));
     all.extend(ACTIONS);
-    all.extend(LATER.iter().map(|(name, _)| *name));
+    all.extend(OTHERS.iter().map(|(name, _)| *name));
+    all.extend(LATER);
     all
 }
 
@@ -130,13 +130,24 @@ pub fn read_element(
     cx: &mut Diagnostics,
 ) {
     let kind_name = kind.to_string();
-    let later = LATER.iter().find(|(later, _)| *later == kind_name).map(|(_, attribute)| *attribute);
-    if later.is_some() || kind_name == "Vector" {
+    if LATER.contains(&kind_name.as_str()) {
         // The grammar of its attribute is checked all the same.
         for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
             let _ = Arguments::of(attribute, cx);
         }
         cx.error(kind.span(), format!("`{kind_name}` is not yet supported"));
+        return;
+    }
+    if let Some((_, expected)) = OTHERS.iter().find(|(other, _)| *other == kind_name) {
+        let given = attributes.iter().find(|a| is_one_of(a, expected));
+        let word = given.map(|a| spelt(a)).or(expected.first().map(ToString::to_string));
+        let arguments = match &word {
+            Some(word) => own_arguments(name, &kind_name, word, attributes, cx),
+            None => no_arguments(name, &kind_name, attributes, cx),
+        };
+        if let Some(mut arguments) = arguments {
+            read_other(name, &kind_name, word.as_deref(), &mut arguments, description, cx);
+        }
         return;
     }
     let joint = JOINTS.iter().find(|(joint, _)| *joint == kind_name).map(|(_, joint)| *joint);
@@ -160,7 +171,18 @@ pub fn read_element(
         }
         ("particle", _) => description.particles.extend(read_particle(name, &mut arguments, cx)),
         (_, Some(joint)) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
-        _ => description.actions.extend(read_action(name, &kind_name, &mut arguments, cx)),
+        _ => {
+            let action = read_action(name, &kind_name, &mut arguments, cx);
+            if let Some(action) = &action
+                && matches!(
+                    &action.kind,
+                    ActionKind::Force { value: None, .. } | ActionKind::Torque { value: None, .. }
+                )
+            {
+                description.inputs.push(name.clone());
+            }
+            description.actions.extend(action);
+        }
     }
 }
 
@@ -232,8 +254,10 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         com: arguments.take_expr("com", cx),
         inertia: arguments.take_expr("inertia", cx),
         trust_inertia: false,
+        at: arguments.take_expr("at", cx),
+        frame: arguments.take_expr("frame", cx),
     };
-    arguments.finish("a Body", &["mass", "com", "inertia"], cx);
+    arguments.finish("a Body", &["mass", "com", "inertia", "at", "frame"], cx);
     body
 }
 
@@ -346,39 +370,96 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
 }
 
 fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Action> {
-    if let Some(place) = arguments.place_of("between") {
-        cx.error(place, "`between` is not yet supported").help("let it act on a joint: `on = joint`");
-        arguments.forget("between");
-        arguments.forget_all();
-        return None;
-    }
-    if let Some(place) = arguments.place_of("value") {
-        cx.error(place, format!("a {kind} with a `value` is not yet supported"))
-            .help("without `value` it is an input, an entry of `u`");
-        arguments.forget_all();
-        return None;
-    }
     let keys: &[&str] = match kind {
-        "Spring" => &["on", "stiffness", "free_length", "free_angle"],
-        "Dashpot" => &["on", "damping"],
-        "Force" => &["on", "along"],
-        _ => &["on", "about"],
+        "Spring" => &["on", "between", "stiffness", "force", "energy", "free_length", "free_angle"],
+        "Dashpot" => &["on", "between", "damping", "force"],
+        "Inerter" => &["on", "between", "inertance"],
+        "Friction" => &["on", "coulomb", "stiction", "stribeck_speed", "viscous", "speed"],
+        "Gravity" => &["on", "between", "constant", "mu"],
+        "Attraction" => &["between", "strength"],
+        "Force" => &["on", "along", "value"],
+        _ => &["on", "about", "value"],
     };
-    let on = arguments.need_expr("on", "joint", "acts", keys, cx);
+    let on = read_target(kind, arguments, keys, cx);
     let action = match kind {
         "Spring" => read_spring(arguments, keys, cx),
-        "Dashpot" => arguments
-            .need_expr("damping", "c", "acts", keys, cx)
-            .map(|damping| ActionKind::Dashpot { damping }),
-        "Force" => Some(ActionKind::Force { along: arguments.take_expr("along", cx) }),
-        _ => Some(ActionKind::Torque { about: arguments.take_expr("about", cx) }),
+        "Dashpot" => {
+            let force = arguments.take_expr("force", cx).map(Law::Force);
+            let law =
+                force.or_else(|| arguments.need_expr("damping", "c", "acts", keys, cx).map(Law::Linear));
+            law.map(|law| ActionKind::Dashpot { law })
+        }
+        "Inerter" => arguments
+            .need_expr("inertance", "b", "acts", keys, cx)
+            .map(|inertance| ActionKind::Inerter { inertance }),
+        "Friction" => {
+            arguments.need_expr("coulomb", "f", "acts", keys, cx).map(|coulomb| ActionKind::Friction {
+                coulomb,
+                stiction: arguments.take_expr("stiction", cx),
+                stribeck_speed: arguments.take_expr("stribeck_speed", cx),
+                viscous: arguments.take_expr("viscous", cx),
+                speed: arguments.take_expr("speed", cx),
+            })
+        }
+        "Gravity" => Some(ActionKind::Gravity {
+            constant: arguments.take_expr("constant", cx),
+            mu: arguments.take_expr("mu", cx),
+        }),
+        "Attraction" => arguments
+            .need_expr("strength", "k", "acts", keys, cx)
+            .map(|strength| ActionKind::Attraction { strength }),
+        "Force" => Some(ActionKind::Force {
+            along: arguments.take_expr("along", cx),
+            value: arguments.take_expr("value", cx),
+        }),
+        _ => Some(ActionKind::Torque {
+            about: arguments.take_expr("about", cx),
+            value: arguments.take_expr("value", cx),
+        }),
     };
-    arguments.finish(&format!("a {kind}"), keys, cx);
+    arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
     Some(Action { name: name.clone(), kind: action?, on: on? })
 }
 
+fn article(word: &str) -> &'static str {
+    if word.starts_with(['A', 'I']) { "an" } else { "a" }
+}
+
+/// `on = …`, or `between = (…, …)` where the element can span two points.
+fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<Target> {
+    let Some(place) = arguments.place_of("between") else {
+        if !keys.contains(&"on") {
+            return arguments.need_expr("between", "(first, second)", "acts", keys, cx).and(None);
+        }
+        return arguments.need_expr("on", "joint", "acts", keys, cx).map(Target::On);
+    };
+    if !keys.contains(&"between") {
+        cx.error(place, format!("{} {kind} does not act between two points", article(kind)))
+            .help("say what it acts on: `on = …`");
+        arguments.forget_all();
+        return None;
+    }
+    if let Some(on) = arguments.place_of("on") {
+        cx.error(on, "an element has one of `on` and `between`");
+        arguments.forget("on");
+    }
+    match arguments.take_expr("between", cx)? {
+        Expr { kind: ExprKind::Tuple(mut ends), .. } if ends.len() == 2 => {
+            let second = ends.pop()?;
+            Some(Target::Between(ends.pop()?, second))
+        }
+        other => {
+            cx.error(other.place, "`between` names two points").help("write `between = (first, second)`");
+            None
+        }
+    }
+}
+
 fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<ActionKind> {
-    let stiffness = arguments.need_expr("stiffness", "k", "acts", keys, cx);
+    let force = arguments.take_expr("force", cx).map(Law::Force);
+    let energy = arguments.take_expr("energy", cx).map(Law::Energy);
+    let law =
+        force.or(energy).or_else(|| arguments.need_expr("stiffness", "k", "acts", keys, cx).map(Law::Linear));
     let place = arguments.place_of("free_angle");
     let length = arguments.take_expr("free_length", cx);
     let angle = arguments.take_expr("free_angle", cx);
@@ -388,7 +469,104 @@ fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -
     }
     let is_angle = angle.is_some();
     let free = length.or(angle).map(|free| (free, is_angle));
-    Some(ActionKind::Spring { stiffness: stiffness?, free })
+    Some(ActionKind::Spring { law: law?, free })
+}
+
+/// The first word of an attribute.
+fn spelt(attribute: &Attribute) -> String {
+    attribute.path().get_ident().map_or_else(String::new, Ident::to_string)
+}
+
+/// For elements without an attribute: none of the language's may stand there.
+fn no_arguments(
+    name: &Name,
+    kind: &str,
+    attributes: &[Attribute],
+    cx: &mut Diagnostics,
+) -> Option<Arguments> {
+    for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
+        let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
+        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)));
+        return None;
+    }
+    Arguments::parse(TokenStream::new(), name.place.span, cx)
+}
+
+/// Frames, points, coordinates, inputs, definitions, energies.
+fn read_other(
+    name: &Name,
+    kind: &str,
+    attribute: Option<&str>,
+    arguments: &mut Arguments,
+    description: &mut Description,
+    cx: &mut Diagnostics,
+) {
+    let name = name.clone();
+    match kind {
+        "Coordinate" => {
+            let joints_before = description.joints.len();
+            description.coordinates.push(FreeCoordinate { name, joints_before });
+        }
+        "Input" => description.inputs.push(name),
+        "Frame" => {
+            let mut plain = arguments.take_plain().into_iter();
+            match plain.next() {
+                Some(start) => {
+                    description.frames.push(Frame { name, start, rotations: plain.collect() });
+                }
+                None => {
+                    cx.error(name.place.clone(), "a frame starts with the axes of a body or another frame")
+                        .help("write `#[frame(ground, z(angle))]`");
+                }
+            }
+            arguments.finish("a Frame", &[], cx);
+        }
+        "Point" => {
+            let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
+            if on.is_none() && at.is_none() {
+                cx.error(name.place.clone(), "a point says where it is")
+                    .help("write `#[point(on = body, at = length * x)]`");
+            }
+            arguments.finish("a Point", &["on", "at"], cx);
+            description.points.push(Point { name, on, at });
+        }
+        _ => read_expression(name, kind, attribute, arguments, description, cx),
+    }
+}
+
+/// Elements that are one expression.
+fn read_expression(
+    name: Name,
+    kind: &str,
+    attribute: Option<&str>,
+    arguments: &mut Arguments,
+    description: &mut Description,
+    cx: &mut Diagnostics,
+) {
+    let resolved_in = if kind == "Vector" { arguments.take_expr("resolved_in", cx) } else { None };
+    let mut plain = arguments.take_plain();
+    let value = plain.pop();
+    let word = attribute.unwrap_or("define");
+    if !plain.is_empty() {
+        cx.error(
+            name.place.clone(),
+            format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
+        );
+    }
+    arguments.finish(&format!("{} {kind}", article(kind)), &["resolved_in"], cx);
+    let Some(value) = value else {
+        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+            .help(format!("write `#[{word}(expression)]`"));
+        return;
+    };
+    match (kind, word) {
+        ("Potential", _) => description.energies.push((name, value)),
+        ("Rayleigh", _) => description.dissipations.push((name, value)),
+        (_, "output") => {
+            description.outputs.push(Definition { name, vector: kind == "Vector", value, resolved_in });
+        }
+        _ => description.definitions.push(Definition { name, vector: kind == "Vector", value, resolved_in }),
+    }
 }
 
 /// The arguments of an attribute: at most one relation `a -> b`, and `key = value` in any order.
@@ -474,6 +652,11 @@ impl Arguments {
     }
 
     /// Where a word stands alone, without a value.
+    /// The expressions without a key.
+    fn take_plain(&mut self) -> Vec<Expr> {
+        std::mem::take(&mut self.plain)
+    }
+
     fn word_given(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let at = self.plain.iter().position(is_word)?;

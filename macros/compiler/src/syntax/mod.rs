@@ -124,6 +124,66 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// Force elements and inputs.
     pub actions: Vec<Action>,
+    /// Coordinates of their own.
+    pub coordinates: Vec<FreeCoordinate>,
+    /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs themselves.
+    pub inputs: Vec<Name>,
+    /// Frames.
+    pub frames: Vec<Frame>,
+    /// Points.
+    pub points: Vec<Point>,
+    /// Names for expressions.
+    pub definitions: Vec<Definition>,
+    /// Expressions that become functions.
+    pub outputs: Vec<Definition>,
+    /// Potential energies.
+    pub energies: Vec<(Name, Expr)>,
+    /// Rayleigh dissipation functions.
+    pub dissipations: Vec<(Name, Expr)>,
+}
+
+/// A generalized coordinate that belongs to no joint.
+#[derive(Clone, Debug)]
+pub struct FreeCoordinate {
+    /// Its name.
+    pub name: Name,
+    /// How many joints are declared before it.
+    pub joints_before: usize,
+}
+
+/// A frame: axes without a place.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Its name.
+    pub name: Name,
+    /// The body or frame whose axes it starts with.
+    pub start: Expr,
+    /// Rotations about carried axes.
+    pub rotations: Vec<Expr>,
+}
+
+/// A point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its name.
+    pub name: Name,
+    /// What it is fixed in or measured from: a body or another point; the ground if absent.
+    pub on: Option<Expr>,
+    /// Its place there.
+    pub at: Option<Expr>,
+}
+
+/// A name for an expression.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// The name.
+    pub name: Name,
+    /// It stands for a vector, not for a scalar.
+    pub vector: bool,
+    /// The expression.
+    pub value: Expr,
+    /// An output vector's axes.
+    pub resolved_in: Option<Expr>,
 }
 
 /// A rigid body.
@@ -139,6 +199,10 @@ pub struct Body {
     pub inertia: Option<Expr>,
     /// The inertia is taken as it is, though no real body can have it.
     pub trust_inertia: bool,
+    /// Where its origin is, for a body placed by expressions.
+    pub at: Option<Expr>,
+    /// The frame whose axes it has, for a body placed by expressions.
+    pub frame: Option<Expr>,
 }
 
 /// A particle: mass at a point.
@@ -240,33 +304,96 @@ pub struct Action {
     pub name: Name,
     /// What it is, with its parameters.
     pub kind: ActionKind,
-    /// What it acts on: `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
-    pub on: Expr,
+    /// What it acts on.
+    pub on: Target,
+}
+
+/// What a force element acts on.
+#[derive(Clone, Debug)]
+pub enum Target {
+    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`, `point`.
+    On(Expr),
+    /// Two points: of bodies, or named ones.
+    Between(Expr, Expr),
+}
+
+impl Target {
+    /// Where it stands.
+    pub fn place(&self) -> &Place {
+        match self {
+            Target::On(e) | Target::Between(_, e) => &e.place,
+        }
+    }
+}
+
+/// How a spring or a dashpot answers.
+#[derive(Clone, Debug)]
+pub enum Law {
+    /// In proportion, with this coefficient.
+    Linear(Expr),
+    /// With this force, an expression of `stretch` (spring) or `speed` (dashpot).
+    Force(Expr),
+    /// With the force that follows from this energy, an expression of `stretch`.
+    Energy(Expr),
 }
 
 /// The force elements of the language.
 #[derive(Clone, Debug)]
 pub enum ActionKind {
-    /// Linear spring on a joint coordinate.
+    /// A spring: on a coordinate, or between two points.
     Spring {
-        /// Stiffness.
-        stiffness: Expr,
-        /// Coordinate at which the force is zero, and whether the user calls it an angle.
+        /// Stiffness, force or energy.
+        law: Law,
+        /// Coordinate or length at which the force is zero; true if it is given as an angle.
         free: Option<(Expr, bool)>,
     },
-    /// Linear dashpot on a joint coordinate.
+    /// A dashpot: on a coordinate, or between two points.
     Dashpot {
-        /// Damping coefficient.
-        damping: Expr,
+        /// Damping coefficient or force.
+        law: Law,
     },
-    /// Force input: on a sliding coordinate, or on a body along a direction.
+    /// An inerter: a force in proportion to the relative acceleration.
+    Inerter {
+        /// Inertance.
+        inertance: Expr,
+    },
+    /// Dry and viscous friction on a coordinate.
+    Friction {
+        /// Force of sliding friction.
+        coulomb: Expr,
+        /// Force at breakaway.
+        stiction: Option<Expr>,
+        /// Speed at which the force has fallen from breakaway to sliding.
+        stribeck_speed: Option<Expr>,
+        /// Viscous coefficient.
+        viscous: Option<Expr>,
+        /// Speed of the regularisation.
+        speed: Option<Expr>,
+    },
+    /// Central gravity between two bodies, or towards a fixed point.
+    Gravity {
+        /// Gravitational constant, for two bodies with mass.
+        constant: Option<Expr>,
+        /// Gravitational parameter of the attracting one.
+        mu: Option<Expr>,
+    },
+    /// Inverse-square attraction of the given strength (repulsion if negative).
+    Attraction {
+        /// Force times distance squared.
+        strength: Expr,
+    },
+    /// A force: on a sliding coordinate, or on a body; without a value an input.
     Force {
-        /// Direction, for a force on a body.
+        /// Direction of an input on a body.
         along: Option<Expr>,
+        /// Its value.
+        value: Option<Expr>,
     },
-    /// Torque input: on a turning coordinate, or on a body about a direction.
+    /// A torque: on a turning coordinate, or on a body; without a value an input.
     Torque {
-        /// Direction, for a torque on a body.
+        /// Direction of an input on a body.
         about: Option<Expr>,
+        /// Its value.
+        value: Option<Expr>,
     },
 }

@@ -14,8 +14,15 @@ pub(super) fn read_link(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) 
     check_attributes(node, &["name"], &[], cx);
     let name = name(node, "name", cx);
     let [inertial] = children(node, ["inertial"], cx);
-    let mut body =
-        Body { name: name?, mass: None, com: None, inertia: None, trust_inertia: options.trust_inertia };
+    let mut body = Body {
+        name: name?,
+        mass: None,
+        com: None,
+        inertia: None,
+        trust_inertia: options.trust_inertia,
+        at: None,
+        frame: None,
+    };
     if let Some(inertial) = inertial {
         read_inertial(inertial, &mut body, cx);
     }
