@@ -351,13 +351,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 }
 
 /// Puts struct and implementations together.
-fn assemble(
-    i: &Interface<'_>,
-    s: &Signature<'_>,
-    methods: &str,
-    frames: &[String],
-    docs: &str,
-) -> Emitted {
+fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
     let mut generics = i.shell.generics.clone();
     let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();

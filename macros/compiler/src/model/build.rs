@@ -13,7 +13,7 @@ use super::{
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};
 use crate::syntax::{
-    Action, ActionKind, Body, Description, Endpoint, Joint, JointKind, Name, Particle, Target,
+    Action, ActionKind, Body, Description, Endpoint, ExprKind, Joint, JointKind, Name, Particle, Target,
 };
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
@@ -94,6 +94,8 @@ pub fn build_model<'g>(
         builder.find_dependencies();
         builder.add_frames();
         builder.check_finite(cx);
+    } else {
+        builder.check_actions(cx);
     }
     builder.check_unused(cx);
     cx.is_empty().then_some(builder.model)
@@ -255,6 +257,23 @@ impl<'a, 'g> Builder<'a, 'g> {
         let _ = self.scope.motions(joint, cx);
         let _ = self.endpoint(&joint.parent, cx);
         let _ = self.endpoint(&joint.child, cx);
+    }
+
+    /// Resolves force elements on coordinates, which need no places.
+    fn check_actions(&mut self, cx: &mut Diagnostics) {
+        for action in &self.description.actions {
+            let on_joint = match &action.on {
+                Target::On(e) => match &e.kind {
+                    ExprKind::Name(name) => self.joint_coordinates(name).is_some(),
+                    ExprKind::Field(..) => true,
+                    _ => false,
+                },
+                Target::Between(..) => false,
+            };
+            if on_joint && !needs_motion(action) {
+                self.add_action(action, cx);
+            }
+        }
     }
 
     fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
