@@ -18,11 +18,9 @@ macro_rules! frame {
             {
                 match <$mechanism>::frame_index($name) {
                     Some(index) => index,
-                    None => panic!(concat!(
-                        stringify!($mechanism),
-                        " has no frame named ",
-                        stringify!($name)
-                    )),
+                    None => {
+                        panic!(concat!(stringify!($mechanism), " has no frame named ", stringify!($name)))
+                    }
                 }
             },
         >
@@ -91,9 +89,7 @@ pub fn placement<T: Real>(p: &[T; 12]) -> IsometryMatrix3<T> {
     let [a, b, c, d, e, f, g, h, i, x, y, z] = *p;
     let matrix = Matrix3::from_array_storage(ArrayStorage([[a, d, g], [b, e, h], [c, f, i]]));
     Isometry::from_parts(
-        Translation3 {
-            vector: Vector3::from_array_storage(ArrayStorage([[x, y, z]])),
-        },
+        Translation3 { vector: Vector3::from_array_storage(ArrayStorage([[x, y, z]])) },
         Rotation3::from_matrix_unchecked(matrix),
     )
 }

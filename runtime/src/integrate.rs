@@ -49,11 +49,7 @@ impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     /// The state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
     pub(crate) fn finite(self) -> Result<Self, Error> {
         let finite = self.t.is_finite() && is_finite(&self.q) && is_finite(&self.v);
-        if finite {
-            Ok(self)
-        } else {
-            Err(Error::NotFinite { t: to_f64(self.t) })
-        }
+        if finite { Ok(self) } else { Err(Error::NotFinite { t: to_f64(self.t) }) }
     }
 }
 
@@ -113,10 +109,7 @@ pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Erro
     if value.is_finite() && value > T::zero() {
         Ok(())
     } else {
-        Err(Error::InvalidStep {
-            name,
-            value: to_f64(value),
-        })
+        Err(Error::InvalidStep { name, value: to_f64(value) })
     }
 }
 
@@ -131,21 +124,10 @@ fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Err
             // Rounding of the times must not cost one more step.
             let slack = constant::<T>(8.0) * epsilon::<T>() * (t.abs() + until.abs() + remaining) / longest;
             let count = (remaining / longest - slack).ceil();
-            if count > T::one() {
-                (remaining / count, t + remaining / count)
-            } else {
-                (remaining, until)
-            }
+            if count > T::one() { (remaining / count, t + remaining / count) } else { (remaining, until) }
         }
     };
-    if end > t {
-        Ok((h, end))
-    } else {
-        Err(Error::StepTooSmall {
-            t: to_f64(t),
-            h: to_f64(h),
-        })
-    }
+    if end > t { Ok((h, end)) } else { Err(Error::StepTooSmall { t: to_f64(t), h: to_f64(h) }) }
 }
 
 #[cfg(test)]

@@ -13,10 +13,7 @@
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("linkwork needs one of its features `std` and `libm` for the elementary functions");
 
-#[allow(
-    unused_extern_crates,
-    reason = "generated code names this crate, also in its own tests"
-)]
+#[allow(unused_extern_crates, reason = "generated code names this crate, also in its own tests")]
 extern crate self as linkwork;
 #[cfg(test)]
 extern crate std;
@@ -24,8 +21,8 @@ extern crate std;
 pub use frame::{FrameIndex, NamedFrame};
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
-pub use rheonomic::{At, Rheonomic, at};
 pub use nalgebra;
+pub use rheonomic::{At, Rheonomic, at};
 pub use simulate::simulate;
 
 pub mod elements;
@@ -37,6 +34,7 @@ mod private;
 mod rheonomic;
 pub mod rotation;
 pub mod simulate;
+mod trigonometry;
 
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
 pub mod prelude {
@@ -57,8 +55,9 @@ pub mod __private {
     };
     pub use crate::private::{
         abs, acos, asin, atan, atan2, constant, cos, cosh, exp, ln, mul_add, mul_sub, neg_mul_add, powf,
-        signum, sin, sin_cos, sinh, sqrt, tan, tanh,
+        signum, sin, sinh, sqrt, tan, tanh,
     };
+    pub use crate::trigonometry::{sin_cos, sin_cos_all};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

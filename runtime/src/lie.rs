@@ -67,10 +67,7 @@ pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
     let (factor, w) = if square < epsilon::<T>() {
         // The first neglected terms, θ⁴/3840 and θ⁴/384, are far below rounding.
-        (
-            constant::<T>(0.5) - square / constant(48.0),
-            T::one() - square / constant(8.0),
-        )
+        (constant::<T>(0.5) - square / constant(48.0), T::one() - square / constant(8.0))
     } else {
         let angle = square.sqrt();
         let (sin, cos) = (angle * constant(0.5)).sin_cos();
@@ -130,10 +127,7 @@ fn even_brackets<T: Real>(square: T) -> (T, T) {
     let value = T::one() - half * cos / sin;
     let slope = (half * cos / sin - half * half / (sin * sin)) * constant(0.5);
     let two = constant::<T>(2.0);
-    (
-        (two * value + slope) / square,
-        (value + slope) / (square * square),
-    )
+    ((two * value + slope) / square, (value + slope) / (square * square))
 }
 
 /// The bracket `[a, b]` of SE(3) for body velocities, linear part first.
@@ -148,25 +142,14 @@ fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
 
 /// `a + s b`.
 fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
-    [
-        a0 + s * b0,
-        a1 + s * b1,
-        a2 + s * b2,
-        a3 + s * b3,
-        a4 + s * b4,
-        a5 + s * b5,
-    ]
+    [a0 + s * b0, a1 + s * b1, a2 + s * b2, a3 + s * b3, a4 + s * b4, a5 + s * b5]
 }
 
 /// `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` of `θ²`: the left Jacobian of SO(3) is `1 + a [φ]ₓ + b [φ]ₓ²`.
 pub(crate) fn left_jacobian<T: Real>(square: T) -> (T, T) {
     if square < constant(0.05) {
-        let polynomial = |terms: [f64; 6]| {
-            terms
-                .iter()
-                .rev()
-                .fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s)
-        };
+        let polynomial =
+            |terms: [f64; 6]| terms.iter().rev().fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s);
         return (
             polynomial([2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
             polynomial([6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
@@ -174,10 +157,7 @@ pub(crate) fn left_jacobian<T: Real>(square: T) -> (T, T) {
     }
     let angle = square.sqrt();
     let half_sin = (angle * constant(0.5)).sin();
-    (
-        constant::<T>(2.0) * half_sin * half_sin / square,
-        (angle - angle.sin()) / (angle * square),
-    )
+    (constant::<T>(2.0) * half_sin * half_sin / square, (angle - angle.sin()) / (angle * square))
 }
 
 /// `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
@@ -246,11 +226,7 @@ pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let first = bracket(dv, v);
     let twice = bracket(dv, first);
     let four_times = bracket(dv, bracket(dv, twice));
-    plus(
-        plus(plus(v, constant(0.5), first), second, twice),
-        fourth,
-        four_times,
-    )
+    plus(plus(plus(v, constant(0.5), first), second, twice), fourth, four_times)
 }
 
 #[cfg(test)]

@@ -1,16 +1,12 @@
 use super::*;
 
-const ANGLES: [f64; 12] = [
-    0.0, 1e-200, 1e-12, 1e-8, 3e-8, 1e-4, 0.1, 0.2236, 0.49999, 0.50001, 2.0, 3.1,
-];
+const ANGLES: [f64; 12] = [0.0, 1e-200, 1e-12, 1e-8, 3e-8, 1e-4, 0.1, 0.2236, 0.49999, 0.50001, 2.0, 3.1];
 const AXIS: [f64; 3] = [0.36, -0.48, 0.8];
 const QUATERNION: [f64; 4] = [0.1, -0.5, 0.7, 0.5];
 const POSE: [f64; 7] = [1.0, -2.0, 0.5, 0.1, -0.5, 0.7, 0.5];
 
 fn far<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    a.iter()
-        .zip(b)
-        .fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()))
+    a.iter().zip(b).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()))
 }
 
 fn twist(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
@@ -23,10 +19,7 @@ fn ball_exponential_is_a_turn_about_the_axis() {
     for angle in ANGLES.into_iter().chain([10.0, 1e3]) {
         let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scale(AXIS, angle));
         let [x, y, z] = scale(AXIS, (angle / 2.0).sin());
-        assert!(
-            far(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle),
-            "{angle}"
-        );
+        assert!(far(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
     }
 }
 
@@ -39,10 +32,7 @@ fn ball_difference_inverts_integrate() {
         assert!(far(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
         let [x, y, z, w] = ball_integrate(q, dv);
         let found = ball_difference(q, [-x, -y, -z, -w]);
-        assert!(
-            far(found, dv) <= 4e-15 * (angle + 1e-1),
-            "antipode of {angle}: {found:?}"
-        );
+        assert!(far(found, dv) <= 4e-15 * (angle + 1e-1), "antipode of {angle}: {found:?}");
     }
 }
 
@@ -75,10 +65,7 @@ fn free_difference_inverts_integrate() {
 fn free_exponential_of_a_screw() {
     // Along and about z by a quarter of a turn: the tip of a circular arc, radius v / ω.
     let quarter = core::f64::consts::FRAC_PI_2;
-    let q = free_integrate(
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-        [1.0, 0.0, 3.0, 0.0, 0.0, quarter],
-    );
+    let q = free_integrate([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 3.0, 0.0, 0.0, quarter]);
     let half = core::f64::consts::FRAC_1_SQRT_2;
     assert!(far(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
 }

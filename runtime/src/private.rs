@@ -11,12 +11,6 @@ pub fn constant<T: Real>(x: f64) -> T {
     nalgebra::convert(x)
 }
 
-/// The sine and the cosine of `x`, rad.
-#[inline(always)]
-pub fn sin_cos<T: Real>(x: T) -> (T, T) {
-    x.sin_cos()
-}
-
 macro_rules! elementary {
     ($($(#[$doc:meta])* $name:ident($($argument:ident),+);)+) => {
         $(
@@ -67,10 +61,7 @@ elementary! {
 }
 
 /// True where one instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
-const FUSED: bool = cfg!(all(
-    feature = "std",
-    any(target_feature = "fma", target_arch = "aarch64")
-));
+const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
 
 /// `a b + c`, fused where the hardware can.
 #[inline(always)]
@@ -106,7 +97,6 @@ mod tests {
 
     #[test]
     fn functions_agree_with_the_standard_library() {
-        assert_eq!(sin_cos(0.5_f64), (0.5_f64.sin(), 0.5_f64.cos()));
         assert_eq!(atan2(1.0_f64, -2.0), 1.0_f64.atan2(-2.0));
         assert_eq!(powf(2.0_f64, 0.5), 2.0_f64.powf(0.5));
         assert_eq!(mul_add(2.0_f64, 3.0, 4.0), 10.0);

@@ -38,11 +38,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    fn mass_matrix(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-    ) -> SMatrix<Self::Scalar, NV, NV>;
+    fn mass_matrix(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
 
     fn bias_forces(
         &self,

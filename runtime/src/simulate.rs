@@ -38,15 +38,8 @@ pub fn simulate<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Rheonomic<NQ, NV, NU>,
 {
-    let start = State {
-        t: nalgebra::zero(),
-        q: mechanism.neutral(),
-        v: SVector::zeros(),
-    };
-    let system = System {
-        mechanism,
-        inputs: NoInputs,
-    };
+    let start = State { t: nalgebra::zero(), q: mechanism.neutral(), v: SVector::zeros() };
+    let system = System { mechanism, inputs: NoInputs };
     let method = DormandPrince::new();
     Simulation {
         system,
@@ -108,42 +101,26 @@ where
 {
     /// Starts from the configuration `q` and the velocity `v`: vectors or arrays. Quaternions x y z w of unit length.
     pub fn from(self, q: impl Into<SVector<T, NQ>>, v: impl Into<SVector<T, NV>>) -> Self {
-        let start = State {
-            t: self.start.t,
-            q: q.into(),
-            v: v.into(),
-        };
-        Self {
-            start,
-            ..self.afresh()
-        }
+        let start = State { t: self.start.t, q: q.into(), v: v.into() };
+        Self { start, ..self.afresh() }
     }
 
     /// Starts at the time `t`, s, instead of zero.
     pub fn start_at(self, t: T) -> Self {
         let start = State { t, ..self.start };
-        Self {
-            start,
-            ..self.afresh()
-        }
+        Self { start, ..self.afresh() }
     }
 
     /// Ends `duration` seconds after the start. Without it the run ends at an event of [`until`](Self::until), or
     /// goes on for as long as samples are asked for.
     pub fn duration(self, duration: T) -> Self {
-        Self {
-            duration: Some(duration),
-            ..self.afresh()
-        }
+        Self { duration: Some(duration), ..self.afresh() }
     }
 
     /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods divide the
     /// interval into equal steps; [`DormandPrince`] interpolates. Without it every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self {
-            every: Some(interval),
-            ..self.afresh()
-        }
+        Self { every: Some(interval), ..self.afresh() }
     }
 
     /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with jumps,
@@ -172,24 +149,8 @@ where
     /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint),
     /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
-        let Self {
-            system,
-            events,
-            start,
-            duration,
-            every,
-            ..
-        } = self;
-        Simulation {
-            system,
-            method,
-            events,
-            start,
-            duration,
-            every,
-            progress: None,
-            over: false,
-        }
+        let Self { system, events, start, duration, every, .. } = self;
+        Simulation { system, method, events, start, duration, every, progress: None, over: false }
     }
 
     /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
@@ -252,10 +213,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
         E: Events<T, NQ, NV>,
     {
-        let endless = Error::InvalidStep {
-            name: "the duration",
-            value: f64::INFINITY,
-        };
+        let endless = Error::InvalidStep { name: "the duration", value: f64::INFINITY };
         if self.duration.is_none() && !E::STOPS {
             return Err(endless);
         }
@@ -270,60 +228,19 @@ where
 
     /// The same simulation before its first sample.
     fn afresh(self) -> Self {
-        Self {
-            progress: None,
-            over: false,
-            ..self
-        }
+        Self { progress: None, over: false, ..self }
     }
 
     fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
-        let Self {
-            system,
-            method,
-            events,
-            start,
-            duration,
-            every,
-            ..
-        } = self;
-        let system = System {
-            mechanism: system.mechanism,
-            inputs,
-        };
-        Simulation {
-            system,
-            method,
-            events,
-            start,
-            duration,
-            every,
-            progress: None,
-            over: false,
-        }
+        let Self { system, method, events, start, duration, every, .. } = self;
+        let system = System { mechanism: system.mechanism, inputs };
+        Simulation { system, method, events, start, duration, every, progress: None, over: false }
     }
 
     fn with_event<G, A>(self, event: Event<G, A>) -> Simulation<'m, M, T, I, S, With<E, G, A>, NQ, NV, NU> {
-        let Self {
-            system,
-            method,
-            events,
-            start,
-            duration,
-            every,
-            ..
-        } = self;
+        let Self { system, method, events, start, duration, every, .. } = self;
         let events = (events, event);
-        Simulation {
-            system,
-            method,
-            events,
-            start,
-            duration,
-            every,
-            progress: None,
-            over: false,
-        }
+        Simulation { system, method, events, start, duration, every, progress: None, over: false }
     }
 }
 

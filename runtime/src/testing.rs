@@ -15,32 +15,17 @@ pub(crate) struct OneDof<T> {
 /// `q̈ = −q`.
 pub(crate) fn oscillator<T: Real>() -> OneDof<T> {
     let half = |q: T| q * q * constant(0.5);
-    OneDof {
-        inertia: T::one(),
-        damping: T::zero(),
-        force: |q| -q,
-        energy: half,
-    }
+    OneDof { inertia: T::one(), damping: T::zero(), force: |q| -q, energy: half }
 }
 
 /// A pendulum of unit mass and length under unit gravity.
 pub(crate) fn pendulum() -> OneDof<f64> {
-    OneDof {
-        inertia: 1.0,
-        damping: 0.0,
-        force: |q| -q.sin(),
-        energy: |q| 1.0 - q.cos(),
-    }
+    OneDof { inertia: 1.0, damping: 0.0, force: |q| -q.sin(), energy: |q| 1.0 - q.cos() }
 }
 
 /// A ball of unit mass above the floor under unit gravity.
 pub(crate) fn falling() -> OneDof<f64> {
-    OneDof {
-        inertia: 1.0,
-        damping: 0.0,
-        force: |_| -1.0,
-        energy: |q| q,
-    }
+    OneDof { inertia: 1.0, damping: 0.0, force: |_| -1.0, energy: |q| q }
 }
 
 type V<T, const N: usize> = SVector<T, N>;

@@ -27,6 +27,11 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     for f in &mut functions {
         f.program = program(model, &joints, &mass, &f.name);
     }
+    if functions.iter().any(|f| !f.program.is_finite()) {
+        cx.error(model.place.clone(), "the figures of this mechanism are too large")
+            .help("a product of masses, lengths or forces in its equations is not a finite number");
+        return None;
+    }
     functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output)));
     Some(Output {
         functions,

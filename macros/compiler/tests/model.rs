@@ -452,13 +452,16 @@ fn mistakes_are_reported_together_and_once() {
     check(
         "#[body(mass = -1)] a: Body, #[body(mass = 1, com = 2)] b: Body,
         #[joint(ground -> a, along = x + y)] first: Sleeve,
-        #[joint(a -> b, about = 0 * z)] second: Pin,",
+        #[joint(a -> b, about = 0 * z)] second: Pin,
+        #[acts(on = second)] push: Force,",
         "this axis is not of unit length
         = help: its length is 1.4142135623730951; write `unit(…)` around it
         this axis has no direction: it is zero
         the mass of `a` cannot be negative, but it is -1
         expected a vector, found a scalar
-        = help: multiply it by a direction, as in `length * y`",
+        = help: multiply it by a direction, as in `length * y`
+        this coordinate is an angle
+        = help: what acts on it is a Torque",
     );
     // A body that failed to parse is not unknown where it is joined.
     check("#[body(mass = )] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,", "`mass` has no value");

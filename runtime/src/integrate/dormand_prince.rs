@@ -62,43 +62,27 @@ impl<T: Real> DormandPrince<T> {
 
     /// Error allowed per step: relative to the size of each coordinate and velocity, and absolute in SI units.
     pub fn tolerance(self, relative: T, absolute: T) -> Self {
-        Self {
-            relative,
-            absolute,
-            ..self
-        }
+        Self { relative, absolute, ..self }
     }
 
     /// First step tried, s; chosen by itself if not given.
     pub fn initial_step(self, step: T) -> Self {
-        Self {
-            first: Some(step),
-            ..self
-        }
+        Self { first: Some(step), ..self }
     }
 
     /// Longest step, s; no limit if not given. Set it below the shortest thing that must not be stepped over.
     pub fn max_step(self, step: T) -> Self {
-        Self {
-            longest: Some(step),
-            ..self
-        }
+        Self { longest: Some(step), ..self }
     }
 
     /// Shortest step, s: if the tolerance asks for less, the run ends with [`Error::StepTooSmall`].
     pub fn min_step(self, step: T) -> Self {
-        Self {
-            least: Some(step),
-            ..self
-        }
+        Self { least: Some(step), ..self }
     }
 
     /// Most steps tried in one run, accepted and rejected.
     pub fn max_steps(self, steps: u64) -> Self {
-        Self {
-            most_steps: steps,
-            ..self
-        }
+        Self { most_steps: steps, ..self }
     }
 
     /// The step to try: at most `h`, ending on `until` without leaving a sliver.
@@ -162,12 +146,7 @@ impl<T: Real> Method<T> for DormandPrince<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        AdaptiveMemory {
-            acceleration: None,
-            step: self.first,
-            error: constant(1e-4),
-            trials: 0,
-        }
+        AdaptiveMemory { acceleration: None, step: self.first, error: constant(1e-4), trials: 0 }
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
@@ -187,13 +166,8 @@ impl<T: Real> Method<T> for DormandPrince<T> {
         if !is_finite(&acceleration) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
-        let scale = Scale {
-            relative: self.relative,
-            absolute: self.absolute,
-        };
-        let chosen = memory
-            .step
-            .unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
+        let scale = Scale { relative: self.relative, absolute: self.absolute };
+        let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
         let mut wanted = self.limited(chosen);
         let (mut rejected, mut finite) = (false, true);
         loop {

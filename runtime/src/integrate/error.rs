@@ -48,17 +48,11 @@ impl fmt::Display for Error {
             }
             Self::NotFinite { t } => write!(f, "the motion is not finite after t = {t} s"),
             Self::StepTooSmall { t, h } => {
-                write!(
-                    f,
-                    "the tolerance asks for a step of {h} s at t = {t} s, which is too small"
-                )
+                write!(f, "the tolerance asks for a step of {h} s at t = {t} s, which is too small")
             }
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
             Self::NotConverged { t, iterations } => {
-                write!(
-                    f,
-                    "the implicit step at t = {t} s did not converge in {iterations} iterations"
-                )
+                write!(f, "the implicit step at t = {t} s did not converge in {iterations} iterations")
             }
         }
     }

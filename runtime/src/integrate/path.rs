@@ -19,13 +19,7 @@ impl<T: Real, const N: usize> Path<T, N> {
     /// The straight line between two values.
     pub fn linear(start: SVector<T, N>, end: SVector<T, N>) -> Self {
         let zero = SVector::zeros();
-        Self {
-            start,
-            change: end - start,
-            square: zero,
-            cube: zero,
-            fourth: zero,
-        }
+        Self { start, change: end - start, square: zero, cube: zero, fourth: zero }
     }
 
     /// The cubic with values `start`, `end` and changes over the whole step `h ẏ` of `before`, `after` at its ends.
@@ -37,11 +31,7 @@ impl<T: Real, const N: usize> Path<T, N> {
     ) -> Self {
         let line = Self::linear(start, end);
         let square = before - line.change;
-        Self {
-            square,
-            cube: line.change - after - square,
-            ..line
-        }
+        Self { square, cube: line.change - after - square, ..line }
     }
 
     /// Adds `θ² (1−θ)² r₅`, which keeps values and rates at both ends.

@@ -34,10 +34,7 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let displacement = mean.0 * h;
     let v = start.v + mean.1 * h;
     let q = system.integrate(&start.q, &displacement);
-    (
-        system.tangent_rate(&displacement, &v),
-        system.acceleration(start.t + h, &q, &v),
-    )
+    (system.tangent_rate(&displacement, &v), system.acceleration(start.t + h, &q, &v))
 }
 
 impl<T: Real> Method<T> for Rk4<T> {
@@ -78,14 +75,8 @@ impl<T: Real> Method<T> for Rk4<T> {
         let sixth = h / constant(6.0);
         let displacement = (k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth;
         let v = start.v + (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth;
-        let end = State {
-            t,
-            q: system.integrate(&start.q, &displacement),
-            v,
-        };
-        let end = end
-            .finite()
-            .map_err(|_| Error::NotFinite { t: to_f64(start.t) })?;
+        let end = State { t, q: system.integrate(&start.q, &displacement), v };
+        let end = end.finite().map_err(|_| Error::NotFinite { t: to_f64(start.t) })?;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

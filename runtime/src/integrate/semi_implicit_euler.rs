@@ -45,14 +45,8 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         let before = system.acceleration(start.t, &start.q, &start.v);
         let v = start.v + before * h;
         let displacement = v * h;
-        let end = State {
-            t,
-            q: system.integrate(&start.q, &displacement),
-            v,
-        };
-        let end = end.finite().map_err(|_| Error::NotFinite {
-            t: crate::private::to_f64(start.t),
-        })?;
+        let end = State { t, q: system.integrate(&start.q, &displacement), v };
+        let end = end.finite().map_err(|_| Error::NotFinite { t: crate::private::to_f64(start.t) })?;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

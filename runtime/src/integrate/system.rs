@@ -55,11 +55,7 @@ pub struct Held<T, F, const NU: usize> {
 impl<T: Real, F, const NU: usize> Held<T, F, NU> {
     /// Evaluates `control(t, q, v)` every `period` seconds.
     pub fn new(period: T, control: F) -> Self {
-        Self {
-            period,
-            control,
-            u: SVector::zeros(),
-        }
+        Self { period, control, u: SVector::zeros() }
     }
 }
 
@@ -100,13 +96,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// The velocity with the generalized momentum `p`, improved from the estimate `v`: exact up to rounding for any
     /// `v`, best for a near one.
-    fn velocity(
-        &self,
-        t: T,
-        q: &SVector<T, NQ>,
-        p: &SVector<T, NV>,
-        v: &SVector<T, NV>,
-    ) -> SVector<T, NV>;
+    fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 }
 
 /// A mechanism and its inputs.
@@ -120,10 +110,7 @@ pub struct System<'m, M, I, const NU: usize> {
 
 impl<M, I: Clone, const NU: usize> Clone for System<'_, M, I, NU> {
     fn clone(&self) -> Self {
-        Self {
-            mechanism: self.mechanism,
-            inputs: self.inputs.clone(),
-        }
+        Self { mechanism: self.mechanism, inputs: self.inputs.clone() }
     }
 }
 
@@ -172,13 +159,7 @@ where
         self.mechanism.momentum_rate(t, q, v) + self.forces(t, q, v)
     }
 
-    fn velocity(
-        &self,
-        t: T,
-        q: &SVector<T, NQ>,
-        p: &SVector<T, NV>,
-        v: &SVector<T, NV>,
-    ) -> SVector<T, NV> {
+    fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the solution
         // a = M⁻¹ (p − b) − v.
         let missing = p - self.mechanism.generalized_momentum(t, q, v);

@@ -12,10 +12,7 @@ const SPIN: [f64; 3] = [0.8, -0.5, 1.2];
 
 /// A Dormand–Prince method with equal steps.
 fn equal_steps(h: f64) -> DormandPrince<f64> {
-    DormandPrince::new()
-        .tolerance(1e6, 1e6)
-        .initial_step(h)
-        .max_step(h)
+    DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
 /// log₂ of the ratio of the errors with a step and half of it.
@@ -25,10 +22,7 @@ fn order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
 
 /// Error of the driven, damped oscillator `q̈ = −q − v/5 + sin 2t` at t = 3, whose closed form is fitted to rest.
 fn driven_error<S: Method<f64>>(method: S) -> f64 {
-    let mechanism = OneDof {
-        damping: 0.2,
-        ..oscillator::<f64>()
-    };
+    let mechanism = OneDof { damping: 0.2, ..oscillator::<f64>() };
     let end = simulate(&mechanism)
         .inputs(|t, _, _| SVector::from([(2.0 * t).sin()]))
         .duration(3.0)
@@ -47,12 +41,7 @@ fn driven_error<S: Method<f64>>(method: S) -> f64 {
 /// Error of attitude and angular velocity of the free symmetric top at t = 2.
 fn top_error<S: Method<f64>>(method: S) -> f64 {
     let top = Top { inertia: SYMMETRIC };
-    let end = simulate(&top)
-        .from(top.neutral(), SPIN)
-        .duration(2.0)
-        .method(method)
-        .finish()
-        .unwrap();
+    let end = simulate(&top).from(top.neutral(), SPIN).duration(2.0).method(method).finish().unwrap();
     let (attitude, w) = symmetric_top(SYMMETRIC, SPIN.into(), 2.0);
     let turn = Vector3::from(ball_difference(attitude, end.q.into()));
     turn.norm() + (end.v - w).norm()
@@ -60,11 +49,7 @@ fn top_error<S: Method<f64>>(method: S) -> f64 {
 
 /// Error of the pose of a thrown symmetric body at t = 2: the centre of mass follows a parabola.
 fn thrown_error<S: Method<f64>>(method: S) -> f64 {
-    let body = FreeBody {
-        mass: 2.0,
-        inertia: SYMMETRIC,
-        gravity: 1.5,
-    };
+    let body = FreeBody { mass: 2.0, inertia: SYMMETRIC, gravity: 1.5 };
     let [x, y, z] = SPIN;
     let end = simulate(&body)
         .from(body.neutral(), [1.0, -0.5, 2.0, x, y, z])
@@ -80,14 +65,8 @@ fn thrown_error<S: Method<f64>>(method: S) -> f64 {
 fn assert_orders<F: Fn(f64) -> f64>(expected: f64, h: f64, errors: [F; 3]) {
     for (case, error) in errors.iter().enumerate() {
         let found = order(error, h);
-        std::println!(
-            "order {expected}, case {case}: {found:.3}, error {:.1e}",
-            error(h)
-        );
-        assert!(
-            (found - expected).abs() < 0.25,
-            "case {case}: order {found}, expected {expected}"
-        );
+        std::println!("order {expected}, case {case}: {found:.3}, error {:.1e}", error(h));
+        assert!((found - expected).abs() < 0.25, "case {case}: order {found}, expected {expected}");
     }
 }
 
@@ -117,10 +96,7 @@ fn dense_output_has_order_four() {
     // The error of one interpolated step is of order h⁵.
     let error = |h: f64| {
         let oscillator = oscillator::<f64>();
-        let samples = simulate(&oscillator)
-            .from([1.0], [0.5])
-            .duration(h)
-            .sample_every(h / 7.0);
+        let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
         samples.method(equal_steps(h)).fold(0.0_f64, |worst, sample| {
             let sample = sample.unwrap();
             worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
@@ -145,24 +121,14 @@ fn tolerance_is_met() {
 fn pendulum_swings_with_the_elliptic_period() {
     let period = pendulum_period(2.5);
     let method = DormandPrince::new().tolerance(1e-13, 1e-13);
-    let end = simulate(&pendulum())
-        .from([2.5], [0.0])
-        .duration(10.0 * period)
-        .method(method)
-        .finish()
-        .unwrap();
-    assert!(
-        (end.q[0] - 2.5).abs() < 1e-10 && end.v[0].abs() < 1e-10,
-        "{end:?}"
-    );
+    let end =
+        simulate(&pendulum()).from([2.5], [0.0]).duration(10.0 * period).method(method).finish().unwrap();
+    assert!((end.q[0] - 2.5).abs() < 1e-10 && end.v[0].abs() < 1e-10, "{end:?}");
 }
 
 /// Momentum in the ground's frame and energy of a free top.
 fn invariants(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
-    (
-        turned(q.into(), top.generalized_momentum(&q, &v)),
-        top.kinetic_energy(&q, &v),
-    )
+    (turned(q.into(), top.generalized_momentum(&q, &v)), top.kinetic_energy(&q, &v))
 }
 
 #[test]
@@ -182,26 +148,18 @@ fn tumbling_body_keeps_momentum_and_energy() {
 fn midpoint_rule_keeps_the_invariants_of_the_top() {
     let top = Top { inertia: TUMBLING };
     let start = invariants(&top, top.neutral(), SPIN.into());
-    let run = simulate(&top)
-        .from(top.neutral(), SPIN)
-        .method(ImplicitMidpoint::step(0.05));
+    let run = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.05));
     let end = run.duration(500.0).finish().unwrap();
     let (momentum, energy) = invariants(&top, end.q, end.v);
     assert!((energy - start.1).abs() < 1e-11, "{}", energy - start.1);
     assert!((momentum.norm() - start.0.norm()).abs() < 1e-11);
-    assert!(
-        (momentum - start.0).norm() > 1e-9,
-        "only its length is kept exactly"
-    );
+    assert!((momentum - start.0).norm() > 1e-9, "only its length is kept exactly");
 }
 
 #[test]
 fn midpoint_rule_keeps_the_energy_of_the_pendulum_bounded() {
     let pendulum = pendulum();
-    let run = simulate(&pendulum)
-        .from([2.0], [0.0])
-        .method(ImplicitMidpoint::step(0.05))
-        .duration(5000.0);
+    let run = simulate(&pendulum).from([2.0], [0.0]).method(ImplicitMidpoint::step(0.05)).duration(5000.0);
     let mut worst = [0.0_f64; 2];
     for sample in run {
         let sample = sample.unwrap();
@@ -215,33 +173,18 @@ fn midpoint_rule_keeps_the_energy_of_the_pendulum_bounded() {
 #[test]
 fn midpoint_rule_is_reversible() {
     let top = Top { inertia: TUMBLING };
-    let there = simulate(&top)
-        .from(top.neutral(), SPIN)
-        .method(ImplicitMidpoint::step(0.1))
-        .duration(20.0);
+    let there = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.1)).duration(20.0);
     let there = there.finish().unwrap();
-    let back = simulate(&top)
-        .from(there.q, -there.v)
-        .method(ImplicitMidpoint::step(0.1))
-        .duration(20.0);
+    let back = simulate(&top).from(there.q, -there.v).method(ImplicitMidpoint::step(0.1)).duration(20.0);
     let back = back.finish().unwrap();
     assert!((back.v + Vector3::from(SPIN)).norm() < 1e-11 && (back.q - top.neutral()).norm() < 1e-11);
 }
 
 #[test]
 fn midpoint_rule_rests_in_equilibrium() {
-    let held = OneDof {
-        force: |_| -9.81,
-        ..oscillator::<f64>()
-    };
-    let run = simulate(&held)
-        .inputs(|_, q, v| SVector::from([9.81 - 1e3 * q[0] - v[0]]))
-        .duration(10.0);
-    let end = run
-        .from([1e-3], [0.0])
-        .method(ImplicitMidpoint::step(1e-3))
-        .finish()
-        .unwrap();
+    let held = OneDof { force: |_| -9.81, ..oscillator::<f64>() };
+    let run = simulate(&held).inputs(|_, q, v| SVector::from([9.81 - 1e3 * q[0] - v[0]])).duration(10.0);
+    let end = run.from([1e-3], [0.0]).method(ImplicitMidpoint::step(1e-3)).finish().unwrap();
     assert!(end.q[0].abs() < 1e-3 && end.q[0].is_finite());
 }
 
@@ -251,17 +194,8 @@ fn quaternions_stay_unit_over_many_steps() {
     let run = simulate(&top).from(top.neutral(), SPIN).duration(100.0);
     let norms = [
         run.clone().method(Rk4::step(1e-3)).finish().unwrap().q.norm(),
-        run.clone()
-            .method(SemiImplicitEuler::step(1e-3))
-            .finish()
-            .unwrap()
-            .q
-            .norm(),
-        run.method(ImplicitMidpoint::step(1e-3))
-            .finish()
-            .unwrap()
-            .q
-            .norm(),
+        run.clone().method(SemiImplicitEuler::step(1e-3)).finish().unwrap().q.norm(),
+        run.method(ImplicitMidpoint::step(1e-3)).finish().unwrap().q.norm(),
     ];
     assert!(norms.iter().all(|norm| (norm - 1.0).abs() < 4e-16), "{norms:?}");
 }
@@ -287,80 +221,40 @@ fn settings_that_make_no_sense_are_refused() {
         assert!(invalid(run.clone().method(Rk4::step(bad)).finish()));
         assert!(invalid(run.clone().method(SemiImplicitEuler::step(bad)).finish()));
         assert!(invalid(run.clone().method(ImplicitMidpoint::step(bad)).finish()));
-        assert!(invalid(
-            run.clone()
-                .method(DormandPrince::new().tolerance(bad, 1e-9))
-                .finish()
-        ));
-        assert!(invalid(
-            run.clone().method(DormandPrince::new().max_step(bad)).finish()
-        ));
+        assert!(invalid(run.clone().method(DormandPrince::new().tolerance(bad, 1e-9)).finish()));
+        assert!(invalid(run.clone().method(DormandPrince::new().max_step(bad)).finish()));
         assert!(invalid(run.clone().duration(bad).finish()));
         assert!(invalid(run.clone().sample_every(bad).finish()));
-        assert!(invalid(
-            run.clone()
-                .control_every(bad, |_, _, _| SVector::zeros())
-                .finish()
-        ));
+        assert!(invalid(run.clone().control_every(bad, |_, _, _| SVector::zeros()).finish()));
     }
-    assert!(
-        invalid(simulate(&oscillator).finish()),
-        "a run without end has no last sample"
-    );
-    let shown = format!(
-        "{}",
-        Error::InvalidStep {
-            name: "the step",
-            value: -1.0
-        }
-    );
+    assert!(invalid(simulate(&oscillator).finish()), "a run without end has no last sample");
+    let shown = format!("{}", Error::InvalidStep { name: "the step", value: -1.0 });
     assert_eq!(shown, "the step must be finite and positive, found -1");
 }
 
 #[test]
 fn failures_are_errors() {
-    let broken = OneDof {
-        force: |_| f64::NAN,
-        ..oscillator::<f64>()
-    };
+    let broken = OneDof { force: |_| f64::NAN, ..oscillator::<f64>() };
     let run = simulate(&broken).duration(1.0);
     let lost = Err(Error::NotFinite { t: 0.0 });
     assert_eq!(run.clone().finish(), lost);
     assert_eq!(run.clone().method(Rk4::step(0.1)).finish(), lost);
     assert_eq!(run.clone().method(SemiImplicitEuler::step(0.1)).finish(), lost);
     assert_eq!(run.method(ImplicitMidpoint::step(0.1)).finish(), lost);
-    assert_eq!(
-        simulate(&oscillator::<f64>())
-            .from([f64::NAN], [0.0])
-            .duration(1.0)
-            .finish(),
-        lost
-    );
+    assert_eq!(simulate(&oscillator::<f64>()).from([f64::NAN], [0.0]).duration(1.0).finish(), lost);
 
     // q̈ = 2 q³ from q = v = 1 is 1/(1 − t): it leaves the line of real numbers at t = 1.
-    let escaping = OneDof {
-        force: |q: f64| 2.0 * q.powi(3),
-        ..oscillator::<f64>()
-    };
+    let escaping = OneDof { force: |q: f64| 2.0 * q.powi(3), ..oscillator::<f64>() };
     let end = simulate(&escaping).from([1.0], [1.0]).duration(2.0).finish();
     let at = |t: f64| (t - 1.0).abs() < 1e-3;
-    assert!(
-        matches!(end, Err(Error::StepTooSmall { t, .. } | Error::NotFinite { t }) if at(t)),
-        "{end:?}"
-    );
+    assert!(matches!(end, Err(Error::StepTooSmall { t, .. } | Error::NotFinite { t }) if at(t)), "{end:?}");
 
-    let stiff = OneDof {
-        force: |q: f64| -1e6 * q,
-        ..oscillator::<f64>()
-    };
+    let stiff = OneDof { force: |q: f64| -1e6 * q, ..oscillator::<f64>() };
     let run = simulate(&stiff).from([1.0], [0.0]).duration(1.0);
     let end = run.clone().method(ImplicitMidpoint::step(0.1)).finish();
     assert!(matches!(end, Err(Error::NotConverged { .. })), "{end:?}");
     let end = run.clone().method(DormandPrince::new().max_steps(10)).finish();
-    assert!(
-        matches!(end, Err(Error::TooManySteps { t }) if t < 1.0),
-        "{end:?}"
-    );
+    assert!(matches!(end, Err(Error::TooManySteps { t }) if t < 1.0), "{end:?}");
     let end = run.method(DormandPrince::new().min_step(0.1)).finish();
     assert!(matches!(end, Err(Error::StepTooSmall { .. })), "{end:?}");
 }

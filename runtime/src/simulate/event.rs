@@ -151,13 +151,7 @@ pub struct Event<G, A> {
 
 impl<G, A> Event<G, A> {
     pub(super) fn new(function: G, crossing: Crossing, action: A) -> Self {
-        Self {
-            function,
-            crossing,
-            action,
-            side: Ordering::Equal,
-            ahead: Ordering::Equal,
-        }
+        Self { function, crossing, action, side: Ordering::Equal, ahead: Ordering::Equal }
     }
 }
 
@@ -194,19 +188,12 @@ where
         if !event.crossing.counts(event.side, event.ahead) {
             return earlier;
         }
-        let sign = if event.side == Ordering::Less {
-            T::one()
-        } else {
-            -T::one()
-        };
+        let sign = if event.side == Ordering::Less { T::one() } else { -T::one() };
         let theta = first_sign_change(|theta| value(theta) * sign, [from, to], end * sign);
         if earlier.is_some_and(|hit| hit.theta <= theta) {
             return earlier;
         }
-        Some(Hit {
-            theta,
-            index: E::COUNT,
-        })
+        Some(Hit { theta, index: E::COUNT })
     }
 
     fn pass(&mut self) {
@@ -222,11 +209,7 @@ where
         }
         let flow = self.1.action.act(state);
         // After an impact the motion may leave to either side.
-        self.1.side = if flow == Flow::Jump {
-            Ordering::Equal
-        } else {
-            self.1.side.reverse()
-        };
+        self.1.side = if flow == Flow::Jump { Ordering::Equal } else { self.1.side.reverse() };
         flow
     }
 }
@@ -249,17 +232,9 @@ fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2],
         let secant = (above * a - below * b) / (above - below);
         let shift = truncation * (b - a) * (b - a);
         let towards = if middle >= secant { T::one() } else { -T::one() };
-        let inner = if shift <= (middle - secant).abs() {
-            secant + towards * shift
-        } else {
-            middle
-        };
+        let inner = if shift <= (middle - secant).abs() { secant + towards * shift } else { middle };
         let slack = reach - (b - a) * half;
-        let x = if (inner - middle).abs() <= slack {
-            inner
-        } else {
-            middle - towards * slack
-        };
+        let x = if (inner - middle).abs() <= slack { inner } else { middle - towards * slack };
         let x = if x > a && x < b { x } else { middle };
         if x <= a || x >= b {
             break;
@@ -293,10 +268,7 @@ mod tests {
     #[test]
     fn sign_changes_are_found_to_rounding() {
         let (x, count) = found(|x| x * x - 0.5);
-        assert!(
-            (x - core::f64::consts::FRAC_1_SQRT_2).abs() < 5e-16 && count < 16,
-            "{count}"
-        );
+        assert!((x - core::f64::consts::FRAC_1_SQRT_2).abs() < 5e-16 && count < 16, "{count}");
         let (x, count) = found(|x| if x < 0.3 { -1e-3 } else { 1e3 });
         assert!((x - 0.3).abs() < 5e-16 && count < 60, "{count}");
         let (x, count) = found(|x| (x - 0.7).powi(9));

@@ -34,8 +34,7 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
 /// `t`, or `onto` if it is that up to rounding.
 fn snapped<T: Real>(t: T, onto: Option<T>) -> T {
     let near = constant::<T>(8.0) * epsilon::<T>();
-    onto.filter(|onto| (t - *onto).abs() <= near * (t.abs() + onto.abs()))
-        .unwrap_or(t)
+    onto.filter(|onto| (t - *onto).abs() <= near * (t.abs() + onto.abs())).unwrap_or(t)
 }
 
 type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
@@ -58,14 +57,9 @@ where
             return Ok(run);
         }
         self.method.check()?;
-        self.duration
-            .map_or(Ok(()), |duration| positive("the duration", duration))?;
-        self.every
-            .map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
-        self.system
-            .inputs
-            .period()
-            .map_or(Ok(()), |period| positive("the control period", period))?;
+        self.duration.map_or(Ok(()), |duration| positive("the duration", duration))?;
+        self.every.map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
+        self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
         let node = self.start.finite()?;
         self.events.begin(&node);
         Ok(Progress {
@@ -119,9 +113,7 @@ where
     fn control_time(&self, count: u64) -> Option<T> {
         let (start, period) = (self.start.t, self.system.inputs.period()?);
         let t = start + period * constant(count as f64);
-        let nearest = self
-            .every
-            .map(|every| start + every * ((t - start) / every).round());
+        let nearest = self.every.map(|every| start + every * ((t - start) / every).round());
         Some(snapped(snapped(t, nearest), self.end()))
     }
 
@@ -135,9 +127,7 @@ where
     /// Between two steps: renews the inputs, emits the node if it is a sample, otherwise takes a step.
     fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
         self.renew(run);
-        let due = self
-            .sample_time(run.sample)
-            .map_or(!run.shown, |t| run.node.t >= t);
+        let due = self.sample_time(run.sample).map_or(!run.shown, |t| run.node.t >= t);
         if due {
             run.sample += 1;
             run.shown = true;
@@ -147,9 +137,7 @@ where
         }
         let until = self.next_stop(run);
         let dense = E::COUNT > 0;
-        let step = self
-            .method
-            .advance(&mut run.memory, &mut self.system, &run.node, until, dense)?;
+        let step = self.method.advance(&mut run.memory, &mut self.system, &run.node, until, dense)?;
         if dense || self.sample_time(run.sample).is_some_and(|t| t < step.end.t) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
@@ -175,10 +163,7 @@ where
                 return Ok(None);
             }
             let theta = (t - step.start.t) / (step.end.t - step.start.t);
-            let state = State {
-                t,
-                ..step.at(&self.system, theta)
-            };
+            let state = State { t, ..step.at(&self.system, theta) };
             return Ok(Some(self.sample(state, None)));
         }
         match event {
@@ -197,11 +182,7 @@ where
         }
         let system = &self.system;
         let path = |theta: T| {
-            if theta < T::one() {
-                step.at(system, theta)
-            } else {
-                step.end
-            }
+            if theta < T::one() { step.at(system, theta) } else { step.end }
         };
         for part in 1..=SEARCHES {
             let to = constant::<T>(f64::from(part) / f64::from(SEARCHES));
@@ -245,12 +226,6 @@ where
     }
 
     fn sample(&mut self, State { t, q, v }: State<T, NQ, NV>, event: Option<usize>) -> Sample<T, NQ, NV, NU> {
-        Sample {
-            t,
-            q,
-            v,
-            u: self.system.inputs.at(t, &q, &v),
-            event,
-        }
+        Sample { t, q, v, u: self.system.inputs.at(t, &q, &v), event }
     }
 }

@@ -11,10 +11,7 @@ const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-1
 /// The samples of a run of the oscillator, by their times.
 fn times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
-    let run = simulate(&oscillator)
-        .from([1.0], [0.0])
-        .duration(duration)
-        .sample_every(interval);
+    let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
     run.method(method).map(|sample| sample.unwrap().t).collect()
 }
 
@@ -49,11 +46,7 @@ fn without_an_interval_every_step_is_a_sample() {
 #[test]
 fn interpolated_samples_are_accurate() {
     let oscillator = oscillator::<f64>();
-    let run = simulate(&oscillator)
-        .from([1.0], [0.0])
-        .duration(10.0)
-        .sample_every(0.01)
-        .method(TIGHT());
+    let run = simulate(&oscillator).from([1.0], [0.0]).duration(10.0).sample_every(0.01).method(TIGHT());
     for sample in run {
         let sample = sample.unwrap();
         assert!((sample.q[0] - sample.t.cos()).abs() < 1e-11, "{sample:?}");
@@ -63,11 +56,7 @@ fn interpolated_samples_are_accurate() {
 
 #[test]
 fn the_defaults_are_rest_in_the_neutral_configuration() {
-    let body = FreeBody {
-        mass: 1.0,
-        inertia: Vector3::new(1.0, 2.0, 2.5),
-        gravity: 0.0,
-    };
+    let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
     let end = simulate(&body).duration(1.0).finish().unwrap();
     assert_eq!(end.q, Mechanism::neutral(&body));
     assert_eq!(end.v.norm(), 0.0);
@@ -78,9 +67,7 @@ fn the_defaults_are_rest_in_the_neutral_configuration() {
 fn a_run_can_start_later() {
     let pushed = |start| {
         let oscillator = oscillator::<f64>();
-        let run = simulate(&oscillator)
-            .start_at(start)
-            .inputs(|t, _, _| SVector::from([t]));
+        let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
         run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
     };
     let (t, q) = pushed(2.0);
@@ -91,10 +78,7 @@ fn a_run_can_start_later() {
 
 /// A free mass pushed by ±1 in turn for periods of 0.1 s; closed form by summation.
 fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
-    let mass = OneDof {
-        force: |_| 0.0,
-        ..oscillator::<f64>()
-    };
+    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
     let calls = Cell::new(0);
     let instants = core::cell::RefCell::new(Vec::new());
     let run = simulate(&mass).control_every(0.1, |t, _, _| {
@@ -102,13 +86,7 @@ fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
         calls.set(calls.get() + 1);
         SVector::from([if calls.get() % 2 == 1 { 1.0 } else { -1.0 }])
     });
-    let end = run
-        .duration(1.0)
-        .sample_every(0.05)
-        .method(method)
-        .last()
-        .unwrap()
-        .unwrap();
+    let end = run.duration(1.0).sample_every(0.05).method(method).last().unwrap().unwrap();
     (end.q[0], instants.take())
 }
 
@@ -134,11 +112,7 @@ fn held<S: Method<f64>>(method: S) -> Vec<f64> {
         count += 1.0;
         SVector::from([count])
     });
-    run.duration(3.0)
-        .sample_every(0.1)
-        .method(method)
-        .map(|sample| sample.unwrap().u[0])
-        .collect()
+    run.duration(3.0).sample_every(0.1).method(method).map(|sample| sample.unwrap().u[0]).collect()
 }
 
 #[test]
@@ -148,27 +122,17 @@ fn samples_hold_the_inputs() {
     assert_eq!(held(ImplicitMidpoint::step(0.03)), wanted);
     assert_eq!(held(DormandPrince::new()), wanted);
     let oscillator = oscillator::<f64>();
-    let run = simulate(&oscillator)
-        .inputs(|t, _, _| SVector::from([2.0 * t]))
-        .duration(1.0);
-    assert!(
-        run.sample_every(0.1)
-            .all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t))
-    );
+    let run = simulate(&oscillator).inputs(|t, _, _| SVector::from([2.0 * t])).duration(1.0);
+    assert!(run.sample_every(0.1).all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t)));
 }
 
 #[test]
 fn pendulum_crossings_are_periodic() {
     let pendulum = pendulum();
     let period = pendulum_period(2.5);
-    let run = simulate(&pendulum)
-        .from([2.5], [0.0])
-        .duration(5.0 * period)
-        .sample_every(100.0);
-    let run = run
-        .event(Crossing::Falling, |_, q, _| q[0])
-        .event(Crossing::Rising, |_, q, _| q[0])
-        .method(TIGHT());
+    let run = simulate(&pendulum).from([2.5], [0.0]).duration(5.0 * period).sample_every(100.0);
+    let run =
+        run.event(Crossing::Falling, |_, q, _| q[0]).event(Crossing::Rising, |_, q, _| q[0]).method(TIGHT());
     let mut count = 0;
     for sample in run.filter(|sample| sample.is_ok_and(|s| s.event.is_some())) {
         let sample = sample.unwrap();
@@ -192,10 +156,7 @@ fn a_run_ends_where_it_is_told() {
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
     let check = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
         let end = end.unwrap();
-        assert!(
-            (end.t - 6.0).abs() < 1e-13 && (end.v[0] + 3.0).abs() < 1e-13,
-            "{end:?}"
-        );
+        assert!((end.t - 6.0).abs() < 1e-13 && (end.v[0] + 3.0).abs() < 1e-13, "{end:?}");
         assert_eq!(end.event, Some(0));
     };
     check(run.clone().finish());
@@ -204,9 +165,7 @@ fn a_run_ends_where_it_is_told() {
     check(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
     // Directions: the stone passes 4 m on its way up, and again on its way down.
     let falls = |crossing| {
-        let run = simulate(&stone)
-            .from([0.0], [3.0])
-            .until_crossing(crossing, |_, q, _| q[0] - 4.0);
+        let run = simulate(&stone).from([0.0], [3.0]).until_crossing(crossing, |_, q, _| q[0] - 4.0);
         run.finish().unwrap().t
     };
     assert!((falls(Crossing::Rising) - 2.0).abs() < 1e-13);
@@ -216,32 +175,17 @@ fn a_run_ends_where_it_is_told() {
 
 #[test]
 fn several_events_come_in_order() {
-    let mass = OneDof {
-        force: |_| 0.0,
-        ..oscillator::<f64>()
-    };
-    let run = simulate(&mass)
-        .from([0.0], [1.0])
-        .duration(1.0)
-        .method(Rk4::step(1.0));
+    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let run = simulate(&mass).from([0.0], [1.0]).duration(1.0).method(Rk4::step(1.0));
     let run = run
         .event(Crossing::Rising, |_, q, _| q[0] - 0.9)
         .event(Crossing::Either, |_, q, _| q[0] - 0.2)
         .event(Crossing::Rising, |t, _, _| t - 0.2)
         .event(Crossing::Falling, |_, q, _| q[0] - 0.5)
         .event(Crossing::Rising, |t, _, _| (t - 0.3) * (t - 0.6));
-    let found: Vec<_> = run
-        .map(|sample| sample.unwrap())
-        .map(|s| (s.event, (s.t * 1e9).round() / 1e9))
-        .collect();
-    let wanted = [
-        (None, 0.0),
-        (Some(1), 0.2),
-        (Some(2), 0.2),
-        (Some(4), 0.6),
-        (Some(0), 0.9),
-        (None, 1.0),
-    ];
+    let found: Vec<_> =
+        run.map(|sample| sample.unwrap()).map(|s| (s.event, (s.t * 1e9).round() / 1e9)).collect();
+    let wanted = [(None, 0.0), (Some(1), 0.2), (Some(2), 0.2), (Some(4), 0.6), (Some(0), 0.9), (None, 1.0)];
     assert_eq!(found, wanted);
 }
 
@@ -252,49 +196,25 @@ fn a_ball_bounces() {
     let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
     let check = |samples: &mut dyn Iterator<Item = Result<Sample<f64, 1, 1, 1>, Error>>| {
-        let hits: Vec<_> = samples
-            .map(|s| s.unwrap())
-            .filter(|s| s.event.is_some())
-            .collect();
-        let wanted = [
-            (1.0, 0.5),
-            (2.0, 0.25),
-            (2.5, 0.125),
-            (2.75, 0.0625),
-            (2.875, 0.03125),
-        ];
+        let hits: Vec<_> = samples.map(|s| s.unwrap()).filter(|s| s.event.is_some()).collect();
+        let wanted = [(1.0, 0.5), (2.0, 0.25), (2.5, 0.125), (2.75, 0.0625), (2.875, 0.03125)];
         assert_eq!(hits.len(), wanted.len());
         for (hit, (t, v)) in hits.iter().zip(wanted) {
-            assert!(
-                (hit.t - t).abs() < 1e-12 && (hit.v[0] - v).abs() < 1e-12,
-                "{hit:?}"
-            );
+            assert!((hit.t - t).abs() < 1e-12 && (hit.v[0] - v).abs() < 1e-12, "{hit:?}");
         }
     };
     check(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
     check(&mut run.clone().method(Rk4::step(0.01)));
     check(&mut run.clone().method(ImplicitMidpoint::step(0.01)).sample_every(0.1));
-    check(
-        &mut run
-            .clone()
-            .method(DormandPrince::new().max_step(0.05))
-            .sample_every(0.125),
-    );
+    check(&mut run.clone().method(DormandPrince::new().max_step(0.05)).sample_every(0.125));
 }
 
 #[test]
 fn an_impact_on_a_control_instant_is_both() {
     let ball = falling();
-    let run = simulate(&ball)
-        .from([0.5], [0.0])
-        .control_every(1.0, |_, _, _| SVector::zeros());
-    let run = run
-        .impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v)
-        .duration(2.5);
-    for end in [
-        run.clone().finish(),
-        run.sample_every(0.5).method(Rk4::step(0.1)).finish(),
-    ] {
+    let run = simulate(&ball).from([0.5], [0.0]).control_every(1.0, |_, _, _| SVector::zeros());
+    let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).duration(2.5);
+    for end in [run.clone().finish(), run.sample_every(0.5).method(Rk4::step(0.1)).finish()] {
         let end = end.unwrap();
         assert!((end.q[0] - 0.375).abs() < 1e-12, "{end:?}");
     }
@@ -302,26 +222,17 @@ fn an_impact_on_a_control_instant_is_both() {
 
 #[test]
 fn an_error_ends_the_run() {
-    let broken = OneDof {
-        force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 },
-        ..oscillator::<f64>()
-    };
+    let broken = OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..oscillator::<f64>() };
     let mut run = simulate(&broken).duration(2.0).method(Rk4::step(0.125));
     let failed = run.by_ref().find(Result::is_err);
-    assert!(
-        matches!(failed, Some(Err(Error::NotFinite { t })) if t > 0.8 && t < 1.01),
-        "{failed:?}"
-    );
+    assert!(matches!(failed, Some(Err(Error::NotFinite { t })) if t > 0.8 && t < 1.01), "{failed:?}");
     assert!(run.next().is_none());
 }
 
 #[test]
 fn changing_a_setting_starts_over() {
     let oscillator = oscillator::<f64>();
-    let mut run = simulate(&oscillator)
-        .from([1.0], [0.0])
-        .duration(1.0)
-        .sample_every(0.1);
+    let mut run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0).sample_every(0.1);
     assert_eq!(run.by_ref().count(), 11);
     assert!(run.next().is_none());
     assert_eq!(run.duration(2.0).count(), 21);
@@ -334,11 +245,7 @@ fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: us
     v: SVector<M::Scalar, NV>,
 ) -> M::Scalar {
     let energy = |q, v| mechanism.kinetic_energy(q, v) + mechanism.potential_energy(q);
-    let end = simulate(mechanism)
-        .from(q, v)
-        .duration(nalgebra::one())
-        .finish()
-        .unwrap();
+    let end = simulate(mechanism).from(q, v).duration(nalgebra::one()).finish().unwrap();
     energy(&end.q, &end.v) - energy(&q, &v)
 }
 
@@ -346,18 +253,8 @@ fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: us
 fn generic_code_can_simulate() {
     assert!(gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
     assert!(gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
-    let body = FreeBody {
-        mass: 1.0,
-        inertia: Vector3::new(1.0, 2.0, 2.5),
-        gravity: 1.0,
-    };
+    let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 1.0 };
     assert!(
-        gain(
-            &body,
-            Mechanism::neutral(&body),
-            SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])
-        )
-        .abs()
-            < 1e-8
+        gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs() < 1e-8
     );
 }

@@ -13,10 +13,74 @@ const BLOCK: usize = 200;
 /// Longest expression that is not bound.
 const LINE: usize = 72;
 
+/// Sine and cosine of one angle: the instructions that compute them.
+struct Angle {
+    angle: Operand,
+    sine: Option<usize>,
+    cosine: Option<usize>,
+}
+
+/// The angles that can be evaluated together at the start: arithmetic of the arguments.
+struct Angles {
+    list: Vec<Angle>,
+    /// By instruction: it is one of their sines or cosines.
+    covered: Vec<bool>,
+    /// By instruction: an angle needs it.
+    before: Vec<bool>,
+}
+
+impl Angles {
+    fn find(program: &Program) -> Angles {
+        let n = program.instructions.len();
+        let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
+        let mut plain = vec![false; n];
+        for (k, op) in program.instructions.iter().enumerate() {
+            let mut all = true;
+            op.operands(|o| all &= !matches!(o, Operand::Value(j) if !plain[j]));
+            plain[k] = all && !matches!(op, Op::Call(..) | Op::Atan2(..) | Op::Pow(..));
+            if let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = *op
+                && all
+            {
+                angles.covered[k] = true;
+                angles.add(f, angle, k);
+            }
+        }
+        for angle in &angles.list {
+            if let Operand::Value(j) = angle.angle {
+                angles.before[j] = true;
+            }
+        }
+        for k in (0..n).rev().filter(|k| plain[*k]) {
+            if angles.before[k] {
+                program.instructions[k].operands(|o| {
+                    if let Operand::Value(j) = o {
+                        angles.before[j] = true;
+                    }
+                });
+            }
+        }
+        angles
+    }
+
+    fn add(&mut self, f: Elementary, angle: Operand, k: usize) {
+        let known = self.list.iter().position(|a| a.angle == angle);
+        let at = known.unwrap_or_else(|| {
+            self.list.push(Angle { angle, sine: None, cosine: None });
+            self.list.len() - 1
+        });
+        match f {
+            Elementary::Sin => self.list[at].sine = Some(k),
+            _ => self.list[at].cosine = Some(k),
+        }
+    }
+}
+
 /// A binding, or an output without a name.
 struct Statement {
-    /// Left side.
+    /// Values that the left side binds.
     names: Vec<usize>,
+    /// Left side.
+    pattern: String,
     /// Right side.
     text: String,
     /// Values that the right side names.
@@ -72,39 +136,66 @@ impl Writer<'_> {
     }
 
     fn write_instructions(&mut self) {
+        let angles = Angles::find(self.program);
         for k in 0..self.program.instructions.len() {
-            if let Some(pair) = self.sine_and_cosine(k) {
-                // The pair is bound where the first of the two is met.
-                if pair.0.min(pair.1) == k {
-                    let Op::Call(_, angle) = self.program.instructions[k] else {
-                        continue;
-                    };
-                    let angle = self.operand(angle);
-                    let helper = self.helper("sin_cos");
-                    let text = format!("{helper}({})", angle.text);
-                    self.statements.push(Statement { names: vec![pair.0, pair.1], text, needs: angle.needs });
-                }
-                continue;
+            if angles.before[k] {
+                self.write_instruction(k);
             }
-            let piece = self.instruction(self.program.instructions[k]);
-            if self.program.uses[k] == 1 && piece.text.len() <= LINE {
-                self.pieces[k] = Some(piece);
-            } else {
-                self.statements.push(Statement { names: vec![k], text: piece.text, needs: piece.needs });
+        }
+        self.write_angles(&angles);
+        for k in 0..self.program.instructions.len() {
+            if !angles.before[k] && !angles.covered[k] {
+                self.write_instruction(k);
             }
         }
     }
 
-    /// The instructions that compute sine and cosine of the angle that instruction `k` computes one of, if both exist.
-    /// They follow each other closely, since an angle's two functions are made together.
-    fn sine_and_cosine(&self, k: usize) -> Option<(usize, usize)> {
-        let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = self.program.instructions[k] else {
-            return None;
+    fn write_instruction(&mut self, k: usize) {
+        let piece = self.instruction(self.program.instructions[k]);
+        if self.program.uses[k] == 1 && piece.text.len() <= LINE {
+            self.pieces[k] = Some(piece);
+        } else {
+            self.statements.push(Statement {
+                names: vec![k],
+                pattern: format!("t{k}"),
+                text: piece.text,
+                needs: piece.needs,
+            });
+        }
+    }
+
+    /// One call for the sines and cosines of all angles, padded to the width of vector registers.
+    fn write_angles(&mut self, angles: &Angles) {
+        let name = |k: &Option<usize>| k.map_or("_".to_string(), |k| format!("t{k}"));
+        let mut needs = Vec::new();
+        let mut arguments = Vec::new();
+        for angle in &angles.list {
+            let piece = self.operand(angle.angle);
+            needs.extend(piece.needs);
+            arguments.push(piece.text);
+        }
+        let mut sines: Vec<String> = angles.list.iter().map(|a| name(&a.sine)).collect();
+        let mut cosines: Vec<String> = angles.list.iter().map(|a| name(&a.cosine)).collect();
+        let names = angles.list.iter().flat_map(|a| [a.sine, a.cosine]).flatten().collect();
+        let (pattern, text) = match arguments.as_slice() {
+            [] => return,
+            [one] => {
+                let helper = self.helper("sin_cos");
+                (format!("({}, {})", sines[0], cosines[0]), format!("{helper}({one})"))
+            }
+            _ => {
+                let width = if arguments.len() <= 4 { 4 } else { 8 };
+                while arguments.len() % width != 0 {
+                    arguments.push(self.constant(0.0));
+                    sines.push("_".to_string());
+                    cosines.push("_".to_string());
+                }
+                let helper = self.helper("sin_cos_all");
+                let pattern = format!("([{}], [{}])", sines.join(", "), cosines.join(", "));
+                (pattern, format!("{helper}([{}])", arguments.join(", ")))
+            }
         };
-        let other = if f == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
-        let near = k.saturating_sub(8)..(k + 9).min(self.program.instructions.len());
-        let other = near.into_iter().find(|j| self.program.instructions[*j] == Op::Call(other, angle))?;
-        Some(if f == Elementary::Sin { (k, other) } else { (other, k) })
+        self.statements.push(Statement { names, pattern, text, needs });
     }
 
     fn operand(&mut self, o: Operand) -> Piece {
@@ -250,11 +341,7 @@ fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece
 }
 
 fn write_let(out: &mut String, statement: &Statement) {
-    let _ = match statement.names.as_slice() {
-        [k] => writeln!(out, "let t{k} = {};", statement.text),
-        [s, c] => writeln!(out, "let (t{s}, t{c}) = {};", statement.text),
-        _ => Ok(()),
-    };
+    let _ = writeln!(out, "let {} = {};", statement.pattern, statement.text);
 }
 
 fn write_result(out: &mut String, shape: Shape, outputs: &[Piece]) {

@@ -90,6 +90,11 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         write_function(&mut methods, f, &s, false);
     }
     write_manifold(&mut methods, &output.charts, &s);
+    // A parameter that drops out of the equations is not a field that nobody reads.
+    let fields: Vec<String> =
+        (0..interface.shell.parameters.len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
+    let _ =
+        writeln!(methods, "#[doc(hidden)]\nfn __parameters(&self) {{ let _ = ({}); }}", fields.join(", "));
     write_frame_access(&mut methods, &s);
     let placements =
         format!("[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]", spelling.name(), output.frames.len());
@@ -120,11 +125,19 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted
         write_function(&mut methods, f, &s, true);
     }
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (scalar, nv) = (spelling.name(), s.nv);
+    let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
     let _ = writeln!(
         methods,
         "pub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ loop {{}} }}
         pub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{ loop {{}} }}
-        pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}"
+        pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}
+        pub fn frame_placements(&self, q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
+        pub fn frame_placement<F>(&self, frame: F, q: &{q}) -> {placement} {{ loop {{}} }}
+        pub fn frame_velocity<F>(&self, frame: F, q: &{q}, v: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_acceleration<F>(&self, frame: F, q: &{q}, v: &{v}, a: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_jacobian<F>(&self, frame: F, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
+        interface.frames.len()
     );
     assemble(interface, &s, &methods, &[], "")
 }

@@ -246,6 +246,17 @@ impl Program {
         counts
     }
 
+    /// True if every constant is a finite number.
+    pub fn is_finite(&self) -> bool {
+        let mut finite = true;
+        let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
+        for op in &self.instructions {
+            op.operands(&mut check);
+        }
+        self.outputs.iter().for_each(|o| check(*o));
+        finite
+    }
+
     /// The values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.instructions.len());

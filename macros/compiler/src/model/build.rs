@@ -145,6 +145,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let model = Model {
             graph,
             name: description.name.text.clone(),
+            place: description.name.place.clone(),
             scalar: description.scalar.clone(),
             parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
             gravity: gravity.unwrap_or(Vec3::zero(graph)),

@@ -32,7 +32,7 @@ impl<'g> Scope<'_, 'g> {
         match &e.kind {
             ExprKind::Number(0.0) => Some(Sym3::zero(self.graph)),
             ExprKind::Array(_) => self.symmetric(e, cx),
-            ExprKind::Binary(BinaryOp::Add, a, b) => {
+            ExprKind::Binary(BinaryOp::Add, a, b, _) => {
                 let (a, b) = (self.inertia(a, cx), self.inertia(b, cx));
                 Some(a? + b?)
             }

@@ -298,6 +298,8 @@ pub struct Model<'g> {
     pub graph: &'g Graph,
     /// The struct's name.
     pub name: String,
+    /// Where the name stands.
+    pub place: Place,
     /// Scalar type of the generated functions.
     pub scalar: ScalarType,
     /// Names of the parameters.

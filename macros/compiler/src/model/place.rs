@@ -346,7 +346,7 @@ fn collect_names(e: &Expr, names: &mut Vec<String>, depth: usize) {
         ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
             arguments.iter().for_each(inner);
         }
-        ExprKind::Binary(_, a, b) => {
+        ExprKind::Binary(_, a, b, _) => {
             inner(a);
             inner(b);
         }

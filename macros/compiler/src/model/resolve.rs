@@ -217,7 +217,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Value::Scalar(s) => Value::Scalar(-s),
                 Value::Vector(v) => Value::Vector(v.into_iter().map(|(a, v)| (a, -v)).collect()),
             }),
-            ExprKind::Binary(op, left, right) => {
+            ExprKind::Binary(op, left, right, _) => {
                 let (left, right) = (self.value(left, cx), self.value(right, cx));
                 self.binary(*op, left?, right?, e, cx)
             }

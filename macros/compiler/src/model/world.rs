@@ -517,7 +517,7 @@ fn link_of(axes: &Axes) -> Option<LinkId> {
 fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
     let mut at = e;
-    while let ExprKind::Binary(BinaryOp::Div, left, right) = &at.kind {
+    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
         parts.push(&**right);
         at = left;
     }

@@ -166,6 +166,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         friction_speed: None,
         scalar: ScalarType::F64,
         parameters: Vec::new(),
+        units: Vec::new(),
         bodies: Vec::new(),
         particles: Vec::new(),
         joints: Vec::new(),
@@ -210,6 +211,7 @@ fn read_field(
         }
     };
     check_parameter_attributes(&field_name, &field.attrs, cx);
+    read_units(&field.attrs, description, cx);
     field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     unify_scalar(scalar, found, field.ty.span().into(), cx);
     // Rust would complain of a second field with the same name as well.
@@ -265,9 +267,22 @@ fn type_name(ty: &Type) -> Option<Ident> {
     }
 }
 
+/// The `#[unit(…)]` of the parameter that comes next.
+fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut Diagnostics) {
+    let mut units = attributes.iter().filter(|a| element::is_one_of(a, &["unit"]));
+    if let Some(first) = units.next() {
+        let unit = element::read_unit(first, cx);
+        description.units.extend(unit.map(|unit| (description.parameters.len(), unit)));
+    }
+    for second in units {
+        cx.error(second.path().span(), "a parameter has one `#[unit]`");
+    }
+}
+
 fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
         if let Some(word) = attribute.path().get_ident()
+            && word != "unit"
             && element::ATTRIBUTES.contains(&word.to_string().as_str())
         {
             cx.error(

@@ -8,6 +8,7 @@ use super::{
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
+use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
 
 /// The attributes of the language.
@@ -189,6 +190,23 @@ pub fn read_element(
 /// True for an attribute of one of these names.
 pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
+}
+
+/// The unit in `#[unit(…)]`, as an expression.
+pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
+    let tokens = match &attribute.meta {
+        Meta::List(list) if !list.tokens.is_empty() => list.tokens.clone(),
+        _ => {
+            cx.error(attribute.path().span(), "this says no unit")
+                .help("write `#[unit(kg)]` or `#[unit(N * m / rad)]`");
+            return None;
+        }
+    };
+    let whole = |input: ParseStream<'_>| {
+        let unit = parse_expr(input)?;
+        if input.is_empty() { Ok(unit) } else { Err(super::expression::unexpected(input)) }
+    };
+    whole.parse2(tokens).map_err(|error| cx.syn(error)).ok()
 }
 
 /// The arguments of the one attribute that an element of this kind has.

@@ -47,7 +47,7 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Ok(left);
         };
         let right = behind(span, input, parse_product)?;
-        left = binary(op, left, right)?;
+        left = binary(op, span, left, right)?;
     }
 }
 
@@ -62,7 +62,7 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Ok(left);
         };
         let right = behind(span, input, parse_unary)?;
-        left = binary(op, left, right)?;
+        left = binary(op, span, left, right)?;
     }
 }
 
@@ -78,10 +78,10 @@ fn behind(
     parse(input)
 }
 
-fn binary(op: BinaryOp, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
+fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
     let depth = left.1.max(right.1) + 1;
     let place = left.0.place.to(&right.0.place);
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0)), place, depth)
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, depth)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {

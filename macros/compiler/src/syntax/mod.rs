@@ -43,8 +43,8 @@ pub enum ExprKind {
     Call(Name, Vec<Expr>),
     /// `-e`.
     Neg(Box<Expr>),
-    /// `a + b` and its kin.
-    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `a + b` and its kin, with the operator's place.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>, Place),
     /// `(a, b)`.
     Tuple(Vec<Expr>),
     /// `[a, b, c]`.
@@ -116,6 +116,8 @@ pub struct Description {
     pub scalar: ScalarType,
     /// Parameters: the fields that stay in the struct.
     pub parameters: Vec<Name>,
+    /// `#[unit(…)]` of parameters, by index.
+    pub units: Vec<(usize, Expr)>,
     /// Rigid bodies.
     pub bodies: Vec<Body>,
     /// Particles.

@@ -16,10 +16,7 @@ pub(super) struct Scale<T> {
 fn sizes<T: Real, const NQ: usize, const NV: usize>(q: &SVector<T, NQ>) -> SVector<T, NV> {
     let mut sizes: SVector<T, NV> = SVector::repeat(T::one());
     if NQ == NV {
-        sizes
-            .iter_mut()
-            .zip(q.iter())
-            .for_each(|(size, q)| *size = q.abs());
+        sizes.iter_mut().zip(q.iter()).for_each(|(size, q)| *size = q.abs());
     }
     sizes
 }
@@ -46,10 +43,7 @@ impl<T: Real> Scale<T> {
         let moved = trial.displacement.abs();
         let size = larger(&larger(&sizes(&start.q), &sizes(&end.q)), &moved);
         let speed = larger(&start.v.abs(), &end.v.abs());
-        self.norm(
-            [&trial.error.displacement, &trial.error.velocity],
-            [&size, &speed],
-        )
+        self.norm([&trial.error.displacement, &trial.error.velocity], [&size, &speed])
     }
 }
 
@@ -71,11 +65,7 @@ pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let speed = start.v.abs();
     let norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
     let (state, rate) = (norm(&size, &start.v), norm(&start.v, acceleration));
-    let guess = if state < small || rate < small {
-        constant(1e-6)
-    } else {
-        state / rate * constant(0.01)
-    };
+    let guess = if state < small || rate < small { constant(1e-6) } else { state / rate * constant(0.01) };
     let v = start.v + acceleration * guess;
     let q = system.integrate(&start.q, &(start.v * guess));
     let bend = system.acceleration(start.t + guess, &q, &v) - acceleration;
@@ -87,9 +77,5 @@ pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         (constant::<T>(0.01) / sharpest).powf(constant(0.2))
     };
     let step = step.min(guess * constant(100.0));
-    if step.is_finite() && step > T::zero() {
-        step
-    } else {
-        constant(1e-6)
-    }
+    if step.is_finite() && step > T::zero() { step } else { constant(1e-6) }
 }

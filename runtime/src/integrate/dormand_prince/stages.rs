@@ -25,10 +25,7 @@ pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
 
 /// `h Σ weight · rates`.
 fn sum<T: Real, const NV: usize, const N: usize>(h: T, terms: [(f64, &Rates<T, NV>); N]) -> Rates<T, NV> {
-    let mut total = Rates {
-        displacement: SVector::zeros(),
-        velocity: SVector::zeros(),
-    };
+    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, rates) in terms {
         let weight = h * constant(weight);
         total.displacement += rates.displacement * weight;
@@ -48,13 +45,7 @@ fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let q = system.integrate(&start.q, &change.displacement);
     let displacement = system.tangent_rate(&change.displacement, &v);
     let velocity = system.acceleration(t, &q, &v);
-    (
-        Rates {
-            displacement,
-            velocity,
-        },
-        State { t, q, v },
-    )
+    (Rates { displacement, velocity }, State { t, q, v })
 }
 
 /// One step of length `h` that ends at `t`. Hairer, Nørsett and Wanner, II, table 5.2 and (6.12).
@@ -66,10 +57,7 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     t: T,
 ) -> Trial<T, NQ, NV> {
     let after = |part: f64| start.t + h * constant(part);
-    let k1 = &Rates {
-        displacement: start.v,
-        velocity: *acceleration,
-    };
+    let k1 = &Rates { displacement: start.v, velocity: *acceleration };
     let change = sum(h, [(1.0 / 5.0, k1)]);
     let k2 = &stage(system, start, after(1.0 / 5.0), &change).0;
     let change = sum(h, [(3.0 / 40.0, k1), (9.0 / 40.0, k2)]);
@@ -78,12 +66,7 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     let k4 = &stage(system, start, after(4.0 / 5.0), &change).0;
     let change = sum(
         h,
-        [
-            (19372.0 / 6561.0, k1),
-            (-25360.0 / 2187.0, k2),
-            (64448.0 / 6561.0, k3),
-            (-212.0 / 729.0, k4),
-        ],
+        [(19372.0 / 6561.0, k1), (-25360.0 / 2187.0, k2), (64448.0 / 6561.0, k3), (-212.0 / 729.0, k4)],
     );
     let k5 = &stage(system, start, after(8.0 / 9.0), &change).0;
     let change = sum(
@@ -138,10 +121,5 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
         velocity: step.velocity.with_fourth(fourth.velocity),
         ..step
     };
-    Trial {
-        step,
-        displacement,
-        acceleration: k7.velocity,
-        error,
-    }
+    Trial { step, displacement, acceleration: k7.velocity, error }
 }

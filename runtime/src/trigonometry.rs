@@ -1,0 +1,182 @@
+//! Sines and cosines of all angles of a mechanism at once: branch-free over arrays, so that the compiler turns them into
+//! vector instructions. Within one unit in the last place for |x| ≤ 10⁵; larger angles, infinities and NaN take the
+//! functions of the standard library (or of `libm`).
+
+use crate::Real;
+use crate::private::{mul_add, neg_mul_add};
+use core::any::Any;
+
+/// Largest angle that the three-part reduction is exact for.
+const LARGEST: f64 = 1e5;
+
+/// Sine and cosine of an angle, rad.
+#[inline(always)]
+pub fn sin_cos<T: Real>(x: T) -> (T, T) {
+    let ([s], [c]) = sin_cos_all([x]);
+    (s, c)
+}
+
+/// Sines and cosines of several angles, rad. Fastest for a multiple of eight.
+#[inline(always)]
+pub fn sin_cos_all<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
+    if let Some(x) = same::<_, [f64; N]>(&x)
+        && let (s, c) = doubles(x)
+        && let (Some(s), Some(c)) = (same(&s), same(&c))
+    {
+        return (*s, *c);
+    }
+    if let Some(x) = same::<_, [f32; N]>(&x)
+        && let (s, c) = doubles(&x.map(f64::from))
+        && let (Some(s), Some(c)) = (same(&s.map(|s| s as f32)), same(&c.map(|c| c as f32)))
+    {
+        return (*s, *c);
+    }
+    one_by_one(&x)
+}
+
+/// A reference as a type that it may have; decided at compile time.
+#[inline(always)]
+fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
+    (a as &dyn Any).downcast_ref()
+}
+
+fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
+    let (mut s, mut c) = ([T::zero(); N], [T::zero(); N]);
+    for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
+        (*s, *c) = x.sin_cos();
+    }
+    (s, c)
+}
+
+#[inline(always)]
+fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let (mut s, mut c) = ([0.0; N], [0.0; N]);
+    let mut small = true;
+    for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
+        small &= x.abs() <= LARGEST;
+        (*s, *c) = kernel(*x);
+    }
+    if small { (s, c) } else { one_by_one(x) }
+}
+
+/// Cody and Waite's reduction by quarter turns, with the rounding of the reduced angle carried along; Taylor-like
+/// polynomials in double precision (coefficients of fdlibm's `__kernel_sin` and `__kernel_cos`, Sun Microsystems 1993).
+#[inline(always)]
+#[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
+fn kernel(x: f64) -> (f64, f64) {
+    // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    // π / 2 in parts of 33 bits: products with quadrants below 2²⁰ are exact.
+    const PARTS: [f64; 4] = [
+        1.570_796_326_734_125_614_17,
+        6.077_100_506_303_965_976_60e-11,
+        2.022_266_248_711_166_455_80e-21,
+        8.478_427_660_368_899_569_97e-32,
+    ];
+    let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUND);
+    let quarters = shifted - ROUND;
+    let quadrant = shifted.to_bits();
+    let first = neg_mul_add(quarters, PARTS[0], x);
+    let second = quarters * PARTS[1];
+    let near = first - second;
+    let missing = (first - near) - second;
+    let missing = neg_mul_add(quarters, PARTS[3], neg_mul_add(quarters, PARTS[2], missing));
+    let r = near + missing;
+    let low = (near - r) + missing;
+    let z = r * r;
+    let half = 0.5 * z;
+    let sine = horner(
+        z,
+        [
+            1.589_690_995_211_550_102_21e-10,
+            -2.505_076_025_340_686_341_95e-8,
+            2.755_731_370_707_006_767_89e-6,
+            -1.984_126_982_985_794_931_34e-4,
+            8.333_333_333_322_489_461_24e-3,
+            -1.666_666_666_666_663_243_48e-1,
+        ],
+    );
+    let cosine = horner(
+        z,
+        [
+            -1.135_964_755_778_819_482_65e-11,
+            2.087_572_321_298_174_827_90e-9,
+            -2.755_731_435_139_066_330_35e-7,
+            2.480_158_728_947_672_941_78e-5,
+            -1.388_888_888_887_410_957_49e-3,
+            4.166_666_666_666_660_190_37e-2,
+        ],
+    );
+    let s = r + mul_add(r * z, sine, neg_mul_add(low, half, low));
+    let one = 1.0 - half;
+    let c = one + (((1.0 - one) - half) + mul_add(z * z, cosine, -(r * low)));
+    // An odd quadrant exchanges the two; bits of the quadrant are their signs.
+    let odd = (quadrant & 1).wrapping_neg();
+    let (s, c) = (s.to_bits(), c.to_bits());
+    let exchange = (s ^ c) & odd;
+    let (s, c) = (s ^ exchange, c ^ exchange);
+    let (s_sign, c_sign) = ((quadrant >> 1) << 63, (quadrant.wrapping_add(1) >> 1) << 63);
+    (f64::from_bits(s ^ s_sign), f64::from_bits(c ^ c_sign))
+}
+
+#[inline(always)]
+fn horner(z: f64, [a, b, c, d, e, f]: [f64; 6]) -> f64 {
+    mul_add(mul_add(mul_add(mul_add(mul_add(a, z, b), z, c), z, d), z, e), z, f)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance in units of the last place.
+    fn ulps(a: f64, b: f64) -> u64 {
+        let ordered = |x: f64| if x < 0.0 { -((x.to_bits() << 1 >> 1) as i64) } else { x.to_bits() as i64 };
+        ordered(a).abs_diff(ordered(b))
+    }
+
+    fn check(x: f64) {
+        let (s, c) = sin_cos(x);
+        assert!(ulps(s, nalgebra::ComplexField::sin(x)) <= 1, "sin {x:e}: {s:e}");
+        assert!(ulps(c, nalgebra::ComplexField::cos(x)) <= 1, "cos {x:e}: {c:e}");
+    }
+
+    #[test]
+    fn agrees_with_the_library_to_one_unit_in_the_last_place() {
+        let mut state = 1_u64;
+        for _ in 0..200_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let unit = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            check(unit * 8.0);
+            check(unit * 2e4);
+            check(unit * 2e5);
+        }
+    }
+
+    #[test]
+    fn agrees_near_multiples_of_a_quarter_turn_and_at_extremes() {
+        for k in -60_000_i32..60_000 {
+            let x = f64::from(k) * core::f64::consts::FRAC_PI_2;
+            check(x);
+            check(f64::from_bits(x.to_bits() + 1));
+        }
+        for x in [1e-300, 5e-324, 1e5, 1.1e5, 1e22, f64::MAX] {
+            check(x);
+            check(-x);
+        }
+        assert_eq!((sin_cos(0.0), sin_cos(-0.0)), ((0.0, 1.0), (0.0, 1.0)));
+        assert!(sin_cos(f64::INFINITY).0.is_nan() && sin_cos(f64::NAN).1.is_nan());
+    }
+
+    #[test]
+    fn arrays_and_single_precision() {
+        let x = [0.1, -2.0, 7.0, 3e5];
+        let (s, c) = sin_cos_all(x);
+        for k in 0..4 {
+            assert!(ulps(s[k], nalgebra::ComplexField::sin(x[k])) <= 1);
+            assert!(ulps(c[k], nalgebra::ComplexField::cos(x[k])) <= 1);
+            let single = sin_cos(x[k] as f32);
+            let exact = nalgebra::ComplexField::sin_cos(f64::from(x[k] as f32));
+            assert_eq!(single, (exact.0 as f32, exact.1 as f32));
+        }
+    }
+}
