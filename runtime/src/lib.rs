@@ -65,3 +65,8 @@ pub mod __private {
 
 #[cfg(test)]
 mod testing;
+
+/// The README's examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -124,6 +124,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
             inputs: &description.inputs,
+            driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count(),
             definitions: &description.definitions,
             view: View::new(Level::Constant, None).into(),
             world: World::default().into(),

@@ -23,8 +23,10 @@ pub struct Scope<'a, 'g> {
     pub joints: Vec<String>,
     /// Names of force elements.
     pub actions: Vec<String>,
-    /// Names of inputs, in order.
+    /// Names of inputs, in order, after those of driven joints.
     pub inputs: &'a [Name],
+    /// How many joints are driven by inputs of their own.
+    pub driven: usize,
     /// Names for expressions.
     pub definitions: &'a [syntax::Definition],
     /// What expressions may depend on, and what `x`, `y` and `z` alone mean.

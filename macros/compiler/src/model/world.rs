@@ -216,7 +216,7 @@ impl<'g> Scope<'_, 'g> {
         }
         if let Some(k) = self.inputs.iter().position(|i| i.text == name) {
             let here = self.allowed(Level::Motion, &format!("the input `{name}`"), &e.place, cx);
-            return Some(here.then(|| Value::Scalar(Quantity::Input(k).expr(self.graph))));
+            return Some(here.then(|| Value::Scalar(Quantity::Input(self.driven + k).expr(self.graph))));
         }
         let definition = self.definitions.iter().find(|d| d.name.text == name)?;
         Some(self.definition(definition, e, cx))

@@ -1,0 +1,220 @@
+//! The units of SI in words: how a dimension is called, how it is written, and how it is read from `#[unit(…)]`.
+
+use super::ratio::Ratio;
+use super::unify::Dimension;
+use crate::diag::Diagnostics;
+use crate::syntax::{BinaryOp, Expr, ExprKind};
+use std::fmt::Write;
+
+/// Plain numbers and angles.
+pub const PLAIN: Dimension = Dimension::new(0, 0, 0);
+/// Length, m.
+pub const LENGTH: Dimension = Dimension::new(1, 0, 0);
+/// Mass, kg.
+pub const MASS: Dimension = Dimension::new(0, 1, 0);
+/// Time, s.
+pub const TIME: Dimension = Dimension::new(0, 0, 1);
+/// Speed, m/s.
+pub const SPEED: Dimension = Dimension::new(1, 0, -1);
+/// Acceleration, m/s².
+pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
+/// Rate of an angle, 1/s.
+pub const RATE: Dimension = Dimension::new(0, 0, -1);
+/// Its rate, 1/s².
+pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
+/// Moment of inertia, kg·m².
+pub const INERTIA: Dimension = Dimension::new(2, 1, 0);
+/// Force, N.
+pub const FORCE: Dimension = Dimension::new(1, 1, -2);
+/// Energy, J, and torque, N·m.
+pub const ENERGY: Dimension = Dimension::new(2, 1, -2);
+/// Power, W.
+pub const POWER: Dimension = Dimension::new(2, 1, -3);
+/// Strength of an attraction by the square of the distance, N·m².
+pub const STRENGTH: Dimension = Dimension::new(3, 1, -2);
+/// Constant of gravity, m³/(kg·s²).
+pub const GRAVITATION: Dimension = Dimension::new(3, -1, -2);
+/// Gravitational parameter, m³/s².
+pub const ATTRACTION: Dimension = Dimension::new(3, 0, -2);
+
+/// Dimensions with a name of their own, and units that are not written in m, kg and s.
+const NAMES: [(Dimension, &str, &str); 17] = [
+    (PLAIN, "a plain number", "1"),
+    (LENGTH, "a length", "m"),
+    (MASS, "a mass", "kg"),
+    (TIME, "a time", "s"),
+    (SPEED, "a speed", "m/s"),
+    (ACCELERATION, "an acceleration", "m/s²"),
+    (RATE, "an angular velocity", "1/s"),
+    (RATE_OF_RATE, "an angular acceleration", "1/s²"),
+    (INERTIA, "a moment of inertia", "kg·m²"),
+    (FORCE, "a force", "N"),
+    (ENERGY, "a torque or an energy", "N·m"),
+    (POWER, "a power", "W"),
+    (STRENGTH, "", "N·m²"),
+    (Dimension::new(2, 0, 0), "an area", "m²"),
+    (Dimension::new(3, 0, 0), "a volume", "m³"),
+    (Dimension::new(0, 1, -2), "a stiffness", "N/m"),
+    (Dimension::new(0, 1, -1), "a damping", "N·s/m"),
+];
+
+/// The units that may be written in `#[unit(…)]`, beside their powers: `m2`, `s3`.
+const UNITS: [(&str, Dimension); 9] = [
+    ("m", LENGTH),
+    ("kg", MASS),
+    ("s", TIME),
+    ("rad", PLAIN),
+    ("N", FORCE),
+    ("J", ENERGY),
+    ("W", POWER),
+    ("Hz", RATE),
+    ("Pa", Dimension::new(-1, 1, -2)),
+];
+
+/// Units of other systems, and the one to write instead.
+const OTHERS: [(&str, &str); 16] = [
+    ("mm", "m"),
+    ("cm", "m"),
+    ("km", "m"),
+    ("inch", "m"),
+    ("ft", "m"),
+    ("g", "kg"),
+    ("t", "kg"),
+    ("lb", "kg"),
+    ("ms", "s"),
+    ("min", "s"),
+    ("h", "s"),
+    ("kN", "N"),
+    ("lbf", "N"),
+    ("deg", "rad"),
+    ("rpm", "rad / s"),
+    ("Nm", "N * m"),
+];
+
+/// A dimension with its article and its unit: `a mass (kg)`.
+pub fn describe(dimension: &Dimension) -> String {
+    match NAMES.iter().find(|(known, ..)| known == dimension) {
+        Some((_, name, _)) if dimension.is_plain() => (*name).to_string(),
+        Some((_, name, unit)) if !name.is_empty() => format!("{name} ({unit})"),
+        _ => format!("a quantity in {}", unit(dimension)),
+    }
+}
+
+/// The unit of a dimension, `any` if it is not known.
+pub fn unit(dimension: &Dimension) -> String {
+    if !dimension.is_known() {
+        return "any".to_string();
+    }
+    if let Some((_, _, unit)) = NAMES.iter().find(|(known, ..)| known == dimension) {
+        return (*unit).to_string();
+    }
+    let [length, mass, time] = dimension.base;
+    spell(&[("kg", mass), ("m", length), ("s", time)])
+}
+
+/// Powers of units as a fraction: `kg·m²/s`, `m³/(kg·s²)`.
+fn spell(powers: &[(&str, Ratio)]) -> String {
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for (name, e) in powers.iter().filter(|(_, e)| !e.is_zero()) {
+        let side = if e.parts().0 > 0 { &mut above } else { &mut below };
+        side.push(format!("{name}{}", exponent(*e)));
+    }
+    let above = if above.is_empty() { "1".to_string() } else { above.join("·") };
+    match below.as_slice() {
+        [] => above,
+        [one] => format!("{above}/{one}"),
+        _ => format!("{above}/({})", below.join("·")),
+    }
+}
+
+/// The magnitude of an exponent as superscripts; fractions in parentheses.
+fn exponent(e: Ratio) -> String {
+    let (n, d) = e.parts();
+    if d != 1 {
+        return format!("^({}/{d})", n.abs());
+    }
+    let digit = |c: char| match c {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
+        _ => '⁰',
+    };
+    if n.abs() == 1 { String::new() } else { n.abs().to_string().chars().map(digit).collect() }
+}
+
+/// Reads the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension and the unit
+/// as it is shown.
+pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
+    match &e.kind {
+        ExprKind::Number(1.0) => Some((PLAIN, "1".to_string())),
+        ExprKind::Name(name) => read_name(name, e, cx),
+        ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
+            let ((a, mut text), (b, factor)) = (read(left, cx)?, read(right, cx)?);
+            let divide = *op == BinaryOp::Div;
+            let compound = |t: &str| t.contains(['·', '/']);
+            let _ = match (divide, compound(&factor)) {
+                (true, true) => write!(text, "/({factor})"),
+                (true, false) => write!(text, "/{factor}"),
+                (false, _) if text.contains('/') => write!(text, "·({factor})"),
+                (false, _) => write!(text, "·{factor}"),
+            };
+            let dimension = if divide { a.over(&b)? } else { a.times(&b)? };
+            Some((dimension, text))
+        }
+        _ => {
+            cx.error(e.place.clone(), "expected a unit").help(
+                "units are products and quotients: `#[unit(kg)]`, `#[unit(N * m / rad)]`, `#[unit(kg * m2)]`",
+            );
+            None
+        }
+    }
+}
+
+fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let power = match name.get(letters.len()..) {
+        None | Some("") => Some(1),
+        Some(digits) => digits.parse::<i64>().ok().filter(|n| (2..=9).contains(n)),
+    };
+    let known = UNITS.iter().find(|(unit, _)| *unit == letters);
+    if let (Some((unit, dimension)), Some(power)) = (known, power) {
+        let power = Ratio::integer(power);
+        return Some((dimension.power(power)?, format!("{unit}{}", exponent(power))));
+    }
+    let diagnostic = cx.error(e.place.clone(), format!("unknown unit `{name}`"));
+    match OTHERS.iter().find(|(other, _)| *other == name) {
+        Some((_, si)) => {
+            diagnostic.help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
+        }
+        None => diagnostic.suggest(name, UNITS.iter().map(|(unit, _)| *unit)),
+    };
+    if known.is_none() && OTHERS.iter().all(|(other, _)| *other != name) {
+        diagnostic.help("the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as `m2`");
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dimensions_are_spelt_in_si() {
+        let all = [
+            (MASS, "kg"),
+            (INERTIA, "kg·m²"),
+            (GRAVITATION, "m³/(kg·s²)"),
+            (Dimension::new(0, 1, -2), "N/m"),
+            (Dimension::new(-3, 1, 0), "kg/m³"),
+            (Dimension::new(-12, 0, 0), "1/m¹²"),
+            (Dimension::new(5, 0, 0), "m⁵"),
+            (Dimension::variable(0), "any"),
+        ];
+        for (dimension, text) in all {
+            assert_eq!(unit(&dimension), text);
+        }
+        let root = LENGTH.power(Ratio::new(1, 2).unwrap()).unwrap();
+        assert_eq!(unit(&root), "m^(1/2)");
+    }
+}

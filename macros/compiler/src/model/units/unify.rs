@@ -1,0 +1,223 @@
+//! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of length, mass
+//! and time.
+
+use super::ratio::Ratio;
+
+/// An unknown dimension.
+pub type Variable = usize;
+
+/// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    /// Exponents of length, mass and time.
+    pub base: [Ratio; 3],
+    /// Exponents of the unknowns, by rising number; none is zero.
+    pub unknown: Vec<(Variable, Ratio)>,
+}
+
+impl Dimension {
+    /// Powers of metre, kilogram and second.
+    pub const fn new(length: i64, mass: i64, time: i64) -> Dimension {
+        let base = [Ratio::integer(length), Ratio::integer(mass), Ratio::integer(time)];
+        Dimension { base, unknown: Vec::new() }
+    }
+
+    /// An unknown one.
+    pub fn variable(v: Variable) -> Dimension {
+        Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
+    }
+
+    /// True if nothing in it is unknown.
+    pub fn is_known(&self) -> bool {
+        self.unknown.is_empty()
+    }
+
+    /// True for plain numbers and angles.
+    pub fn is_plain(&self) -> bool {
+        self.is_known() && self.base.iter().all(|e| e.is_zero())
+    }
+
+    /// The exponent of an unknown.
+    pub fn exponent(&self, v: Variable) -> Ratio {
+        self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
+    }
+
+    /// The dimension of a product.
+    pub fn times(&self, other: &Dimension) -> Option<Dimension> {
+        self.times_power(other, Ratio::ONE)
+    }
+
+    /// The dimension of a quotient.
+    pub fn over(&self, other: &Dimension) -> Option<Dimension> {
+        self.times_power(other, Ratio::integer(-1))
+    }
+
+    /// The dimension of a power.
+    pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
+        Dimension::new(0, 0, 0).times_power(self, exponent)
+    }
+
+    /// `self × other^exponent`; nothing if the exponents become too large.
+    pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
+        let mut base = self.base;
+        for (sum, e) in base.iter_mut().zip(other.base) {
+            *sum = sum.plus(e.times(exponent)?)?;
+        }
+        let mut unknown = Vec::with_capacity(self.unknown.len() + other.unknown.len());
+        let (mut left, mut right) = (self.unknown.iter().peekable(), other.unknown.iter().peekable());
+        loop {
+            let (a, b) = (left.peek().map(|(v, _)| *v), right.peek().map(|(v, _)| *v));
+            let Some(v) = a.into_iter().chain(b).min() else { break };
+            let mut sum = left.next_if(|_| a == Some(v)).map_or(Ratio::ZERO, |(_, e)| *e);
+            if let Some((_, e)) = right.next_if(|_| b == Some(v)) {
+                sum = sum.plus(e.times(exponent)?)?;
+            }
+            if !sum.is_zero() {
+                unknown.push((v, sum));
+            }
+        }
+        Some(Dimension { base, unknown })
+    }
+}
+
+/// What became of an equation.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It holds; these unknowns have become known by it.
+    Holds(Vec<Variable>),
+    /// It contradicts those before.
+    Contradicts,
+    /// It was too much work, or its numbers too large: nothing was decided.
+    GaveUp,
+}
+
+/// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of it.
+const MOST_WORK: usize = 2_000_000;
+
+/// The equations so far, solved: every solved unknown in terms of unsolved ones (reduced row echelon form).
+#[derive(Debug, Default)]
+pub struct System {
+    solution: Vec<Option<Dimension>>,
+    /// By unsolved unknown, the solved ones that it stands in. May name one that it has dropped out of.
+    uses: Vec<Vec<Variable>>,
+    work: usize,
+}
+
+impl System {
+    /// A new unknown.
+    pub fn variable(&mut self) -> Variable {
+        self.solution.push(None);
+        self.uses.push(Vec::new());
+        self.solution.len() - 1
+    }
+
+    /// A dimension in terms of unsolved unknowns.
+    pub fn resolve(&mut self, dimension: &Dimension) -> Option<Dimension> {
+        let mut sum = Dimension { unknown: Vec::new(), ..dimension.clone() };
+        for (v, e) in &dimension.unknown {
+            self.work += 1 + sum.unknown.len();
+            if self.work > MOST_WORK {
+                return None;
+            }
+            sum = match self.solution.get(*v)? {
+                Some(known) => sum.times_power(known, *e)?,
+                None => sum.times_power(&Dimension::variable(*v), *e)?,
+            };
+        }
+        Some(sum)
+    }
+
+    /// Demands that two dimensions are the same.
+    pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
+        let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
+        let Some(quotient) = quotient else { return Outcome::GaveUp };
+        match quotient.unknown.last() {
+            None if quotient.is_plain() => Outcome::Holds(Vec::new()),
+            None => Outcome::Contradicts,
+            Some((pivot, exponent)) => {
+                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::GaveUp, Outcome::Holds)
+            }
+        }
+    }
+
+    /// Solves `quotient = 1` for an unknown in it and puts the solution in wherever it stands.
+    fn solve(&mut self, pivot: Variable, exponent: Ratio, quotient: &Dimension) -> Option<Vec<Variable>> {
+        let rest = quotient.times_power(&Dimension::variable(pivot), exponent.negated())?;
+        let value = rest.power(exponent.negated().inverse()?)?;
+        let mut known = Vec::new();
+        for v in std::mem::take(self.uses.get_mut(pivot)?) {
+            let Some(old) = self.solution.get(v)?.clone() else { continue };
+            let e = old.exponent(pivot);
+            if e.is_zero() {
+                continue;
+            }
+            self.work += old.unknown.len() + value.unknown.len();
+            if self.work > MOST_WORK {
+                return None;
+            }
+            let new = old.times_power(&Dimension::variable(pivot), e.negated())?.times_power(&value, e)?;
+            self.set(v, new, &mut known);
+        }
+        self.set(pivot, value, &mut known);
+        Some(known)
+    }
+
+    fn set(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
+        if value.is_known() {
+            known.push(v);
+        }
+        for (u, _) in &value.unknown {
+            if let Some(uses) = self.uses.get_mut(*u)
+                && uses.last() != Some(&v)
+            {
+                uses.push(v);
+            }
+        }
+        if let Some(slot) = self.solution.get_mut(v) {
+            *slot = Some(value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LENGTH: Dimension = Dimension::new(1, 0, 0);
+
+    #[test]
+    fn equations_are_solved_in_any_order() {
+        let mut s = System::default();
+        let [a, b, c] = [s.variable(), s.variable(), s.variable()].map(Dimension::variable);
+        assert_eq!(s.equate(&a.times(&b).unwrap(), &c), Outcome::Holds(Vec::new()));
+        assert_eq!(s.equate(&a, &b), Outcome::Holds(Vec::new()));
+        // The root of an area is a length.
+        assert_eq!(s.equate(&c, &LENGTH.times(&LENGTH).unwrap()), Outcome::Holds(vec![2, 0, 1]));
+        assert_eq!(s.resolve(&a), Some(LENGTH));
+        assert_eq!(s.equate(&a, &c), Outcome::Contradicts);
+        assert_eq!(s.equate(&a, &LENGTH), Outcome::Holds(Vec::new()));
+    }
+
+    #[test]
+    fn exponents_may_be_fractions() {
+        let mut s = System::default();
+        let a = Dimension::variable(s.variable());
+        s.equate(&a.power(Ratio::integer(2)).unwrap(), &LENGTH);
+        assert_eq!(s.resolve(&a).unwrap().base[0].parts(), (1, 2));
+    }
+
+    #[test]
+    fn work_is_bounded() {
+        let mut s = System::default();
+        let all: Vec<Variable> = (0..3000).map(|_| s.variable()).collect();
+        let product = Dimension {
+            unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(),
+            ..Dimension::new(0, 0, 0)
+        };
+        let gave_up = (0..3000).any(|k| {
+            let power = product.times_power(&Dimension::variable(k), Ratio::integer(k as i64)).unwrap();
+            s.equate(&power, &LENGTH) == Outcome::GaveUp
+        });
+        assert!(gave_up);
+    }
+}
