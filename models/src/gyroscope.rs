@@ -7,8 +7,9 @@ use linkwork::mechanism;
 /// - Coordinates: Euler's angles `precession` about the vertical z, `nutation` about the line of nodes, `spin` about
 ///   the rotor's axis: `φ`, `θ`, `ψ`, rad. The gimbals are massless, so the mass matrix is singular where the axis is
 ///   vertical (`θ = 0`: gimbal lock).
-/// - Steady precession at constant `θ`, with `A` the transverse moment of inertia about the pivot, `C` the axial one and
-///   the total spin `n = ψ̇ + φ̇ cos θ`: `A φ̇² cos θ − C n φ̇ + m g h = 0`. For a fast rotor `φ̇ ≈ m g h / (C n)`.
+/// - Steady precession at constant `θ`, with `A` the transverse moment of inertia about the pivot, `C` the axial one
+///   and the total spin `n = ψ̇ + φ̇ cos θ`: `A φ̇² cos θ − C n φ̇ + m g h = 0`. For a fast rotor `φ̇ ≈ m g h / (C n)`.
+/// - Output: `rotor_rate`, the angular velocity of the rotor in the axes of the inner gimbal, `(θ̇, φ̇ sin θ, n)`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyroscope {
@@ -35,6 +36,8 @@ pub struct Gyroscope {
     nutation: Pin,
     #[joint(inner -> rotor, about = z)]
     spin: Pin,
+    #[output(omega(rotor / ground), resolved_in = inner)]
+    rotor_rate: Vector,
 }
 
 #[cfg(test)]
@@ -73,5 +76,13 @@ mod tests {
             G.axial,
         );
         assert_near(m, expected, 1e-16);
+    }
+
+    #[test]
+    fn angular_velocity_by_eulers_angles() {
+        let (theta, [precession, nutation, spin]) = (0.7_f64, [1.3, -0.4, 20.0]);
+        let found = G.rotor_rate(&[0.2, theta, 2.0].into(), &[precession, nutation, spin].into());
+        let expected = [nutation, precession * theta.sin(), spin + precession * theta.cos()];
+        assert_near(found, SVector::from(expected), 1e-14);
     }
 }

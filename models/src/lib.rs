@@ -3,22 +3,6 @@
 //! Each has a file of its own that states the problem, its source, its parameters and, where there is one, the
 //! closed form of its motion; a test beside it holds the generated equations against that closed form.
 //!
-//! | mechanism | freedom | closed form |
-//! | --- | --- | --- |
-//! | [`Pendulum`] | 1 | period by an elliptic integral |
-//! | [`DoublePendulum`] | 2 | mass matrix and bias forces |
-//! | [`TriplePendulum`], [`QuintuplePendulum`] | 3, 5 | mass matrix and bias forces in absolute angles |
-//! | [`SphericalPendulum`] | 2 | conical motion |
-//! | [`CartPole`] | 2 | mass matrix and bias forces |
-//! | [`Gyroscope`] | 3 | steady precession |
-//! | [`HeavyTop`] | 3 | steady precession |
-//! | [`ShaftWithSlider`] | 2 | `r = r₀ cosh ωt`, conserved momentum |
-//! | [`SpringChain`] | 3 | natural frequencies, modal damping |
-//! | [`Ur5`] | 6 | Denavit–Hartenberg parameters |
-//! | [`Panda`], [`PandaArm`], [`LoadedPanda`] | 8, 7, 7 | Denavit–Hartenberg parameters |
-//! | [`Solo12`] | 18 | free fall, leg kinematics |
-//! | [`SimpleHumanoid`] | 35 | free fall |
-//!
 //! ```
 //! use linkwork::prelude::*;
 //! use linkwork_models::Pendulum;
@@ -32,33 +16,182 @@
 //! ```
 //!
 //! The examples beside this crate are the next step: `cargo run --release --example tour -p linkwork-models`.
+//!
+//! # By class
+//!
+//! The first seven classes are those of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*. The
+//! column *freedom* counts the degrees of freedom.
+//!
+//! | pendulums | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`Pendulum`] | 1 | period by an elliptic integral |
+//! | [`DoublePendulum`] (rods, relative angles) | 2 | mass matrix and bias forces |
+//! | [`CoplanarDoublePendulum`] (particles, absolute angles) | 2 | Lagrangian, normal modes |
+//! | [`TriplePendulum`], [`QuintuplePendulum`] | 3, 5 | mass matrix and bias forces in absolute angles |
+//! | [`SphericalPendulum`] | 2 | conical motion |
+//! | [`ElasticPendulum`] | 2 | bouncing, small swings |
+//! | [`KapitzaPendulum`] (shaken pivot) | 1 | stands upright, slow frequency |
+//! | [`FoucaultPendulum`] (on the turning earth) | 2 | turning of the plane with the latitude; exact at the pole |
+//! | [`CartPole`] | 2 | mass matrix and bias forces |
+//! | [`FurutaPendulum`] (rotary) | 2 | mass matrix and bias forces, small swings |
+//! | [`RodInSlot`] | 2 | centre of mass falls straight down |
+//! | [`PendulumOnCollar`] (governor) | 3 | mass matrix, steady turning, conserved momentum |
+//! | [`WilberforcePendulum`] | 2 | beats between bouncing and twisting |
+//!
+//! | mass, dashpot (`c`) and spring (`k`) systems | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`SpringChain`] | 3 | natural frequencies, modal damping |
+//! | [`TunedSuspension`] (with inerter) | 2 | mass and stiffness matrix, the shaken cart at rest |
+//! | [`DuffingOscillator`] | 1 | period by an elliptic integral, two wells |
+//!
+//! | gimbals | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`Gyroscope`] | 3 | steady precession |
+//! | [`RateGyroscope`] (on a turning base) | 2 | equations of motion, deflection by the rate |
+//!
+//! | shafts | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`ShaftWithSlider`] | 2 | `r = r₀ cosh ωt`, conserved momentum |
+//! | [`JeffcottRotor`] (unbalanced) | 2 | steady whirl below and above the critical speed |
+//! | [`BrakedFlywheel`] (dry friction) | 1 | running down |
+//! | [`NutOnScrew`] | 1 | constant acceleration |
+//!
+//! | linkages | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`RemotelyDrivenArm`] (geared, absolute angles) | 2 | mass matrix and bias forces |
+//! | [`Ur5`] | 6 | Denavit–Hartenberg parameters |
+//! | [`Panda`], [`PandaArm`], [`LoadedPanda`] | 8, 7, 7 | Denavit–Hartenberg parameters |
+//! | [`Solo12`] | 18 | free fall, leg kinematics |
+//! | [`SimpleHumanoid`] | 35 | free fall |
+//!
+//! | rolling bodies | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`DiskOnIncline`] | 1 | accelerations of hoop, disk, shell and ball; no slip |
+//! | [`CylinderInTrough`] | 1 | period by an elliptic integral |
+//!
+//! | spinning tops | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`HeavyTop`] | 3 | Euler's equations, slow and fast steady precession |
+//! | [`FreeRigidBody`] (Dzhanibekov) | 6 | period by an elliptic integral |
+//!
+//! | particles and flight | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`BeadOnSpinningHoop`] | 1 | tilted equilibrium, Jacobi's integral |
+//! | [`ChargedParticle`] (crossed fields) | 3 | cycloid |
+//! | [`TwoBodies`] (Kepler) | 6 | ellipse, Laplace's vector |
+//! | [`GravityGradientSatellite`] | 6 | torque, pitch oscillation |
+//! | [`Aircraft`] | 6 | trim in level flight, level turn |
+//! | [`PlanarRotorcraft`] | 3 | hovering, free fall |
+//!
+//! # By joint
+//!
+//! | joint | freedom | word of the language | shown in |
+//! | --- | --- | --- | --- |
+//! | pin, hinge | 1 | `Pin` | [`Pendulum`], [`BrakedFlywheel`] |
+//! | dual pin | 2 | `Pin`, then `Pin` | parallel: [`DoublePendulum`]; crossed: [`FurutaPendulum`] |
+//! | universal | 2 | `Universal` | [`SphericalPendulum`], [`FoucaultPendulum`] |
+//! | ball | 3 | `Ball` | [`HeavyTop`] |
+//! | sleeve | 1 | `Sleeve` | [`CartPole`], [`DuffingOscillator`] |
+//! | dual sleeve, x–y stage | 2 | `Stage` | [`JeffcottRotor`] |
+//! | dual sleeve-pin | 3 | `Planar` | [`PlanarRotorcraft`] |
+//! | x–y–z stage | 3 | `Stage` | [`ChargedParticle`], [`TwoBodies`] |
+//! | slot | 2 | `Slot` | [`RodInSlot`] |
+//! | collar | 2 | `Collar` | [`WilberforcePendulum`] |
+//! | collar-pin | 3 | `Collar`, then `Pin` | [`PendulumOnCollar`] |
+//! | screw | 1 | `Screw` | [`NutOnScrew`] |
+//! | none | 6 | `Free` | [`FreeRigidBody`], [`Aircraft`], [`Solo12`] |
+//!
+//! # By element
+//!
+//! | element | shown in |
+//! | --- | --- |
+//! | a free `Coordinate` | [`ElasticPendulum`], [`CoplanarDoublePendulum`], [`CylinderInTrough`] |
+//! | motion prescribed in time (`t`) | [`BeadOnSpinningHoop`], [`KapitzaPendulum`], [`JeffcottRotor`] |
+//! | springs and dashpots between bodies | [`SpringChain`], [`TunedSuspension`] |
+//! | a spring with a law | [`DuffingOscillator`] |
+//! | inerter | [`TunedSuspension`] |
+//! | dry friction | [`BrakedFlywheel`] |
+//! | central gravity | [`TwoBodies`], [`GravityGradientSatellite`] |
+//! | forces and torques with a value | [`Aircraft`], [`ChargedParticle`], [`DuffingOscillator`] |
+//! | an energy of one's own (`Potential`) | [`WilberforcePendulum`], [`FoucaultPendulum`], [`ElasticPendulum`] |
+//! | definitions, outputs | [`Aircraft`], [`RemotelyDrivenArm`], [`Gyroscope`] |
+//! | gears | [`RemotelyDrivenArm`] |
+//! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
 
+mod aircraft;
 mod arm6;
 mod arm7;
+mod bead_on_spinning_hoop;
+mod braked_flywheel;
 mod cart_pole;
+mod charged_particle;
+mod coplanar_double_pendulum;
+mod cylinder_in_trough;
+mod disk_on_incline;
 mod double_pendulum;
+mod duffing_oscillator;
+mod elastic_pendulum;
+mod foucault_pendulum;
+mod free_rigid_body;
+mod furuta_pendulum;
+mod gravity_gradient_satellite;
 mod gyroscope;
 mod heavy_top;
 mod humanoid;
+mod jeffcott_rotor;
+mod kapitza_pendulum;
+mod nut_on_screw;
 mod pendulum;
 mod pendulum_chain;
+mod pendulum_on_collar;
+mod planar_rotorcraft;
 mod quadruped;
+mod rate_gyroscope;
+mod remotely_driven_arm;
+mod rod_in_slot;
 mod shaft_with_slider;
 mod spherical_pendulum;
 mod spring_chain;
 #[cfg(test)]
 mod testing;
+mod tuned_suspension;
+mod two_bodies;
+mod wilberforce_pendulum;
 
+pub use aircraft::Aircraft;
 pub use arm6::Ur5;
 pub use arm7::{LoadedPanda, Panda, PandaArm};
+pub use bead_on_spinning_hoop::BeadOnSpinningHoop;
+pub use braked_flywheel::BrakedFlywheel;
 pub use cart_pole::CartPole;
+pub use charged_particle::ChargedParticle;
+pub use coplanar_double_pendulum::CoplanarDoublePendulum;
+pub use cylinder_in_trough::CylinderInTrough;
+pub use disk_on_incline::DiskOnIncline;
 pub use double_pendulum::DoublePendulum;
+pub use duffing_oscillator::DuffingOscillator;
+pub use elastic_pendulum::ElasticPendulum;
+pub use foucault_pendulum::FoucaultPendulum;
+pub use free_rigid_body::FreeRigidBody;
+pub use furuta_pendulum::FurutaPendulum;
+pub use gravity_gradient_satellite::GravityGradientSatellite;
 pub use gyroscope::Gyroscope;
 pub use heavy_top::HeavyTop;
 pub use humanoid::SimpleHumanoid;
+pub use jeffcott_rotor::JeffcottRotor;
+pub use kapitza_pendulum::KapitzaPendulum;
+pub use nut_on_screw::NutOnScrew;
 pub use pendulum::Pendulum;
 pub use pendulum_chain::{QuintuplePendulum, TriplePendulum};
+pub use pendulum_on_collar::PendulumOnCollar;
+pub use planar_rotorcraft::PlanarRotorcraft;
 pub use quadruped::Solo12;
+pub use rate_gyroscope::RateGyroscope;
+pub use remotely_driven_arm::RemotelyDrivenArm;
+pub use rod_in_slot::RodInSlot;
 pub use shaft_with_slider::ShaftWithSlider;
 pub use spherical_pendulum::SphericalPendulum;
 pub use spring_chain::SpringChain;
+pub use tuned_suspension::TunedSuspension;
+pub use two_bodies::TwoBodies;
+pub use wilberforce_pendulum::WilberforcePendulum;

@@ -1,6 +1,8 @@
 //! What the tests of the mechanisms share.
 
+use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, Translation3, Vector3};
+use std::f64::consts::FRAC_PI_2;
 
 /// Holds what was generated against the closed form: relative to the largest entry, or absolute below one.
 #[track_caller]
@@ -18,6 +20,21 @@ pub fn assert_near<const R: usize, const C: usize>(
 pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "error {error:e}: found {found}, expected {expected}");
+}
+
+/// Integration to nearly all digits.
+pub fn precisely() -> DormandPrince<f64> {
+    DormandPrince::new().tolerance(1e-12, 1e-12)
+}
+
+/// Complete elliptic integral of the first kind by the arithmetic–geometric mean: `K(k) = ½π / agm(1, √(1 − k²))`,
+/// given `k²`.
+pub fn elliptic(k2: f64) -> f64 {
+    let (mut a, mut b) = (1.0, (1.0 - k2).sqrt());
+    while (a - b).abs() > 1e-15 * a {
+        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+    }
+    FRAC_PI_2 / a
 }
 
 /// A turn about z and a displacement along it: one half of a Denavit–Hartenberg step.

@@ -106,24 +106,31 @@ pub enum Free {}
 /// mass and inertia add to the parent's. Also called fixed joint.
 pub enum Weld {}
 
-/// A linear spring.
+/// A spring.
 ///
 /// `#[acts(on = joint, stiffness = k, free_length = l0)]` on one coordinate of a joint: force `−k (q − l0)`. The
 /// stiffness is in N/m along a [`Sleeve`], in N·m/rad about a [`Pin`], where the free length is `free_angle = a0`;
 /// both are zero if not given. One coordinate of a larger joint is named: `on = collar.slide`.
-/// `#[acts(between = (a, b), stiffness = k, free_length = l0)]` between two bodies or points: a pull `k (l − l0)` along
-/// their distance `l`, m. Energy `½ k (…)²`, J, adds to the potential energy.
+/// `#[acts(between = (a, b), stiffness = k, free_length = l0)]` between two points of bodies: a pull `k (l − l0)` along
+/// their distance `l`, m. Instead of a stiffness any law: `energy = …`, J, or a polynomial `force = …`, N, of `stretch`.
+/// Its energy adds to the potential energy. Where points meet that do not move along one line, the pull has no
+/// direction and is zero. Conservative.
 pub enum Spring {}
 
-/// A linear damper.
+/// A damper.
 ///
 /// `#[acts(on = joint, damping = c)]` on one coordinate of a joint: force `−c v`, with `c` in N·s/m along a
 /// [`Sleeve`], in N·m·s/rad about a [`Pin`]. One coordinate of a larger joint is named: `on = collar.turn`.
-/// `#[acts(between = (a, b), damping = c)]` between two bodies or points: it resists the rate of their distance.
-/// Dissipates `c v²`, W. Also called dashpot or viscous friction.
+/// `#[acts(between = (a, b), damping = c)]` between two points of bodies: it resists the rate of their distance. Instead
+/// of `damping` any law `force = …` of `speed`. Dissipative. Also called viscous friction.
 pub enum Dashpot {}
 
-/// An inerter: a force in proportion to the relative acceleration of its ends, `inertance = b`, kg. Not yet supported.
+/// An inerter: a force in proportion to the relative acceleration of its ends, by `inertance = b`, kg (on an angle
+/// kg·m²).
+///
+/// `#[acts(on = joint, inertance = b)]` on a coordinate: `b` adds to its entry of the mass matrix. A motor's rotor behind
+/// a gear is `inertance = rotor_inertia * ratio * ratio`. `#[acts(between = (a, b), inertance = b)]` between two points
+/// of bodies. Stores the kinetic energy `½ b v²`. Source: Smith, *Synthesis of Mechanical Networks: The Inerter* (2002).
 pub enum Inerter {}
 
 /// A force from outside: an input, one entry of `u`, N.
@@ -132,7 +139,8 @@ pub enum Inerter {}
 /// - `#[acts(on = body.at(point), along = direction)]`: at a point of a body (its origin if none is named) along a
 ///   unit vector.
 ///
-/// The input has the field's name; inputs are in the order of declaration. Also called actuator or thruster.
+/// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
+/// scalar on a coordinate, a vector on a body or point. Also called actuator or thruster.
 pub enum Force {}
 
 /// A torque from outside: an input, one entry of `u`, N·m.
@@ -140,34 +148,56 @@ pub enum Force {}
 /// - `#[acts(on = pin)]`: about a joint's axis, on the child, and opposite on the parent: a motor.
 /// - `#[acts(on = body, about = direction)]`: on a body about a unit vector.
 ///
-/// The input has the field's name; inputs are in the order of declaration. Also called motor or couple.
+/// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
+/// scalar on a coordinate, a vector on a body. Also called motor or couple.
 pub enum Torque {}
 
-/// Dry friction on a joint. Not yet supported; for viscous friction see [`Dashpot`].
+/// Dry and viscous friction on a coordinate.
+///
+/// `#[acts(on = joint, coulomb = fc, stiction = fs, stribeck_speed = vs, viscous = c, speed = v0)]`: the force
+/// `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v` against the rate `v`; N, on an angle N·m. Only `coulomb` must be
+/// given; `speed` is the regularisation, 0.01 m/s or rad/s if not given. Dissipative.
 pub enum Friction {}
 
-/// Attraction of all masses by a point or a body. Not yet supported; uniform gravity is `#[mechanism(gravity = …)]`.
+/// Attraction of masses. Uniform gravity is `#[mechanism(gravity = …)]` instead.
+///
+/// - `#[acts(between = (a, b), constant = G)]`: between two particles or bodies, with `G` in m³/(kg·s²).
+/// - `#[acts(between = (center, body), mu = mu)]`: towards a point, with the gravitational parameter in m³/s². A body with
+///   inertia also feels the gradient of gravity, to second order in its size over its distance (MacCullagh's formula).
+///
+/// Bodies are attracted at their origins, which must be their centres of mass. Conservative. Infinite where they meet.
 pub enum Gravity {}
 
-/// Attraction between two bodies or points by the inverse square of their distance. Not yet supported.
+/// Attraction between two points by the inverse square of their distance, such as of charges.
+///
+/// `#[acts(between = (a, b), strength = k)]`: a pull `k / r²`, with `k` in N·m²; negative for repulsion. Conservative.
 pub enum Attraction {}
 
-/// A generalized coordinate of its own, by which frames, points and particles are placed. Not yet supported.
+/// A generalized coordinate of its own: a field `theta: Coordinate` without attribute. Frames, points, particles and
+/// bodies may be placed by expressions of it; its rate is `rate(theta)`. Its unit follows from its use.
 pub enum Coordinate {}
 
-/// An entry of `u` of its own, for use in expressions. Not yet supported; see [`Force`] and [`Torque`].
+/// An entry of `u` of its own: a field `elevator: Input` without attribute, for use in the values of forces and torques.
 pub enum Input {}
 
-/// A frame placed by rotations and points, `#[frame(start, z(psi), x(theta))]`. Not yet supported.
+/// A frame: axes without a place.
+///
+/// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or `ground`
+/// and turns about carried axes, by expressions of coordinates, parameters and time. `name.x` is one of its axes.
 pub enum Frame {}
 
-/// A point with a name, `#[point(on = body, at = vector)]`. Not yet supported.
+/// A point.
+///
+/// `#[point(on = body, at = vector)]`: fixed in a body, or at a vector from another point; without `on`, from the ground's
+/// origin. The vector may contain coordinates and time. Joints and force elements may act there, and it has a
+/// placement, velocity and Jacobian under its name.
 pub enum Point {}
 
-/// A potential energy given as an expression, `#[energy(…)]`, J. Not yet supported.
+/// A potential energy given as an expression of coordinates and time, `#[energy(k / 2 * theta * theta)]`, J.
 pub enum Potential {}
 
-/// A Rayleigh dissipation function given as an expression, `#[dissipation(…)]`, W. Not yet supported.
+/// A Rayleigh dissipation function `R` given as an expression of coordinates and rates, `#[dissipation(…)]`, W: its
+/// derivatives by the velocities resist the motion. A quadratic one dissipates `2 R`.
 pub enum Rayleigh {}
 
 /// An expression of the configuration that stays zero, `#[constraint(…)]`. Not yet supported.
@@ -179,8 +209,11 @@ pub enum Nonholonomic {}
 /// A pair of surfaces that roll on each other without slip, `#[constraint(rolls(…, …))]`. Not yet supported.
 pub enum Rolling {}
 
-/// A scalar expression with a name, `#[define(…)]` or `#[output(…)]`. Not yet supported.
+/// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
+/// that name, with `name_jacobian`, its derivatives by the velocities (those of its rate if it contains none).
 pub enum Scalar {}
 
-/// A vector expression with a name, `#[define(…)]` or `#[output(…)]`. Not yet supported.
+/// A physical vector with a name. `#[define(…)]`: for use in other expressions. `#[output(…, resolved_in = frame)]`: a
+/// generated function of that name, its components in the axes of a body or frame (the ground's if not given), with
+/// `name_jacobian`.
 pub enum Vector {}

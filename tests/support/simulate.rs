@@ -1,10 +1,10 @@
-//! Motion of mechanisms that nothing drives.
+//! Motion of mechanisms without inputs.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::SVector;
-use linkwork::{Mechanism, simulate};
+use linkwork::{Rheonomic, simulate};
 
-/// The state after `duration`, integrated to the last digits of `f64`.
+/// The state after `duration` from t = 0, integrated to the last digits of `f64`.
 pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: &SVector<f64, NQ>,
@@ -12,10 +12,24 @@ pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
     duration: f64,
 ) -> (SVector<f64, NQ>, SVector<f64, NV>)
 where
-    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    advance_from(mechanism, 0.0, q, v, duration)
+}
+
+/// The same from the time `start`.
+pub fn advance_from<M, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    start: f64,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    duration: f64,
+) -> (SVector<f64, NQ>, SVector<f64, NV>)
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
     let method = DormandPrince::new().tolerance(1e-14, 1e-14);
-    let end = simulate(mechanism).from(*q, *v).duration(duration).method(method).finish();
-    let end = end.expect("the integrator arrives");
+    let run = simulate(mechanism).from(*q, *v).start_at(start).duration(duration).method(method);
+    let end = run.finish().expect("the integrator arrives");
     (end.q, end.v)
 }

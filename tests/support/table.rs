@@ -18,6 +18,11 @@ impl Record {
         self.0.get(key).unwrap_or_else(|| panic!("the table has no `{key}`"))
     }
 
+    /// Whether there is such an entry.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.get(key).is_some()
+    }
+
     /// The objects of a list.
     pub fn records(&self, key: &str) -> Vec<Record> {
         list(self.entry(key)).iter().cloned().map(Record).collect()

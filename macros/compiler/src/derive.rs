@@ -5,16 +5,23 @@ use crate::emit::frames::{FrameSteps, LinkSteps};
 use crate::emit::{Argument, Function, Output, Shape};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
+use crate::expr::print::Written;
 use crate::lower::{Program, lower};
-use crate::mechanics::{self, Joint, crba, energy, forces, frames, momentum, rnea};
+use crate::mechanics::{self, Joint, crba, energy, forces, frames, power};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity};
+use crate::passes::Passes;
 
-/// Up to how many velocities both algorithms of forward dynamics are derived and compared.
-const COMPARE: usize = 18;
+pub mod derivatives;
+mod dynamics;
 
 /// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
+    derive_with(model, Passes::default(), cx)
+}
+
+/// The same with a choice of passes.
+pub fn derive_with<'g>(model: &Model<'g>, passes: Passes, cx: &mut Diagnostics) -> Option<Output> {
     let joints = mechanics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
@@ -24,8 +31,17 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
         return None;
     }
     let mut functions = signatures(model.nq(), model.nv(), model.time, model.velocity_inputs);
+    let dynamics = dynamics::Dynamics::new(model, passes);
     for f in &mut functions {
-        f.program = program(model, &joints, &mass, &f.name);
+        f.program = match f.name.as_str() {
+            "neutral" => done(&neutral(model)),
+            "generalized_forces" => done(&forces::generalized_forces(model, &joints)),
+            "dissipated_power" => done(&[power::dissipated(model)]),
+            "control_power" => done(&[power::control(model, &joints)]),
+            "disturbance_power" => done(&[power::disturbance(model)]),
+            "total_mass" => done(&[energy::mass_and_moment(model, &joints).0]),
+            name => dynamics.program(name).unwrap_or_default(),
+        };
     }
     if functions.iter().any(|f| !f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
@@ -38,65 +54,32 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
         frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
         charts: model.charts.clone(),
-        equations: equations(model),
+        equations: written(model),
     })
 }
 
 /// The equations of motion in a line each; empty for mechanisms that are too large to be read.
 pub fn equations(model: &Model<'_>) -> String {
+    written(model).plain
+}
+
+/// The same as LaTeX: an `aligned` environment for math mode, with `amsmath`.
+pub fn equations_latex(model: &Model<'_>) -> String {
+    written(model).latex
+}
+
+fn written(model: &Model<'_>) -> Written {
     if !mechanics::equations::is_small(model) {
-        return String::new();
+        return Written::default();
     }
     let joints = mechanics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let equations = mechanics::equations::derive(model, &joints, &mass);
-    equations.map_or(String::new(), |e| mechanics::equations::text(model, &e))
+    equations.map_or_else(Written::default, |e| mechanics::equations::written(model, &e))
 }
 
 fn done(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).fused()
-}
-
-fn program<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>, name: &str) -> Program {
-    let v = mechanics::velocities(model);
-    let a = mechanics::accelerations(model);
-    match name {
-        "neutral" => done(&neutral(model)),
-        "mass_matrix" => done(&mass.iter().flatten().copied().collect::<Vec<_>>()),
-        "bias_forces" => done(&rnea::inverse_dynamics(model, joints, &v, None)),
-        "inverse_dynamics" => done(&rnea::inverse_dynamics(model, joints, &v, Some(&a))),
-        "forward_dynamics" => forward_dynamics(model, joints, mass),
-        "generalized_forces" => done(&forces::generalized_forces(model, joints)),
-        "kinetic_energy" => done(&[energy::kinetic_energy(model, joints, &v)]),
-        "potential_energy" => done(&[energy::potential_energy(model, joints)]),
-        "generalized_momentum" => done(&momentum::generalized_momentum(model, joints, &v)),
-        "momentum_rate" => done(&momentum::momentum_rate(model, joints, &v)),
-        "total_mass" => done(&[energy::mass_and_moment(model, joints).0]),
-        "center_of_mass" => done(&energy::center_of_mass(model, joints).0),
-        _ => done(&frames::flat(&momentum::centroidal_momentum(model, joints, &v))),
-    }
-}
-
-/// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
-/// divisions wait less for each other.
-fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Program {
-    let g = model.graph;
-    let v = mechanics::velocities(model);
-    let bias = rnea::inverse_dynamics(model, joints, &v, None);
-    let r: Vec<Expr<'g>> = bias.iter().enumerate().map(|(k, h)| Quantity::Force(k).expr(g) - *h).collect();
-    let articulated = mechanics::aba::accelerations(model, joints, &r).map(|a| done(&a));
-    match articulated {
-        Some(program) if model.nv() > COMPARE => program,
-        Some(program) => {
-            let factorised = done(&mechanics::ldl::solve(mass.clone(), r, joints));
-            if factorised.instructions.len() * 20 <= program.instructions.len() * 21 {
-                factorised
-            } else {
-                program
-            }
-        }
-        None => done(&mechanics::ldl::solve(mass.clone(), r, joints)),
-    }
 }
 
 /// The function of an output, and its Jacobian: how it changes with the velocities, or how its rate does if it depends
@@ -268,6 +251,23 @@ pub fn signatures(nq: usize, nv: usize, time: bool, velocity_inputs: bool) -> Ve
                 "",
                 "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
             ],
+        ),
+        function(
+            "dissipated_power",
+            &[Q, V],
+            Shape::Scalar,
+            &[
+                "Power that dashpots, friction and dissipation functions take out, W.",
+                "",
+                "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − dissipated_power`.",
+            ],
+        ),
+        function("control_power", &[Q, V, U], Shape::Scalar, &["Power of the inputs `u`, W."]),
+        function(
+            "disturbance_power",
+            &[Q, V],
+            Shape::Scalar,
+            &["Power of applied forces that are neither conservative nor dissipative nor inputs, W."],
         ),
         function("total_mass", &[], Shape::Scalar, &["Mass of everything that moves, kg."]),
         function(

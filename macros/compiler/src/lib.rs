@@ -7,6 +7,7 @@ pub mod import;
 pub mod lower;
 pub mod mechanics;
 pub mod model;
+pub mod passes;
 pub mod syntax;
 
 mod derive;
@@ -18,7 +19,7 @@ use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 use syntax::{Description, Mechanism};
 
-pub use derive::{derive, equations};
+pub use derive::{derive, derive_with, equations, equations_latex};
 
 /// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.
 /// Files are looked up in `folder`.
@@ -34,7 +35,11 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
         return emit_mechanism(&interface, output);
     }
     let (nq, nv) = (interface.configuration.len(), interface.velocities.len());
-    let mut emitted = emit_failed(&interface, &derive::signatures(nq, nv, false, false));
+    let mut functions = derive::signatures(nq, nv, false, false);
+    if source.mechanism.derivatives {
+        functions.extend(derive::derivatives::signatures(nv, interface.inputs.len(), false));
+    }
+    let mut emitted = emit_failed(&interface, &functions);
     emitted.tokens.extend(cx.into_tokens());
     emitted
 }
@@ -104,12 +109,25 @@ pub fn compile<'g>(
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(model::Model<'g>, emit::Output)> {
+    compile_with(source, graph, passes::Passes::default(), cx)
+}
+
+/// The same with a choice of passes.
+pub fn compile_with<'g>(
+    source: &Source,
+    graph: &'g Graph,
+    passes: passes::Passes,
+    cx: &mut Diagnostics,
+) -> Option<(model::Model<'g>, emit::Output)> {
     // What failed to parse would only lead to further complaints.
     if !cx.is_empty() {
         return None;
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
-    let output = derive(&model, cx)?;
+    let mut output = derive_with(&model, passes, cx)?;
+    if source.mechanism.derivatives {
+        output.functions.extend(derive::derivatives::functions(&model, passes));
+    }
     Some((model, output))
 }
 
@@ -133,6 +151,8 @@ impl Source {
             velocities,
             inputs,
             frames,
+            outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
+            units: model.map(|m| m.units.clone()).unwrap_or_default(),
             time: model.is_some_and(|m| m.time),
             velocity_inputs: model.is_some_and(|m| m.velocity_inputs),
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),

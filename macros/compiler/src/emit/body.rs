@@ -2,6 +2,7 @@
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
 use super::function::{Argument, Function, Shape, Signature};
+use super::matrices;
 use super::scalar::ScalarSpelling;
 use crate::expr::{Function as Elementary, Symbol};
 use crate::lower::{Op, Operand, Program};
@@ -124,7 +125,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
     }
     write_prelude(out, f, s, &w);
     write_statements(out, &w.statements, &outputs);
-    write_result(out, f.shape, &outputs);
+    write_result(out, f.shape, &outputs, s);
 }
 
 impl Writer<'_> {
@@ -344,7 +345,7 @@ fn write_let(out: &mut String, statement: &Statement) {
     let _ = writeln!(out, "let {} = {};", statement.pattern, statement.text);
 }
 
-fn write_result(out: &mut String, shape: Shape, outputs: &[Piece]) {
+fn write_result(out: &mut String, shape: Shape, outputs: &[Piece], s: &Signature<'_>) {
     let list = |pieces: &[Piece]| {
         let texts: Vec<&str> = pieces.iter().map(|p| p.text.as_str()).collect();
         format!("[{}]", texts.join(", "))
@@ -354,13 +355,20 @@ fn write_result(out: &mut String, shape: Shape, outputs: &[Piece]) {
             "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))\n"
         )
     };
+    let matrix = |pieces: &[Piece], rows: usize| {
+        let columns: Vec<String> = pieces.chunks(rows.max(1)).map(list).collect();
+        storage(format!("[{}]", columns.join(", ")), "SMatrix")
+    };
     match shape {
         Shape::Scalar => out.push_str(&outputs.first().map_or(String::new(), |p| p.text.clone())),
         Shape::Array(_) => out.push_str(&list(outputs)),
         Shape::Vector(_) => out.push_str(&storage(format!("[{}]", list(outputs)), "SVector")),
-        Shape::Square(n) | Shape::Matrix(n, _) => {
-            let columns: Vec<String> = outputs.chunks(n.max(1)).map(list).collect();
-            out.push_str(&storage(format!("[{}]", columns.join(", ")), "SMatrix"));
+        Shape::Square(n) | Shape::Matrix(n, _) => out.push_str(&matrix(outputs, n)),
+        Shape::Pair(_) | Shape::Forward(_) | Shape::Linear(..) => {
+            let part = |first: usize, rows: usize, columns: usize| {
+                matrix(&outputs[first..first + rows * columns], rows)
+            };
+            out.push_str(&matrices::compose(shape, s.scalar.name(), part));
         }
     }
 }

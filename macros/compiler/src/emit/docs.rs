@@ -21,8 +21,10 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     }
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
-    if !output.equations.is_empty() {
-        let _ = writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.trim_end());
+    units(&mut text, interface);
+    if !output.equations.plain.is_empty() {
+        let _ =
+            writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
     }
     text.push_str("\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n");
     for f in output.functions.iter().filter(|f| !f.docs.is_empty()) {
@@ -32,6 +34,28 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         }
     }
     text
+}
+
+/// The unit of everything that has a name.
+fn units(text: &mut String, i: &Interface<'_>) {
+    let parameters = i.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string));
+    let parameters: Vec<String> = parameters.map(|name| name.trim_start_matches("r#").to_string()).collect();
+    let lists: [(&str, &[String], &[String]); 4] = [
+        ("", &parameters, &i.units.parameters),
+        ("q", &i.configuration, &i.units.configuration),
+        ("v", &i.velocities, &i.units.velocities),
+        ("u", &i.inputs, &i.units.inputs),
+    ];
+    text.push_str("\n# Units\n\nInferred from use; `any` where nothing determines one.\n\n| | name | unit |\n| --- | --- | --- |\n");
+    for (what, names, units) in lists {
+        for (k, (name, unit)) in names.iter().zip(units).enumerate() {
+            let what = if what.is_empty() { "parameter".to_string() } else { format!("`{what}[{k}]`") };
+            let _ = writeln!(text, "| {what} | `{name}` | {unit} |");
+        }
+    }
+    for (name, unit) in i.outputs.iter().zip(&i.units.outputs) {
+        let _ = writeln!(text, "| output | `{name}` | {unit} |");
+    }
 }
 
 fn list(text: &mut String, what: &str, names: &[String]) {

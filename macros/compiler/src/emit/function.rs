@@ -1,6 +1,7 @@
 //! A generated function: its arguments, its result, and what it computes.
 
 use super::body::write_body;
+use super::matrices;
 use super::scalar::ScalarSpelling;
 use crate::lower::Program;
 use crate::model::Quantity;
@@ -66,6 +67,13 @@ pub enum Shape {
     Square(usize),
     /// A matrix; the outputs are its columns one after another.
     Matrix(usize, usize),
+    /// Two square matrices.
+    Pair(usize),
+    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, and `M⁻¹`.
+    Forward(usize),
+    /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
+    /// what turns displacements.
+    Linear(usize, usize),
     /// A plain array.
     Array(usize),
 }
@@ -125,6 +133,7 @@ impl Signature<'_> {
             Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
+            Shape::Pair(_) | Shape::Forward(_) | Shape::Linear(..) => matrices::several(shape, self),
         }
     }
 

@@ -1,10 +1,13 @@
 //! The whole output: struct, inherent functions, trait, frames.
 
+use super::constants::write_constants;
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
 use super::scalar::ScalarSpelling;
+use crate::expr::print::Written;
 use crate::model::Chart;
+use crate::model::units::Units;
 use crate::syntax::{ScalarType, Shell};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
@@ -24,6 +27,10 @@ pub struct Interface<'a> {
     pub inputs: Vec<String>,
     /// Names of the frames.
     pub frames: Vec<String>,
+    /// Names of the outputs.
+    pub outputs: Vec<String>,
+    /// Units of all of these and of the parameters.
+    pub units: Units,
     /// A file whose change asks for another expansion.
     pub file: Option<String>,
     /// The mechanism contains time: its functions take it first.
@@ -42,8 +49,8 @@ pub struct Output {
     pub frames: Vec<FrameSteps>,
     /// First entries in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
-    /// The equations of motion as text; empty for large mechanisms.
-    pub equations: String,
+    /// The equations of motion for reading; empty for large mechanisms.
+    pub equations: Written,
 }
 
 /// Functions of the traits that depend on the state, with their arguments there.
@@ -120,7 +127,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, "");
+    write_constants(&mut methods, interface, &Written::default());
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
@@ -155,42 +162,6 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
         nu: interface.inputs.len(),
         time: interface.time,
     }
-}
-
-fn write_constants(out: &mut String, i: &Interface<'_>, equations: &str) {
-    let numbers = [
-        ("NQ", i.configuration.len(), "configuration numbers"),
-        ("NV", i.velocities.len(), "velocities"),
-        ("NU", i.inputs.len(), "inputs"),
-    ];
-    for (name, value, what) in numbers {
-        let _ = writeln!(out, "/// Number of {what}.\npub const {name}: usize = {value};");
-    }
-    let lists = [
-        ("CONFIGURATION", &i.configuration, "every entry of `q`"),
-        ("VELOCITIES", &i.velocities, "every entry of `v`"),
-        ("INPUTS", &i.inputs, "every entry of `u`"),
-        ("FRAMES", &i.frames, "every frame"),
-    ];
-    for (name, names, what) in lists {
-        let _ = writeln!(
-            out,
-            "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};",
-            names.len()
-        );
-    }
-    let about = match equations {
-        "" => "Empty: the equations of this mechanism are too long to be read as text.",
-        _ => "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
-    };
-    let _ = writeln!(out, "/// {about}\npub const EQUATIONS: &'static str = {equations:?};");
-    out.push_str(
-        "/// Index in `FRAMES` of the frame with a name; `frame!` checks it at compile time.
-        #[must_use]
-        pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {
-            ::linkwork::__private::frame_index(&Self::FRAMES, name)
-        }\n",
-    );
 }
 
 /// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space.

@@ -2,10 +2,12 @@
 //! implementation of the trait. Emission never simplifies.
 
 mod body;
+mod constants;
 mod docs;
 pub mod frames;
 mod function;
 mod item;
+mod matrices;
 mod scalar;
 
 pub use function::{Argument, Function, Shape};

@@ -1,11 +1,12 @@
-//! Differentiation with respect to a symbol.
+//! Differentiation with respect to a symbol, or along a direction in the space of several.
 
 use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
 
-/// Derivatives of expressions of one graph with respect to one symbol; what was computed once is kept.
+/// Derivatives of expressions of one graph along one direction; what was computed once is kept.
 pub struct Derivative<'g> {
     graph: &'g Graph,
-    symbol: Symbol,
+    /// Rates of the symbols; those of all others are zero.
+    rates: Vec<(Symbol, Expr<'g>)>,
     /// By node; `None` where not yet known.
     known: Vec<Option<Id>>,
 }
@@ -13,7 +14,12 @@ pub struct Derivative<'g> {
 impl<'g> Derivative<'g> {
     /// Derivatives with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
-        Derivative { graph, symbol, known: Vec::new() }
+        Derivative::along(vec![(symbol, graph.one())], graph)
+    }
+
+    /// Derivatives where the symbols change with the given rates, all others not at all.
+    pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
+        Derivative { graph, rates, known: Vec::new() }
     }
 
     /// The derivative of `e`.
@@ -49,8 +55,11 @@ impl<'g> Derivative<'g> {
         let d = |id: Id| self.derived(id);
         match self.graph.node(id) {
             Node::Const(_) => self.graph.zero(),
-            Node::Symbol(s) if s == self.symbol => self.graph.one(),
-            Node::Symbol(_) => self.graph.zero(),
+            Node::Symbol(s) => self
+                .rates
+                .iter()
+                .find(|(symbol, _)| *symbol == s)
+                .map_or(self.graph.zero(), |(_, rate)| *rate),
             Node::Neg(a) => -d(a),
             Node::Add(a, b) => d(a) + d(b),
             Node::Sub(a, b) => d(a) - d(b),

@@ -2,8 +2,9 @@
 //!
 //! Normal form, kept by the constructors: constants are folded; zero and one vanish; a minus sign is lifted out of
 //! products, quotients, differences and odd functions, and absorbed by sums, so that `a − b` and `b − a` share one
-//! node; the operands of commutative operations stand in order of their ids; a constant factor stands first and constants in a
-//! chain of factors are merged. Only rewrites that never cost an operation are made.
+//! node; the operands of commutative operations stand in order of their ids; constants that meet
+//! in a product or in a sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since
+//! `2 x` may be used again.
 
 use std::cell::{RefCell, RefMut};
 use std::fmt;
@@ -354,6 +355,9 @@ impl Graph {
         if let (Some(x), Some(y)) = (self.value(a), self.value(b)) {
             return self.constant(x + y);
         }
+        if let Some(sum) = self.constant_sum(a, b).or_else(|| self.constant_sum(b, a)) {
+            return sum;
+        }
         let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
         match (na, nb) {
             (false, false) => self.plain_sum(a, b),
@@ -361,6 +365,28 @@ impl Graph {
             (false, true) => self.difference(a, b),
             (true, false) => self.difference(b, a),
         }
+    }
+
+    /// The sum of a constant and a sum or difference with another constant.
+    fn constant_sum(&self, a: Id, b: Id) -> Option<Id> {
+        let c = self.value(a)?;
+        let (negative, b) = self.unsigned(b);
+        let sign = if negative { -1.0 } else { 1.0 };
+        let (d, rest, rest_negative) = match self.node(b) {
+            Node::Add(x, y) => match (self.value(x), self.value(y)) {
+                (Some(d), None) => (d, y, false),
+                (None, Some(d)) => (d, x, false),
+                _ => return None,
+            },
+            Node::Sub(x, y) => match (self.value(x), self.value(y)) {
+                (Some(d), None) => (d, y, true),
+                (None, Some(d)) => (-d, x, false),
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let rest = self.signed(negative != rest_negative, rest);
+        Some(self.add(self.constant(c + sign * d), rest))
     }
 
     fn plain_sum(&self, a: Id, b: Id) -> Id {
@@ -442,7 +468,8 @@ impl Graph {
                 }
             }
             Node::Div(x, y) => {
-                if let Some(d) = self.value(x) {
+                // Another division would cost more than a product with an inverse that is shared.
+                if let Some(d) = self.value(x).filter(|d| *d != 1.0) {
                     return self.intern(Node::Div(self.constant(c * d), y));
                 }
                 if let Some(d) = self.value(y) {
@@ -455,17 +482,6 @@ impl Graph {
     }
 
     fn variable_product(&self, a: Id, b: Id) -> Id {
-        // Constants are carried to the front, where they meet others.
-        if let Node::Mul(x, y) = self.node(a)
-            && self.value(x).is_some()
-        {
-            return self.mul(x, self.mul(y, b));
-        }
-        if let Node::Mul(x, y) = self.node(b)
-            && self.value(x).is_some()
-        {
-            return self.mul(x, self.mul(a, y));
-        }
         self.intern(Node::Mul(a.min(b), a.max(b)))
     }
 
@@ -531,6 +547,15 @@ impl<'g> Expr<'g> {
     /// Its value, if it is a constant.
     pub fn value(self) -> Option<f64> {
         self.graph.value(self.id)
+    }
+
+    /// True for a constant and for a constant times something.
+    pub fn is_multiple(self) -> bool {
+        let (_, id) = self.graph.unsigned(self.id);
+        match self.graph.node(id) {
+            Node::Mul(a, _) => self.graph.value(a).is_some(),
+            node => matches!(node, Node::Const(_)),
+        }
     }
 
     /// True for the constant zero.
@@ -666,6 +691,8 @@ mod tests {
         assert_eq!(x / g.num(4.0), g.num(0.25) * x);
         assert_eq!(x + x, g.num(2.0) * x);
         assert_eq!(g.num(0.0).sin(), g.zero());
+        assert_eq!((x + g.num(2.0)) + g.num(3.0), x + g.num(5.0));
+        assert_eq!(g.num(2.0) - (g.num(3.0) - x), x - g.num(1.0));
     }
 
     #[test]
@@ -679,6 +706,16 @@ mod tests {
         assert_eq!((-x).sin(), -x.sin());
         assert_eq!((y - x).cos(), (x - y).cos());
         assert_eq!(g.num(-3.0) * x, -(g.num(3.0) * x));
+    }
+
+    #[test]
+    fn a_multiple_that_is_used_again_stays_one_product() {
+        let g = Graph::new();
+        let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
+        let twice = g.num(2.0) * x;
+        let before = g.len();
+        let _ = (twice * y, twice * z);
+        assert_eq!(g.len(), before + 2);
     }
 
     #[test]

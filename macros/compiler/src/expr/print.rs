@@ -1,8 +1,18 @@
-//! Expressions and polynomials as text.
+//! Expressions and polynomials as text, plain or typeset.
 
-use super::factor::{Item, Order, fraction, items};
+use super::factor::{Item, Order, items};
 use super::graph::{Expr, Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
+
+pub mod latex;
+pub mod names;
+pub mod style;
+
+pub use latex::Latex;
+pub use names::Name;
+pub use style::{Plain, Style, Written};
+
+use style::{Argument, Factor, Number};
 
 /// An expression in one line, with names for its symbols. For small expressions: what is shared is written out, up to
 /// a limit of depth.
@@ -31,17 +41,25 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     if own < level { format!("({text})") } else { text }
 }
 
-/// Writes polynomials the way a person does: `1/3 m l² cos(theta)`.
-pub struct Writer<'a> {
+/// Writes polynomials the way a person does: `1/3 m l² cos(theta)`. What is read in which order is decided here, how it
+/// looks by the style.
+pub struct Writer<'a, S = Plain<'a>> {
     ring: &'a Ring,
     order: Order,
-    name: &'a dyn Fn(Symbol) -> String,
+    style: S,
 }
 
 impl<'a> Writer<'a> {
-    /// For the polynomials of a ring, with names for its symbols.
+    /// For the polynomials of a ring as plain text, with names for its symbols.
     pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> Writer<'a> {
-        Writer { ring, order: Order::of(ring), name }
+        Writer::styled(ring, Plain { name })
+    }
+}
+
+impl<'a, S: Style> Writer<'a, S> {
+    /// For the polynomials of a ring in some style.
+    pub fn styled(ring: &'a Ring, style: S) -> Writer<'a, S> {
+        Writer { ring, order: Order::of(ring), style }
     }
 
     /// A polynomial, grouped.
@@ -50,121 +68,95 @@ impl<'a> Writer<'a> {
     }
 
     fn sum(&self, items: &[Item]) -> String {
-        joined(items.iter().map(|item| (item.coefficient < 0.0, self.item(item))))
+        self.joined(items.iter().map(|item| (item.coefficient < 0.0, self.item(item))))
+    }
+
+    /// A sum of texts with their signs.
+    fn joined(&self, parts: impl Iterator<Item = (bool, String)>) -> String {
+        let mut out = String::new();
+        for (negative, text) in parts {
+            out.push_str(self.style.sign(out.is_empty(), negative));
+            out.push_str(&text);
+        }
+        if out.is_empty() { self.style.number(&Number::ZERO) } else { out }
     }
 
     fn item(&self, item: &Item) -> String {
-        let power = if item.power == 2 { "²" } else { "" };
-        let sum = (!item.sum.is_empty()).then(|| format!("({}){power}", self.sum(&item.sum)));
+        let sum = (!item.sum.is_empty()).then(|| self.bracketed(self.sum(&item.sum), item.power));
         self.product(item.coefficient, item.factor, sum)
     }
 
+    /// A sum as a factor.
+    fn bracketed(&self, sum: String, power: u8) -> Factor {
+        if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
+    }
+
     /// Number, parameters, sum, all else; then what it is divided by. Without the sign.
-    fn product(&self, coefficient: f64, m: Monomial, sum: Option<String>) -> String {
+    fn product(&self, coefficient: f64, m: Monomial, sum: Option<Factor>) -> String {
         let parameters = self.order.parameters(m);
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
         self.factors(parameters, &mut factors, &mut divisors);
         factors.extend(sum);
         self.factors(m.without(parameters), &mut factors, &mut divisors);
-        let number = number(coefficient.abs(), !factors.is_empty());
-        if number != "1" || factors.is_empty() {
-            factors.insert(0, number);
-        }
-        match divisors.as_slice() {
-            [] => factors.join(" "),
-            [one] if !one.contains(' ') || one.ends_with(')') => format!("{}/{one}", factors.join(" ")),
-            _ => format!("{}/({})", factors.join(" "), divisors.join(" ")),
-        }
+        let number = Number::of(coefficient.abs(), !factors.is_empty());
+        let number = (number != Number::ONE || factors.is_empty()).then_some(number);
+        self.style.product(number, &factors, &divisors)
     }
 
-    fn factors(&self, m: Monomial, factors: &mut Vec<String>, divisors: &mut Vec<String>) {
+    fn factors(&self, m: Monomial, factors: &mut Vec<Factor>, divisors: &mut Vec<Factor>) {
         for (atom, power) in self.order.factors(m) {
             match &self.ring.atoms[atom] {
                 Atom::Inverse(p) => divisors.push(self.divisor(p, power)),
-                atom => factors.push(self.atom(atom, power)),
+                atom => factors.push(Factor::Single(self.atom(atom, power))),
             }
         }
     }
 
-    fn divisor(&self, p: &Polynomial, power: u8) -> String {
-        match p.terms.as_slice() {
-            [t] => match t.monomial.factors().next() {
-                Some((atom, 1)) => self.atom(&self.ring.atoms[atom], power),
-                _ => format!("({}){}", self.polynomial(p), exponent(power)),
-            },
-            _ => format!("({}){}", self.polynomial(p), exponent(power)),
+    fn divisor(&self, p: &Polynomial, power: u8) -> Factor {
+        if let [t] = p.terms.as_slice()
+            && let Some((atom, 1)) = t.monomial.factors().next()
+        {
+            return Factor::Single(self.atom(&self.ring.atoms[atom], power));
         }
+        self.bracketed(self.polynomial(p), power)
     }
 
     fn atom(&self, atom: &Atom, power: u8) -> String {
-        let power = exponent(power);
+        let call = |name, arguments: &[Argument]| self.style.call(name, power, arguments);
         match atom {
-            Atom::Symbol(s) => format!("{}{power}", (self.name)(*s)),
-            Atom::Wave(w) => {
-                format!("{}{power}({})", if w.cosine { "cos" } else { "sin" }, self.angle(w))
+            Atom::Symbol(s) => self.style.symbol(*s, power),
+            Atom::Wave(w) => call(if w.cosine { "cos" } else { "sin" }, &[self.angle(w)]),
+            Atom::Call(f, p) => call(f.name(), &[self.argument(p)]),
+            Atom::Atan2(y, x) => call("atan2", &[self.argument(y), self.argument(x)]),
+            Atom::Power(a, b) => call("pow", &[self.argument(a), self.argument(b)]),
+            Atom::Inverse(p) => {
+                let divisor = Factor::Sum(self.polynomial(p));
+                self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)
             }
-            Atom::Call(f, p) => format!("{}{power}({})", f.name(), self.polynomial(p)),
-            Atom::Atan2(y, x) => format!("atan2{power}({}, {})", self.polynomial(y), self.polynomial(x)),
-            Atom::Power(a, b) => format!("pow{power}({}, {})", self.polynomial(a), self.polynomial(b)),
-            Atom::Inverse(p) => format!("(1/({})){power}", self.polynomial(p)),
         }
     }
 
+    fn argument(&self, p: &Polynomial) -> Argument {
+        let lone = matches!(p.terms.as_slice(), [t] if self.is_symbol(t.coefficient, t.monomial));
+        Argument { text: self.polynomial(p), lone }
+    }
+
     /// The argument of a wave, in the order of its angles.
-    fn angle(&self, wave: &Wave) -> String {
-        let parts = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
-        joined(parts.map(|(angle, n)| {
-            let coefficient = angle.coefficient * f64::from(n);
-            (coefficient < 0.0, self.product(coefficient, angle.monomial, None))
-        }))
+    fn angle(&self, wave: &Wave) -> Argument {
+        let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
+        let parts: Vec<(f64, Monomial)> =
+            angles.map(|(angle, n)| (angle.coefficient * f64::from(n), angle.monomial)).collect();
+        let text = self.joined(parts.iter().map(|(c, m)| (*c < 0.0, self.product(*c, *m, None))));
+        Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_symbol(*c, *m)) }
     }
-}
 
-/// A sum of texts with their signs.
-fn joined(parts: impl Iterator<Item = (bool, String)>) -> String {
-    let mut out = String::new();
-    for (negative, text) in parts {
-        out.push_str(match (out.is_empty(), negative) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        });
-        out.push_str(&text);
+    fn is_symbol(&self, coefficient: f64, m: Monomial) -> bool {
+        let mut factors = m.factors();
+        let first = factors.next();
+        coefficient == 1.0
+            && factors.next().is_none()
+            && first.is_some_and(|(k, n)| n == 1 && matches!(self.ring.atoms[k], Atom::Symbol(_)))
     }
-    if out.is_empty() { "0".to_string() } else { out }
-}
-
-fn exponent(power: u8) -> &'static str {
-    match power {
-        2 => "²",
-        3 => "³",
-        4 => "⁴",
-        5 => "⁵",
-        6 => "⁶",
-        7 => "⁷",
-        _ => "",
-    }
-}
-
-/// A positive number for reading: a fraction where it is one of small numbers and stands before something, else up to
-/// six significant digits.
-pub fn number(value: f64, before: bool) -> String {
-    if let Some((p, q)) = fraction(value).filter(|(_, q)| *q == 1 || before || q % 3 == 0) {
-        return if q == 1 { format!("{p}") } else { format!("{p}/{q}") };
-    }
-    let exponent = value.log10().floor() as i32;
-    if !(-4..9).contains(&exponent) {
-        let text = format!("{value:.5e}");
-        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-        return format!("{}e{power}", trimmed(digits));
-    }
-    let decimals = usize::try_from(5 - exponent).unwrap_or(0);
-    trimmed(&format!("{value:.decimals$}")).to_string()
-}
-
-fn trimmed(digits: &str) -> &str {
-    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
 /// Text in lines of up to `width` characters, broken before the signs of a sum, outermost ones first; further lines

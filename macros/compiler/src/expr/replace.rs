@@ -4,8 +4,22 @@ use super::graph::{Expr, Graph, Id, Node, Symbol};
 
 /// An expression with symbols replaced where `by` says so.
 pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
+    replace_all(&[e], by).pop().unwrap_or(e)
+}
+
+/// Expressions with symbols replaced where `by` says so.
+pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
+    let size = e.iter().map(|e| e.id() as usize + 1).max().unwrap_or(0);
+    let mut known: Vec<Option<Id>> = vec![None; size];
+    e.iter().map(|e| replace_one(*e, &mut known, by)).collect()
+}
+
+fn replace_one<'g>(
+    e: Expr<'g>,
+    known: &mut [Option<Id>],
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+) -> Expr<'g> {
     let graph = e.graph();
-    let mut known: Vec<Option<Id>> = vec![None; e.id() as usize + 1];
     // Operands before operations, without recursion.
     let mut todo = vec![e.id()];
     while let Some(&id) = todo.last() {
@@ -20,7 +34,7 @@ pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr
             }
         });
         if todo.len() == before {
-            known[id as usize] = Some(rebuilt(graph, id, &known, by).id());
+            known[id as usize] = Some(rebuilt(graph, id, known, by).id());
             todo.pop();
         }
     }

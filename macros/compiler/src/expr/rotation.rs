@@ -1,7 +1,7 @@
 //! Rotations as sequences of elementary steps. A joint's rotation about a coordinate axis after a constant one costs
 //! less applied step by step than as one matrix.
 
-use super::graph::{Expr, Graph};
+use super::graph::{Expr, Function, Graph, Node};
 use super::matrix::{Mat3, Sym3, Vec3};
 
 /// One step of a rotation.
@@ -90,19 +90,19 @@ impl<'g> Rotation<'g> {
         Rotation { steps, graph: self.graph }
     }
 
-    /// Appends a step; constant neighbours become one matrix, and the unit matrix none.
+    /// Appends a step; constant neighbours become one rotation, in as few steps as it takes.
     fn push(&mut self, step: Step<'g>) {
-        let Some(constant) = step.constant() else {
+        let Some(mut product) = step.constant() else {
             self.steps.push(step);
             return;
         };
-        let mut product = constant;
-        if let Some(last) = self.steps.last().and_then(Step::constant) {
+        while let Some(last) = self.steps.last().and_then(Step::constant) {
             product = last * product;
             self.steps.pop();
         }
-        if product != Mat3::identity(self.graph) {
-            self.steps.push(Step::Matrix(product));
+        match constant_steps(&product) {
+            Some(steps) => self.steps.extend(steps),
+            None => self.steps.push(Step::Matrix(product)),
         }
     }
 
@@ -138,7 +138,90 @@ impl<'g> Rotation<'g> {
     }
 }
 
+/// A constant rotation as one by right angles and up to two about coordinate axes, if it has a zero entry.
+fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
+    let g = m.0[0][0].graph();
+    let steps = axis_steps(m).or_else(|| {
+        let (r, c) = (0..9).map(|k| (k / 3, k % 3)).find(|(r, c)| m.0[*r][*c].is_zero())?;
+        // Column c is normal to axis r: what is left after a rotation about r has a coordinate axis as column c.
+        let (s, t) = ((r + 1) % 3, (r + 2) % 3);
+        let first = Step::Axis { axis: r, sin: m.0[t][c], cos: m.0[s][c] };
+        let mut rest = first.inverse().matrix() * *m;
+        (rest.0[r][c], rest.0[s][c], rest.0[t][c]) = (g.zero(), g.one(), g.zero());
+        rest.0[s][(c + 1) % 3] = g.zero();
+        rest.0[s][(c + 2) % 3] = g.zero();
+        Some([vec![first], axis_steps(&rest)?].concat())
+    })?;
+    // What was not a rotation but for rounding stays as it was given.
+    let product = steps.iter().fold(Mat3::identity(g), |p, step| p * step.matrix());
+    let error = (product - *m).values()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
+    (error <= 8.0 * f64::EPSILON).then_some(steps)
+}
+
+/// A constant rotation with a coordinate axis for a column.
+fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
+    let g = m.0[0][0].graph();
+    let values = m.values()?;
+    if *m == Mat3::identity(g) {
+        return Some(Vec::new());
+    }
+    let column = |j: usize| [values[0][j], values[1][j], values[2][j]];
+    let is_axis = |v: [f64; 3]| v.iter().filter(|c| **c == 0.0).count() == 2;
+    let b = (0..3).find(|j| is_axis(column(*j)))?;
+    let i = (b + 1) % 3;
+    let x = column(i);
+    let r = (0..3).max_by(|p, q| x[*p].abs().total_cmp(&x[*q].abs()))?;
+    // The nearest rotation by right angles.
+    let along = m.column(b);
+    let mut near = Vec3::zero(g);
+    near.0[r] = g.num(x[r].signum());
+    let last = along.cross(near);
+    let mut right = Mat3::zero(g);
+    for k in 0..3 {
+        (right.0[k][b], right.0[k][i], right.0[k][(b + 2) % 3]) = (along[k], near[k], last[k]);
+    }
+    let (cos, sin) = (near.dot(m.column(i)), last.dot(m.column(i)));
+    let mut steps = Vec::new();
+    if right != Mat3::identity(g) {
+        steps.push(Step::Matrix(right));
+    }
+    if !sin.is_zero() {
+        steps.push(Step::Axis { axis: b, sin, cos });
+    }
+    Some(steps)
+}
+
+impl<'g> Rotation<'g> {
+    /// Angular velocity in the child's axes, given the rate of every expression: `Rᵀ Ṙ = [ω]×`. Step by step, so that
+    /// a rotation about an axis gives the rate of its angle and not that times `sin² + cos²`.
+    pub fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
+        self.steps.iter().fold(Vec3::zero(self.graph), |carried, step| {
+            step.inverse().apply(carried) + step.angular_velocity(rate)
+        })
+    }
+}
+
 impl<'g> Step<'g> {
+    fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
+        match *self {
+            Step::Axis { axis, sin, cos } => {
+                let speed = match angle_of(sin) {
+                    Some(angle) => rate(angle),
+                    None => cos * rate(sin) - sin * rate(cos),
+                };
+                Vec3::axis(sin.graph(), axis) * speed
+            }
+            Step::Matrix(m) => {
+                let d = Mat3::from_fn(|i, j| rate(m.0[i][j]));
+                Vec3([
+                    m.column(2).dot(d.column(1)),
+                    m.column(0).dot(d.column(2)),
+                    m.column(1).dot(d.column(0)),
+                ])
+            }
+        }
+    }
+
     /// The matrix, if every entry is a number.
     fn constant(&self) -> Option<Mat3<'g>> {
         let matrix = self.matrix();
@@ -205,7 +288,81 @@ impl<'g> Step<'g> {
                     Mat3::from_fn(|i, j| if i <= j { half.row(i).dot(m.row(j)) } else { m.0[0][0].zero() });
                 Sym3::from_upper(&upper)
             }
-            Step::Axis { .. } => Sym3::from_upper(&self.apply_mat(x.full())),
+            Step::Axis { axis: k, sin, cos } => {
+                let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
+                // As for any matrix; twice the sine serves several tensors, twice a multiple is another multiple.
+                let xy = x.at(i, j);
+                let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
+                let u = *cos * (x.at(i, i) - x.at(j, j)) - twice;
+                let (cu, su) = (*cos * u, *sin * u);
+                let mut out = x.full();
+                (out.0[i][i], out.0[j][j]) = (x.at(j, j) + cu, x.at(i, i) - cu);
+                let (ij, ki, kj) = (
+                    x.at(i, j) + su,
+                    *cos * x.at(k, i) - *sin * x.at(k, j),
+                    *sin * x.at(k, i) + *cos * x.at(k, j),
+                );
+                for (a, b, e) in [(i, j, ij), (k, i, ki), (k, j, kj)] {
+                    (out.0[a][b], out.0[b][a]) = (e, e);
+                }
+                Sym3::from_upper(&out)
+            }
+        }
+    }
+}
+
+/// The angle that an expression is the sine of.
+fn angle_of(sin: Expr<'_>) -> Option<Expr<'_>> {
+    let graph = sin.graph();
+    match sin.node() {
+        Node::Call(Function::Sin, angle) => Some(graph.expr(angle)),
+        Node::Neg(inner) => angle_of(graph.expr(inner)).map(|angle| -angle),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(rotation: &Rotation<'_>) -> [[f64; 3]; 3] {
+        rotation.matrix().values().unwrap()
+    }
+
+    #[test]
+    fn constant_rotations_take_as_few_steps_as_they_can() {
+        let g = Graph::new();
+        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
+        for (rotation, steps) in [
+            (about(1, 0.3).then(&about(1, -0.3)), 0),
+            (Rotation::from_matrix(right), 1),
+            (about(1, 0.3).then(&about(1, 0.4)), 1),
+            (about(0, 2.0), 2),
+            (Rotation::from_matrix(right).then(&about(2, 0.1)), 2),
+            (about(0, 0.3).then(&about(1, 0.4)), 2),
+            (about(0, 0.3).then(&about(1, 0.4)).then(&about(2, 0.5)), 1),
+        ] {
+            assert_eq!(rotation.steps.len(), steps, "{rotation:?}");
+        }
+    }
+
+    #[test]
+    fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
+        let g = Graph::new();
+        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let v = Vec3::numbers(&g, [0.7, -1.1, 0.4]);
+        let tensor =
+            Sym3 { diagonal: [1.0, 2.0, 3.5].map(|c| g.num(c)), off: [0.2, -0.3, 0.6].map(|c| g.num(c)) };
+        for rotation in [about(0, 0.3).then(&about(1, 2.4)), about(2, -3.0).then(&about(0, 1.0))] {
+            let m = Mat3(numbers(&rotation).map(|r| r.map(|c| g.num(c))));
+            let full = m * tensor.full() * m.transpose();
+            let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(
+                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).at(k / 3, k % 3))),
+            );
+            for (a, b) in pairs {
+                assert!((a.value().unwrap() - b.value().unwrap()).abs() < 1e-14);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 use crate::expr::{Expr, Function, Id, Node, Symbol};
 
 mod fuse;
+mod signs;
 
 /// Where an operand comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,6 +153,7 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
         places[*id as usize] = 0;
     }
     program.sweep();
+    program = program.with_cheap_signs();
     program.counts = program.count();
     program
 }
@@ -288,7 +290,11 @@ impl Program {
 
 impl Op {
     fn renumbered(self, number: &[usize]) -> Op {
-        let n = |o| renumber(o, number);
+        self.mapped(|o| renumber(o, number))
+    }
+
+    /// The same operation on other operands.
+    fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
         match self {
             Op::Neg(a) => Op::Neg(n(a)),
             Op::Add(a, b) => Op::Add(n(a), n(b)),

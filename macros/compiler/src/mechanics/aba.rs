@@ -2,31 +2,53 @@
 //! the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at rest without
 //! gravity, so the recursion has no velocity terms.
 
-use super::kinematics::{Dof, Joint};
+use super::kinematics::{Dof, Joint, resistance};
 use super::{Spatial, is_plain_tree};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::model::{Inertia, Model};
 
 /// `M⁻¹ r`. `None` for a mechanism with coupled coordinates.
 pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+    solve(model, joints, vec![Spatial::zero(model); joints.len()], r)
+}
+
+/// `v̇ = M⁻¹ (τ − h)`. `None` for a mechanism with coupled coordinates.
+///
+/// `wrenches` are those that the links need when all joint accelerations are zero (`rnea::wrenches`): they are gathered
+/// on the way from the leaves to the root, instead of first in a recursion of their own.
+pub fn forward_dynamics<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    wrenches: Vec<Spatial<'g>>,
+    tau: &[Expr<'g>],
+) -> Option<Vec<Expr<'g>>> {
+    let r: Vec<Expr<'g>> = tau.iter().zip(resistance(model, true)).map(|(t, h)| *t - h).collect();
+    solve(model, joints, wrenches, &r)
+}
+
+fn solve<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mut wrenches: Vec<Spatial<'g>>,
+    r: &[Expr<'g>],
+) -> Option<Vec<Expr<'g>>> {
     if !is_plain_tree(model) {
         return None;
     }
     let mut inertias: Vec<Articulated<'g>> =
         model.links.iter().map(|l| Articulated::rigid(&l.inertia)).collect();
-    let mut wrenches = vec![Spatial::zero(model); joints.len()];
     let mut handles: Vec<Vec<Handle<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
         let (mut inertia, mut wrench) = (inertias[k], wrenches[k]);
         for dof in joint.dofs.iter().rev() {
             let handle = Handle::new(dof, &inertia, &wrench, r[dof.index]);
-            wrench = wrench.plus(&handle.column.times(handle.force * handle.inverse));
             // Nothing above the last degree of freedom needs what is left of the inertia of a root.
-            inertia.eliminate(dof, &handle);
+            inertia.eliminate(&handle);
+            wrench = handle.transmit(&wrench);
             handles[k].push(handle);
         }
         if let Some(parent) = joint.parent {
-            inertias[parent.0] = inertias[parent.0].plus(&inertia.to_parent(joint));
+            inertias[parent.0] = inertia.add_to_parent(joint, &inertias[parent.0]);
             wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrench));
         }
     }
@@ -39,28 +61,89 @@ fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Handle<'g
     for (k, joint) in joints.iter().enumerate() {
         let mut motion = joint.parent.map_or(Spatial::zero(model), |p| joint.twist_to_child(&motions[p.0]));
         for (dof, handle) in joint.dofs.iter().zip(handles[k].iter().rev()) {
-            let a = (handle.force - handle.column.dot(&motion)) * handle.inverse;
-            result[dof.index] = a;
-            motion = motion.plus(&dof.subspace.times(a));
+            (result[dof.index], motion) = handle.accelerate(&dof.subspace, &motion);
         }
         motions.push(motion);
     }
     result
 }
 
-/// What is known of one degree of freedom once its handle is computed: `U = IA s`, `1 / D`, `u = r − s · pA`.
+/// What is known of one degree of freedom once its handle is computed: `U = IA s`, `U / D`, `u / D` with `D = s · U`
+/// and `u = r − s · pA`.
+///
+/// Where `s` is a coordinate axis (of six), `U` is without the entry of this axis, which is `D`: the wrench that is
+/// handed on has `r` there by `s · (pA + U u / D) = r`, and the acceleration along it is `(u − U · a) / D` whatever that
+/// of the parent.
 #[derive(Clone)]
 struct Handle<'g> {
+    axis: Option<Axis>,
     column: Spatial<'g>,
-    inverse: Expr<'g>,
-    force: Expr<'g>,
+    scaled: Spatial<'g>,
+    effort: Expr<'g>,
+    r: Expr<'g>,
+}
+
+/// A coordinate axis of six, linear ones first, and whether it points backwards.
+#[derive(Clone, Copy)]
+struct Axis {
+    entry: usize,
+    backwards: bool,
+}
+
+impl Axis {
+    fn of(s: &Spatial<'_>) -> Option<Axis> {
+        let mut nonzero = (0..6).filter(|e| !entry(s, *e).is_zero());
+        let first = nonzero.next()?;
+        let value = entry(s, first).value().filter(|c| c.abs() == 1.0)?;
+        nonzero.next().is_none().then_some(Axis { entry: first, backwards: value < 0.0 })
+    }
+
+    fn signed<'g>(self, e: Expr<'g>) -> Expr<'g> {
+        if self.backwards { -e } else { e }
+    }
+}
+
+fn entry<'g>(s: &Spatial<'g>, e: usize) -> Expr<'g> {
+    if e < 3 { s.linear[e] } else { s.angular[e - 3] }
+}
+
+fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> {
+    if e < 3 {
+        s.linear.0[e] = value;
+    } else {
+        s.angular.0[e - 3] = value;
+    }
+    s
 }
 
 impl<'g> Handle<'g> {
     fn new(dof: &Dof<'g>, inertia: &Articulated<'g>, wrench: &Spatial<'g>, r: Expr<'g>) -> Handle<'g> {
-        let column = inertia.times(&dof.subspace);
-        let d = dof.subspace.dot(&column);
-        Handle { column, inverse: d.num(1.0) / d, force: r - dof.subspace.dot(wrench) }
+        let axis = Axis::of(&dof.subspace);
+        let mut column = inertia.times(&dof.subspace);
+        let inverse = r.num(1.0) / dof.subspace.dot(&column);
+        if let Some(axis) = axis {
+            column = with_entry(column, axis.entry, r.zero());
+        }
+        let effort = (r - dof.subspace.dot(wrench)) * inverse;
+        Handle { axis, column, scaled: column.times(inverse), effort, r }
+    }
+
+    /// The wrench that the joint hands on.
+    fn transmit(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
+        let sum = wrench.plus(&self.column.times(self.effort));
+        self.axis.map_or(sum, |axis| with_entry(sum, axis.entry, axis.signed(self.r)))
+    }
+
+    /// The acceleration of the degree of freedom, and the motion with it.
+    fn accelerate(&self, subspace: &Spatial<'g>, motion: &Spatial<'g>) -> (Expr<'g>, Spatial<'g>) {
+        let a = self.effort - self.scaled.dot(motion);
+        match self.axis {
+            Some(axis) => {
+                let before = axis.signed(entry(motion, axis.entry));
+                (a - before, with_entry(*motion, axis.entry, axis.signed(a)))
+            }
+            None => (a, motion.plus(&subspace.times(a))),
+        }
     }
 }
 
@@ -77,10 +160,6 @@ impl<'g> Articulated<'g> {
         Articulated { m: Sym3::scalar(inertia.mass), h: Mat3::skew(inertia.moment), i: inertia.tensor }
     }
 
-    fn plus(&self, b: &Articulated<'g>) -> Articulated<'g> {
-        Articulated { m: self.m + b.m, h: self.h + b.h, i: self.i + b.i }
-    }
-
     fn times(&self, s: &Spatial<'g>) -> Spatial<'g> {
         Spatial {
             linear: self.m * s.linear + self.h.transpose() * s.angular,
@@ -89,55 +168,45 @@ impl<'g> Articulated<'g> {
     }
 
     /// `IA − U Uᵀ / D`. Rows and columns of a coordinate axis that the joint leaves free are exactly zero then.
-    fn eliminate(&mut self, dof: &Dof<'g>, handle: &Handle<'g>) {
+    fn eliminate(&mut self, handle: &Handle<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
-        let (f_scaled, n_scaled) = (f * handle.inverse, n * handle.inverse);
         let outer = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
-        self.m = self.m - Sym3::from_upper(&outer(f_scaled, f));
-        self.h = self.h - outer(n_scaled, f);
-        self.i = self.i - Sym3::from_upper(&outer(n_scaled, n));
-        let zero = handle.inverse.zero();
-        if let Some(k) = coordinate_axis(dof.subspace.angular).filter(|_| dof.subspace.linear.is_zero()) {
-            self.h.0[k] = [zero; 3];
-            clear(&mut self.i, k);
-        }
-        if let Some(k) = coordinate_axis(dof.subspace.linear).filter(|_| dof.subspace.angular.is_zero()) {
-            for row in &mut self.h.0 {
-                row[k] = zero;
+        self.m = self.m - Sym3::from_upper(&outer(handle.scaled.linear, f));
+        self.h = self.h - outer(handle.scaled.angular, f);
+        self.i = self.i - Sym3::from_upper(&outer(handle.scaled.angular, n));
+        let zero = handle.r.zero();
+        match handle.axis {
+            Some(Axis { entry: k @ 0..3, .. }) => {
+                for row in &mut self.h.0 {
+                    row[k] = zero;
+                }
+                clear(&mut self.m, k);
             }
-            clear(&mut self.m, k);
+            Some(Axis { entry, .. }) => {
+                self.h.0[entry - 3] = [zero; 3];
+                clear(&mut self.i, entry - 3);
+            }
+            None => {}
         }
     }
 
-    /// The same inertia about the parent's origin, in parent axes.
+    /// The same inertia about the parent's origin, in parent axes, added to `sum`.
     ///
-    /// `H' = H + [p]× M`, `I' = I + Y + Yᵀ` with `Y = −(H + H') [p / 2]×`.
-    fn to_parent(self, joint: &Joint<'g>) -> Articulated<'g> {
+    /// `H' = H + [p]× M`, `I' = I − H [p]× − (H' [p]×)ᵀ`.
+    fn add_to_parent(self, joint: &Joint<'g>, sum: &Articulated<'g>) -> Articulated<'g> {
         let m = joint.rotation.sym_to_parent(self.m);
         let h = joint.rotation.mat_to_parent(self.h);
         let i = joint.rotation.sym_to_parent(self.i);
-        let p = joint.translation;
-        if p.is_zero() {
-            return Articulated { m, h, i };
-        }
-        let moved = h + Mat3::skew(p) * m.full();
+        let p = Mat3::skew(joint.translation);
+        let moved = h + p * m.full();
+        let entry = |h: &Mat3<'g>, row: usize, column: usize| h.row(row).dot(p.column(column));
         let both = h + moved;
-        let half = Mat3::skew(p.map(|c| c * 0.5));
-        let whole = Mat3::skew(p);
-        let entry = |row: usize, column: usize, s: &Mat3<'g>| both.row(row).dot(s.column(column));
         let shift = Sym3 {
-            diagonal: std::array::from_fn(|k| entry(k, k, &whole)),
-            off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(a, b, &half) + entry(b, a, &half)),
+            diagonal: std::array::from_fn(|k| entry(&both, k, k)),
+            off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(&h, a, b) + entry(&moved, b, a)),
         };
-        Articulated { m, h: moved, i: i - shift }
+        Articulated { m: sum.m + m, h: sum.h + moved, i: sum.i + (i - shift) }
     }
-}
-
-/// The coordinate axis that a vector points along (either way), if it does.
-fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
-    let k = (0..3).find(|k| !v[*k].is_zero())?;
-    let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();
-    others.then_some(k)
 }
 
 fn clear(s: &mut Sym3<'_>, k: usize) {

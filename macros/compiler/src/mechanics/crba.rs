@@ -2,7 +2,7 @@
 
 use super::kinematics::Joint;
 use super::{Spatial, inertances};
-use crate::expr::{Expr, Sym3, Vec3};
+use crate::expr::{Expr, Vec3};
 use crate::model::{Inertia, Model};
 
 /// A square matrix of expressions by rows.
@@ -54,31 +54,10 @@ pub fn composites<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g
     let mut sums: Vec<Inertia<'g>> = model.links.iter().map(|l| l.inertia).collect();
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            let moved = to_parent(joint, &sums[k]);
-            let sum = &mut sums[parent.0];
-            sum.mass += moved.mass;
-            sum.moment += moved.moment;
-            sum.tensor = sum.tensor + moved.tensor;
+            sums[parent.0] = joint.lump(&sums[parent.0], &sums[k]);
         }
     }
     sums
-}
-
-/// Mass properties about the parent's origin, in parent axes.
-///
-/// With `h` the first moment in parent axes and `s = h + m p / 2`, the parallel-axis theorem adds
-/// `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
-pub fn to_parent<'g>(joint: &Joint<'g>, child: &Inertia<'g>) -> Inertia<'g> {
-    let p = joint.translation;
-    let h = joint.rotation.to_parent(child.moment);
-    let turned = joint.rotation.sym_to_parent(child.tensor);
-    let s = h + p * (child.mass * 0.5);
-    let twice: [Expr<'g>; 3] = std::array::from_fn(|k| (p[k] * 2.0) * s[k]);
-    let shift = Sym3 {
-        diagonal: [twice[1] + twice[2], twice[2] + twice[0], twice[0] + twice[1]],
-        off: [(0, 1), (0, 2), (1, 2)].map(|(i, j)| -(p[i] * s[j] + p[j] * s[i])),
-    };
-    Inertia { mass: child.mass, moment: h + p * child.mass, tensor: turned + shift }
 }
 
 /// Momentum (linear, and angular about the link's origin) of a body with a given twist.

@@ -1,6 +1,6 @@
 //! Energies, mass and centre of mass.
 
-use super::crba::{composites, momentum, to_parent};
+use super::crba::{composites, momentum};
 use super::kinematics::{Joint, twists};
 use super::{inertances, position};
 use crate::expr::{Expr, Vec3};
@@ -20,12 +20,9 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
 /// Total mass of what moves, and its first moment about the ground's origin in ground axes.
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
     let composites = composites(model, joints);
-    let mut sum = (model.graph.zero(), Vec3::zero(model.graph));
-    for (joint, composite) in joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none()) {
-        let moved = to_parent(joint, composite);
-        sum = (sum.0 + moved.mass, sum.1 + moved.moment);
-    }
-    sum
+    let roots = joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none());
+    let sum = roots.fold(model.still, |sum, (joint, c)| joint.lump(&sum, c));
+    (sum.mass, sum.moment)
 }
 
 /// Centre of mass in ground axes.

@@ -8,13 +8,15 @@ use super::{accelerations, energy, forces, rnea, velocities};
 use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
 use crate::expr::polynomial::{Polynomial, Rank, Ring};
-use crate::expr::print::{Writer, wrapped};
 use crate::expr::trigonometry::simplified;
 use crate::expr::{Expr, Function, Node, Symbol};
-use crate::model::{Chart, Model, Quantity};
+use crate::model::{Model, Quantity};
 
 #[cfg(test)]
 mod tests;
+mod written;
+
+pub use written::written;
 
 /// Most velocities of a mechanism whose equations are written.
 const VELOCITIES: usize = 4;
@@ -24,8 +26,6 @@ const LINKS: usize = 8;
 const READABLE: usize = 150;
 /// Most terms before they are shortened.
 const LONG: usize = 300;
-/// Columns of text.
-const WIDTH: usize = 100;
 
 /// The equations of a mechanism as polynomials of one ring.
 pub struct Equations {
@@ -144,61 +144,5 @@ fn rank(symbol: Symbol) -> Rank {
         Quantity::Acceleration(_) => Rank::Acceleration,
         Quantity::Input(_) => Rank::Input,
         _ => Rank::Parameter,
-    }
-}
-
-/// The Lagrangian, an equation for every velocity, and what primes mean.
-pub fn text(model: &Model<'_>, equations: &Equations) -> String {
-    let rates = rates(model);
-    let name = |symbol| name(model, &rates, symbol);
-    let writer = Writer::new(&equations.ring, &name);
-    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
-    let mut out = line(&format!("L = {}", writer.polynomial(&equations.lagrangian)));
-    out.push('\n');
-    for (motion, force) in equations.motion.iter().zip(&equations.forces) {
-        out += &line(&format!("{} = {}", writer.polynomial(motion), writer.polynomial(force)));
-    }
-    out.push('\n');
-    out + &line(&legend(model, &rates))
-}
-
-/// By velocity, whether it is the rate of a coordinate that has its name.
-fn rates(model: &Model<'_>) -> Vec<bool> {
-    let mut rates = vec![false; model.nv()];
-    for chart in &model.charts {
-        if let Chart::Plain(q, v) = chart {
-            rates[*v] = model.configuration[*q] == model.velocities[*v].0;
-        }
-    }
-    rates
-}
-
-fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> String {
-    match Quantity::of(symbol) {
-        Quantity::Parameter(k) => model.parameters[k].clone(),
-        Quantity::Configuration(k) => model.configuration[k].clone(),
-        Quantity::Velocity(k) => format!("{}{}", model.velocities[k].0, if rates[k] { "'" } else { "" }),
-        Quantity::Acceleration(k) => {
-            format!("{}{}", model.velocities[k].0, if rates[k] { "''" } else { "'" })
-        }
-        Quantity::Input(k) => model.inputs[k].0.clone(),
-        Quantity::Time => "t".to_string(),
-        Quantity::Force(k) => format!("tau{k}"),
-        _ => format!("s{}", symbol.0),
-    }
-}
-
-fn legend(model: &Model<'_>, rates: &[bool]) -> String {
-    match rates.iter().position(|is_rate| *is_rate) {
-        Some(k) => {
-            let x = &model.velocities[k].0;
-            format!(
-                "L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}."
-            )
-        }
-        None => {
-            let w = &model.velocities[0].0;
-            format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
-        }
     }
 }

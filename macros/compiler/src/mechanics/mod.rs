@@ -7,6 +7,7 @@ use crate::model::{Model, Motion, Quantity};
 
 pub mod aba;
 pub mod crba;
+pub mod derivatives;
 pub mod energy;
 pub mod equations;
 pub mod forces;
@@ -15,6 +16,7 @@ pub mod inertances;
 pub mod lagrange;
 pub mod ldl;
 pub mod momentum;
+pub mod power;
 pub mod regularity;
 pub mod rnea;
 
@@ -32,11 +34,14 @@ pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// True if every velocity belongs to one joint coordinate, so that the articulated-body algorithm applies.
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
+    let mut seen = vec![false; model.nv()];
     model.inertances.is_empty()
         && model.links.iter().all(|link| match &link.motion {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
-            | Motion::Helix { coordinate, .. } => coordinate.ratio == 1.0 && coordinate.offset == 0.0,
+            | Motion::Helix { coordinate, .. } => {
+                coordinate.ratio == 1.0 && !std::mem::replace(&mut seen[coordinate.v], true)
+            }
             Motion::Ball { .. } | Motion::Free { .. } => true,
             Motion::Placed => false,
         })

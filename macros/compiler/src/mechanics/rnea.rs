@@ -4,7 +4,7 @@
 
 use super::kinematics::{Joint, resistance};
 use super::{Spatial, inertances};
-use crate::expr::{Expr, Mat3, Vec3};
+use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::model::{Inertia, Model};
 
 /// `τ = M a + h`. Without accelerations it is the bias `h` alone.
@@ -14,9 +14,7 @@ pub fn inverse_dynamics<'g>(
     v: &[Expr<'g>],
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Expr<'g>> {
-    let states = motion(model, joints, v, a);
-    let mut wrenches: Vec<Spatial<'g>> =
-        model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect();
+    let mut wrenches = wrenches(model, joints, v, a);
     let mut tau = resistance(model, true);
     inertances::add_to_forces(model, a, &mut tau);
     for (k, joint) in joints.iter().enumerate().rev() {
@@ -31,10 +29,23 @@ pub fn inverse_dynamics<'g>(
     tau
 }
 
+/// The wrench that gives each link its acceleration, weight included; without accelerations `a`, those are zero.
+pub fn wrenches<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    a: Option<&[Expr<'g>]>,
+) -> Vec<Spatial<'g>> {
+    let states = motion(model, joints, v, a);
+    model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect()
+}
+
 /// Motion of a link: angular velocity, its products, angular acceleration, `U`, acceleration of the origin.
 #[derive(Clone, Copy)]
 struct State<'g> {
     w: Vec3<'g>,
+    /// `wx²`, `wy²`, `wz²`.
+    squares: Vec3<'g>,
     /// `wy wz`, `wz wx`, `wx wy`.
     products: Vec3<'g>,
     dw: Vec3<'g>,
@@ -53,7 +64,7 @@ impl<'g> State<'g> {
             [xy + dw[2], -(xx + zz), yz - dw[0]],
             [zx - dw[1], yz + dw[0], -(xx + yy)],
         ]);
-        State { w, products, dw, u, a }
+        State { w, squares: Vec3([xx, yy, zz]), products, dw, u, a }
     }
 }
 
@@ -92,17 +103,31 @@ fn motion<'g>(
 /// The wrench that gives a body its acceleration, about the link's origin.
 fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
     let (i, u) = (&inertia.tensor, &s.u.0);
-    let mut moment = inertia.moment.cross(s.a);
     // Component k of I ẇ + w × I w, gathered by the entries of I; (k, l, m) cyclic.
-    let mut components = moment.0;
+    let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        components[k] += i.at(k, k) * s.dw[k]
-            + (i.at(m, m) - i.at(l, l)) * s.products[k]
-            + i.at(l, m) * (u[l][l] - u[m][m])
+        moment.0[k] += diagonal_terms(i, s, k) + i.at(l, m) * (s.squares[l] - s.squares[m])
             - i.at(k, l) * u[m][k]
             + i.at(k, m) * u[l][k];
     }
-    moment = Vec3(components);
     Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
+}
+
+/// `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`; with the second moments `P` of mass it is `P_ll U_ml − P_mm U_lm`. Whichever
+/// has fewer terms.
+fn diagonal_terms<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
+    let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+    let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
+    if let (Some(own), Some(next), Some(last)) = (own.value(), next.value(), last.value()) {
+        let size = 4.0 * f64::EPSILON * (own.abs() + next.abs() + last.abs());
+        let second = [(own + last - next) * 0.5, (own + next - last) * 0.5];
+        let [p, q] = second.map(|x| if x.abs() <= size { 0.0 } else { x });
+        let terms = usize::from(own != 0.0) + usize::from(next != last);
+        if usize::from(p != 0.0) + usize::from(q != 0.0) < terms {
+            let g = s.a[0].graph();
+            return g.num(p) * s.u.0[m][l] - g.num(q) * s.u.0[l][m];
+        }
+    }
+    own * s.dw[k] + (last - next) * s.products[k]
 }

@@ -10,8 +10,8 @@ use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
 
 /// What an element acts on.
 enum Target<'g> {
-    /// A coordinate; true if it is an angle.
-    Coordinate(Coordinate, bool),
+    /// A coordinate; true if it is an angle, nothing known of one that belongs to no joint.
+    Coordinate(Coordinate, Option<bool>),
     /// A point of a body (by index), in body axes.
     Body(usize, Vec3<'g>),
 }
@@ -49,7 +49,7 @@ impl<'g> Builder<'_, 'g> {
                     if self.add_plain(action, c, angle, cx) {
                         return;
                     }
-                    (self.coordinate_stretch(&c), Some(angle))
+                    (self.coordinate_stretch(&c), angle)
                 }
                 Some(Target::Body(..)) => {
                     let what = kind_word(&action.kind);
@@ -63,13 +63,13 @@ impl<'g> Builder<'_, 'g> {
                 None => return,
             },
             On::Between(a, b) => match self.distance(a, b, cx) {
-                Some(stretch) => (stretch, None),
+                Some(stretch) => (stretch, Some(false)),
                 None => return,
             },
         };
         match &action.kind {
             ActionKind::Spring { law, free } => {
-                if let Some(free) = self.free_length(free, angle.unwrap_or(false), cx) {
+                if let Some(free) = self.free_length(free, angle, cx) {
                     self.add_spring(stretch, law, free, cx);
                 }
             }
@@ -97,11 +97,11 @@ impl<'g> Builder<'_, 'g> {
     fn free_length(
         &self,
         given: &Option<(Expr, bool)>,
-        angle: bool,
+        angle: Option<bool>,
         cx: &mut Diagnostics,
     ) -> Option<crate::expr::Expr<'g>> {
         let Some((free, is_angle)) = given else { return Some(self.scope.graph.zero()) };
-        if *is_angle != angle {
+        if let Some(angle) = angle.filter(|angle| angle != is_angle) {
             let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
             cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
                 .help(format!("write `{key} = …`"));
@@ -110,7 +110,13 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Linear springs and dashpots on a coordinate; false for everything else.
-    fn add_plain(&mut self, action: &Action, on: Coordinate, angle: bool, cx: &mut Diagnostics) -> bool {
+    fn add_plain(
+        &mut self,
+        action: &Action,
+        on: Coordinate,
+        angle: Option<bool>,
+        cx: &mut Diagnostics,
+    ) -> bool {
         match &action.kind {
             ActionKind::Spring { law: Law::Linear(stiffness), free } => {
                 let stiffness = self.scope.scalar(stiffness, cx);
@@ -238,8 +244,8 @@ impl<'g> Builder<'_, 'g> {
             },
         };
         if let Some(Target::Coordinate(c, angle)) = &target {
-            if *angle != torque {
-                wrong_kind(on, *angle, cx);
+            if let Some(angle) = angle.filter(|angle| *angle != torque) {
+                wrong_kind(on, angle, cx);
                 return;
             }
             let force =
@@ -280,7 +286,7 @@ impl<'g> Builder<'_, 'g> {
     ) {
         let Some(target) = target else { return };
         let input = match target {
-            Target::Coordinate(_, angle) if angle != torque => return wrong_kind(on, angle, cx),
+            Target::Coordinate(_, Some(angle)) if angle != torque => return wrong_kind(on, angle, cx),
             Target::Coordinate(c, _) => {
                 if let Some(direction) = direction {
                     cx.error(direction.place.clone(), "the joint itself gives the direction")
@@ -288,10 +294,18 @@ impl<'g> Builder<'_, 'g> {
                 }
                 Input::Coordinate(c)
             }
-            Target::Body(body, at) => match self.body_input(action, on, body, at, direction, torque, cx) {
-                Some(input) => input,
-                None => return,
-            },
+            Target::Body(body, at) => {
+                let Some(direction) = direction else {
+                    let key = if torque { "about" } else { "along" };
+                    cx.error(action.name.place.clone(), format!("missing `{key}`"))
+                        .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
+                    return;
+                };
+                match self.body_input(on, body, at, direction, torque, cx) {
+                    Some(input) => input,
+                    None => return,
+                }
+            }
         };
         self.set_input(&action.name.text, input);
     }
@@ -304,21 +318,14 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn body_input(
-        &mut self,
-        action: &Action,
+        &self,
         on: &Expr,
         body: usize,
         at: Vec3<'g>,
-        direction: Option<&Expr>,
+        direction: &Expr,
         torque: bool,
         cx: &mut Diagnostics,
     ) -> Option<Input<'g>> {
-        let Some(direction) = direction else {
-            let key = if torque { "about" } else { "along" };
-            cx.error(action.name.place.clone(), format!("missing `{key}`"))
-                .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
-            return None;
-        };
         let (link, pose) = self.placed(body)?;
         let view = View::new(Level::Constant, Some((link, pose.clone())));
         let terms = self.scope.with_view(view, |scope| scope.terms(direction, cx))?;
@@ -344,9 +351,14 @@ impl<'g> Builder<'_, 'g> {
     fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
             ExprKind::Name(name) => {
+                if self.description.coordinates.iter().any(|c| c.name.text == *name) {
+                    let world = self.scope.world.borrow();
+                    let found = world.coordinates.iter().find(|(known, ..)| known == name);
+                    return found.map(|(_, c, _)| Target::Coordinate(*c, None));
+                }
                 if let Some(joint) = self.joint_coordinates(name) {
                     return match joint.as_slice() {
-                        [(_, c, angle)] => Some(Target::Coordinate(*c, *angle)),
+                        [(_, c, angle)] => Some(Target::Coordinate(*c, Some(*angle))),
                         _ => {
                             let own: Vec<&str> = joint.iter().map(|(n, ..)| n.as_str()).collect();
                             let list: Vec<String> = own.iter().map(|c| format!("`on = {c}`")).collect();
@@ -385,7 +397,7 @@ impl<'g> Builder<'_, 'g> {
                 };
                 let full = format!("{joint}.{}", member.text);
                 if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
-                    return Some(Target::Coordinate(*c, *angle));
+                    return Some(Target::Coordinate(*c, Some(*angle)));
                 }
                 let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
                 cx.error(

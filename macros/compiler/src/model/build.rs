@@ -5,6 +5,7 @@ use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
 use super::resolve::Scope;
 use super::tree::{GROUND, Held, find_tree};
+use super::units::{self, Units};
 use super::world::{Level, Placed, PlacedKind, View, World};
 use super::{
     Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
@@ -98,6 +99,10 @@ pub fn build_model<'g>(
         builder.check_actions(cx);
     }
     builder.check_unused(cx);
+    if cx.is_empty() {
+        let coordinates = &builder.scope.world.borrow().coordinates;
+        builder.model.units = units::infer(description, &builder.model, coordinates, cx);
+    }
     cx.is_empty().then_some(builder.model)
 }
 
@@ -121,6 +126,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 .chain(description.frames.iter().map(|f| &f.name))
                 .map(|n| n.text.clone())
                 .collect(),
+            frames: description.frames.iter().map(|f| f.name.text.clone()).collect(),
             joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
             inputs: &description.inputs,
@@ -152,6 +158,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             gravity: gravity.unwrap_or(Vec3::zero(graph)),
             friction_speed,
             links: Vec::new(),
+            still: Inertia::zero(graph),
             time: false,
             velocity_inputs: false,
             charts: Vec::new(),
@@ -167,6 +174,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             loads: Vec::new(),
             inertances: Vec::new(),
             outputs: Vec::new(),
+            units: Units::default(),
         };
         let places = vec![None; held.len()];
         let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
@@ -430,9 +438,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     ) {
         let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
         let sum = &mut self.model.links[link.0].inertia;
-        sum.mass += added.mass;
-        sum.moment += added.moment;
-        sum.tensor = sum.tensor + added.tensor;
+        *sum = sum.plus(&added);
     }
 
     /// Figures may be finite and their products not.

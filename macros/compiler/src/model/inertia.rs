@@ -6,7 +6,7 @@ use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
 
 /// The solids with the names of their arguments.
-const SOLIDS: [(&str, &[&str]); 14] = [
+pub const SOLIDS: [(&str, &[&str]); 14] = [
     ("rod", &["mass", "length", "axis"]),
     ("ring", &["mass", "radius", "axis"]),
     ("disk", &["mass", "radius", "axis"]),

@@ -1,9 +1,9 @@
 //! Kinematics of the links: joint transforms, motion subspaces, velocities. A joint placed by expressions of
 //! coordinates and time has a subspace that depends on them, and may move by itself.
 
-use super::{Chart, Coordinate, LinkId, Model, Motion, Quantity};
+use super::{Chart, Coordinate, Inertia, LinkId, Model, Motion, Quantity};
 use crate::expr::diff::Derivative;
-use crate::expr::{Expr, Graph, Mat3, Node, Rotation, Symbol, Vec3};
+use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
 
 /// A spatial vector: linear part, angular part. A twist (velocity of the link's origin, angular velocity), or a wrench
 /// (force, moment about the link's origin).
@@ -105,6 +105,11 @@ impl<'g> Joint<'g> {
         let force = self.rotation.to_parent(w.linear);
         let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
         Spatial { linear: force, angular: moment }
+    }
+
+    /// Mass properties of the parent with those of the link.
+    pub fn lump(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
+        parent.plus_placed(link, &self.rotation, self.translation)
     }
 
     /// The parent's twist, at the link's origin in link axes.
@@ -214,13 +219,7 @@ pub fn rate_of_placement<'g>(
     rotation: &Rotation<'g>,
     translation: Vec3<'g>,
 ) -> Spatial<'g> {
-    let matrix = rotation.matrix();
-    let rate = Mat3::from_fn(|i, j| time_derivative(space, matrix.0[i][j]));
-    let angular = Vec3([
-        matrix.column(2).dot(rate.column(1)),
-        matrix.column(0).dot(rate.column(2)),
-        matrix.column(1).dot(rate.column(0)),
-    ]);
+    let angular = rotation.angular_velocity(&mut |e| time_derivative(space, e));
     Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(space, c))), angular }
 }
 

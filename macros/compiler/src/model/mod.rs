@@ -16,6 +16,7 @@ mod place;
 mod resolve;
 mod terms;
 mod tree;
+pub mod units;
 mod world;
 
 pub use axis::sample;
@@ -121,7 +122,7 @@ impl<'g> Pose<'g> {
 }
 
 /// Mass properties of a link about its frame's origin, in its axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g> {
     /// Mass.
     pub mass: Expr<'g>,
@@ -140,6 +141,30 @@ impl<'g> Inertia<'g> {
     /// A body with its centre of mass at `c` and an inertia about it.
     pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
         Inertia { mass, moment: c * mass, tensor: central + Sym3::point(mass, c) }
+    }
+
+    /// The sum.
+    pub fn plus(&self, b: &Inertia<'g>) -> Inertia<'g> {
+        Inertia { mass: self.mass + b.mass, moment: self.moment + b.moment, tensor: self.tensor + b.tensor }
+    }
+
+    /// The sum with mass properties of a frame placed in this one.
+    ///
+    /// With `h` the other's first moment in these axes and `s = h + m p / 2`, the parallel-axis theorem adds
+    /// `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
+    pub fn plus_placed(&self, other: &Inertia<'g>, rotation: &Rotation<'g>, p: Vec3<'g>) -> Inertia<'g> {
+        let h = rotation.to_parent(other.moment);
+        let s = h + p * (other.mass * 0.5);
+        let twice: [Expr<'g>; 3] = std::array::from_fn(|k| (p[k] * 2.0) * s[k]);
+        let shift = Sym3 {
+            diagonal: [twice[1] + twice[2], twice[2] + twice[0], twice[0] + twice[1]],
+            off: [(0, 1), (0, 2), (1, 2)].map(|(i, j)| -(p[i] * s[j] + p[j] * s[i])),
+        };
+        Inertia {
+            mass: self.mass + other.mass,
+            moment: self.moment + (h + p * other.mass),
+            tensor: self.tensor + (rotation.sym_to_parent(other.tensor) + shift),
+        }
     }
 }
 
@@ -293,6 +318,7 @@ pub enum Input<'g> {
 pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
 /// A checked mechanism.
+#[derive(Clone)]
 pub struct Model<'g> {
     /// Owner of all expressions.
     pub graph: &'g Graph,
@@ -310,6 +336,8 @@ pub struct Model<'g> {
     pub friction_speed: Expr<'g>,
     /// Links, parents before children.
     pub links: Vec<Link<'g>>,
+    /// Mass properties that count as moving although the ground carries them: what a pass found to stay where it is.
+    pub still: Inertia<'g>,
     /// Something depends on time.
     pub time: bool,
     /// Inputs act by way of the velocity.
@@ -340,6 +368,8 @@ pub struct Model<'g> {
     pub inertances: Vec<Inertance<'g>>,
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
+    /// Units of parameters, coordinates, inputs and outputs.
+    pub units: units::Units,
 }
 
 /// A force with the rate that it does work on: its power is `force × rate`, and it contributes `force × ∂rate/∂v` to the

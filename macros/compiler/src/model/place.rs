@@ -131,7 +131,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                     None => Some(self.ground()),
                 };
                 let place = home.and_then(|home| match &p.at {
-                    Some(at) => self.offset(home, at, cx),
+                    Some(at) => self.offset(home, at, false, cx),
                     None => Some((home.link, home.pose)),
                 });
                 if let Some((link, pose)) = place {
@@ -143,7 +143,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
-                if let Some((link, pose)) = self.spot(at, cx) {
+                let free = self.description.joints.iter().all(|j| j.parent.body.text != p.name.text);
+                if let Some((link, pose)) = self.spot(at, free, cx) {
                     let (link, pose) = self.settle(link, pose);
                     self.remember(&p.name.text, link, pose, PlacedKind::Point);
                 }
@@ -200,7 +201,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             None => Some(self.ground()),
         };
         let origin = match &body.at {
-            Some(at) => self.spot(at, cx),
+            Some(at) => self.spot(at, true, cx),
             None => axes.as_ref().map(|a| (a.link, a.pose.clone())),
         };
         let (Some(axes), Some((link, mut pose))) = (axes, origin) else { return };
@@ -228,8 +229,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         to_ground(of).inverse().then(&to_ground(link))
     }
 
-    /// A place by name, `place.at(vector)`, or a vector from the ground's origin.
-    fn spot(&self, e: &Expr, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+    /// A place by name, `place.at(vector)`, or a vector from the ground's origin; `free` as in `offset`.
+    fn spot(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
             ExprKind::Name(name) if placeable(name) => {
@@ -238,22 +239,23 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
                 let home = self.scope.place(base, cx)?;
-                self.offset(home, &arguments[0], cx)
+                self.offset(home, &arguments[0], free, cx)
             }
             ExprKind::Method(_, method, _) => {
                 cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a place", method.text))
                     .suggest(&method.text, ["at"]);
                 None
             }
-            _ => self.offset(self.ground(), e, cx),
+            _ => self.offset(self.ground(), e, free, cx),
         }
     }
 
-    /// A place at a vector from another one.
+    /// A place at a vector from another one, with its axes. If they do not matter (`free`) it may get others.
     fn offset(
         &self,
         home: Placed<'g>,
         at: &Expr,
+        free: bool,
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let view = View::new(Level::Placement, Some((home.link, home.pose.clone())));
@@ -262,6 +264,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let zero = Vec3::zero(self.scope.graph);
         // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
         if let [(axes, v)] = terms.as_slice()
+            && free
             && home.pose.translation.is_zero()
             && *axes != home.link
             && self.is_concentric(*axes, home.link)

@@ -19,6 +19,8 @@ pub struct Scope<'a, 'g> {
     pub used: std::cell::RefCell<Vec<bool>>,
     /// Names of bodies and particles.
     pub bodies: Vec<String>,
+    /// Names of frames.
+    pub frames: Vec<String>,
     /// Names of joints.
     pub joints: Vec<String>,
     /// Names of force elements.
@@ -79,6 +81,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         let is = |list: &[String]| list.iter().any(|known| known == name);
         match name {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
+            _ if is(&self.frames) => Some("a frame"),
             _ if name == GROUND || is(&self.bodies) => Some("a body"),
             _ if is(&self.joints) => Some("a joint"),
             _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
@@ -151,6 +154,16 @@ impl<'a, 'g> Scope<'a, 'g> {
                         let angle = self.scalar(angle, cx);
                         return Some(Rotation::eigenaxis(n?, angle?));
                     }
+                    (_, "quaternion", [x, y, z, w]) => {
+                        let parts: Vec<_> = [x, y, z, w].iter().map(|e| self.scalar(e, cx)).collect();
+                        let q = [parts[0]?, parts[1]?, parts[2]?, parts[3]?];
+                        let square = q.iter().fold(self.graph.zero(), |sum, c| sum + c.square());
+                        if square.value().is_some_and(|n| (n - 1.0).abs() > 1e-9) {
+                            cx.error(step.place.clone(), "this quaternion is not of unit length");
+                            return None;
+                        }
+                        return Some(Rotation::quaternion(q));
+                    }
                     _ => {}
                 }
             }
@@ -162,7 +175,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             _ => {}
         }
         cx.error(step.place.clone(), "expected a rotation")
-            .help("write `x(angle)`, `y(angle)`, `z(angle)` or `eigenaxis(direction, angle)`");
+            .help("write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`");
         None
     }
 

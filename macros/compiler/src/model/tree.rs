@@ -59,9 +59,14 @@ pub fn find_tree(
             if held.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
-            cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
-                .help("turn the joint around: `ground -> body`");
-            sound = false;
+            let name = &joint.child.body;
+            if name.text == GROUND {
+                cx.error(name.place.clone(), "the ground cannot be the child of a joint")
+                    .help("turn the joint around: `ground -> body`");
+            } else {
+                cx.error(name.place.clone(), format!("`{}` already has a place", name.text))
+                    .help("leave its `at` out to hold it by a joint");
+            }
             continue;
         };
         if parent == Some(child) {
@@ -163,6 +168,11 @@ fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut 
     if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
             .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
+        return;
+    }
+    if scope.frames.contains(&name.text) {
+        cx.error(place, format!("`{}` is a frame, which has axes but no place", name.text))
+            .help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
         return;
     }
     if scope.bodies.contains(&name.text) {

@@ -112,7 +112,7 @@ impl<'g> World<'g> {
         let mut sum = self.position(y.link, y.pose.translation);
         for (axes, v) in self.position(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {
-                Some((_, total)) => *total = *total - v,
+                Some((_, total)) => *total -= v,
                 None => sum.push((axes, -v)),
             }
         }

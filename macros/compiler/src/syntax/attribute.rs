@@ -17,6 +17,8 @@ pub struct Mechanism {
     pub shell: Shell,
     /// The file to read, if one is named.
     pub urdf: Option<UrdfOptions>,
+    /// Derivatives are generated as well.
+    pub derivatives: bool,
 }
 
 /// The struct without its elements.
@@ -54,8 +56,19 @@ pub struct UrdfOptions {
     pub lock: Vec<Name>,
 }
 
-const OPTIONS: [&str; 10] =
-    ["gravity", "friction_speed", "scalar", "urdf", "base", "passive", "mimic", "inertia", "inputs", "lock"];
+const OPTIONS: [&str; 11] = [
+    "gravity",
+    "friction_speed",
+    "scalar",
+    "urdf",
+    "base",
+    "passive",
+    "mimic",
+    "inertia",
+    "inputs",
+    "lock",
+    "derivatives",
+];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
@@ -81,7 +94,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         }
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
     }
-    let urdf = read_options(arguments, &mut description, &mut scalar, cx);
+    let mut derivatives = false;
+    let urdf = read_options(arguments, &mut description, &mut scalar, &mut derivatives, cx);
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
@@ -95,7 +109,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         );
     }
     check_duplicates(&description, cx);
-    Some(Mechanism { description, shell, urdf })
+    Some(Mechanism { description, shell, urdf, derivatives })
 }
 
 fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
@@ -298,9 +312,11 @@ fn read_options(
     arguments: TokenStream,
     description: &mut Description,
     scalar: &mut Option<(ScalarType, Place)>,
+    derivatives: &mut bool,
     cx: &mut Diagnostics,
 ) -> Option<UrdfOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
+    *derivatives = arguments.word_given("derivatives").is_some();
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {

@@ -141,7 +141,7 @@ pub fn read_element(
     }
     if let Some((_, expected)) = OTHERS.iter().find(|(other, _)| *other == kind_name) {
         let given = attributes.iter().find(|a| is_one_of(a, expected));
-        let word = given.map(|a| spelt(a)).or(expected.first().map(ToString::to_string));
+        let word = given.map(spelt).or(expected.first().map(ToString::to_string));
         let arguments = match &word {
             Some(word) => own_arguments(name, &kind_name, word, attributes, cx),
             None => no_arguments(name, &kind_name, attributes, cx),
@@ -263,9 +263,7 @@ fn example(attribute: &str) -> &'static str {
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
-    if let Some(place) = arguments.word_given("massive") {
-        cx.error(place, "a body with prescribed motion is not yet supported");
-    }
+    let massive = arguments.word_given("massive");
     let body = Body {
         name: name.clone(),
         mass: arguments.take_expr("mass", cx),
@@ -276,6 +274,16 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         frame: arguments.take_expr("frame", cx),
     };
     arguments.finish("a Body", &["mass", "com", "inertia", "at", "frame"], cx);
+    if let Some(place) = massive {
+        if body.at.is_none() && body.frame.is_none() {
+            cx.error(place, "the motion of a massive body is prescribed").help(
+                "place it by expressions of time: `#[body(massive, at = height * sin(speed * t) * z)]`",
+            );
+        } else if body.mass.is_some() || body.inertia.is_some() {
+            cx.error(place, "a massive body moves as it is told, whatever its mass")
+                .help("remove `mass` and `inertia`");
+        }
+    }
     body
 }
 
@@ -502,7 +510,7 @@ fn no_arguments(
     attributes: &[Attribute],
     cx: &mut Diagnostics,
 ) -> Option<Arguments> {
-    for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
+    if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)));
         return None;
@@ -669,13 +677,13 @@ impl Arguments {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
-    /// Where a word stands alone, without a value.
     /// The expressions without a key.
     fn take_plain(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
     }
 
-    fn word_given(&mut self, word: &str) -> Option<Place> {
+    /// Where a word stands alone, without a value.
+    pub fn word_given(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let at = self.plain.iter().position(is_word)?;
         Some(self.plain.remove(at).place)

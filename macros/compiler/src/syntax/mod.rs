@@ -341,6 +341,7 @@ pub enum Law {
 
 /// The force elements of the language.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
 pub enum ActionKind {
     /// A spring: on a coordinate, or between two points.
     Spring {

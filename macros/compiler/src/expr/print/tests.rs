@@ -40,7 +40,7 @@ fn numbers() {
         (1.5e-6, false, "1.5e-6"),
         (2.5e12, true, "2.5e12"),
     ] {
-        assert_eq!(number(value, before), expected);
+        assert_eq!(Number::of(value, before).to_string(), expected);
     }
 }
 
@@ -75,4 +75,87 @@ fn lines() {
     assert_eq!(wrapped("indivisible", 5, "  "), "indivisible");
     let wide = wrapped(&["theta²"; 60].join(" + "), 40, "    ");
     assert!(wide.lines().all(|line| line.chars().count() <= 40), "{wide}");
+}
+
+fn latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
+    let graph = Graph::new();
+    let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
+    let mut normal = Normal::new(&graph, rank);
+    let p = normal.of(build(&graph, symbols)).unwrap();
+    let name = |s: Symbol| {
+        let name = NAMES[s.0 as usize].trim_end_matches('\'');
+        (Name::of(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
+    };
+    Writer::styled(&normal.ring, Latex { name: &name }).polynomial(&p)
+}
+
+#[test]
+fn latex_products() {
+    assert_eq!(latex(|g, _| g.zero()), "0");
+    assert_eq!(
+        latex(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
+        r"-\tfrac{1}{3}\,m\,l^{2}\,\cos x"
+    );
+    assert_eq!(latex(|_, [m, k, ..]| m / k), r"\frac{m}{k}");
+    assert_eq!(latex(|g, [m, k, ..]| g.num(0.5) * m / k), r"\tfrac{1}{2}\,\frac{m}{k}");
+    assert_eq!(latex(|g, [m, k, ..]| g.num(3.0) * m / k), r"\frac{3\,m}{k}");
+    assert_eq!(latex(|g, [m, k, l, ..]| g.one() / (m * k * l * l)), r"\frac{1}{m\,k\,l^{2}}");
+    assert_eq!(latex(|_, [m, k, l, x, ..]| m * x / (k + l)), r"\frac{m\,x}{k + l}");
+    assert_eq!(latex(|_, [m, k, l, _, _, v, ..]| k * v / m - l * v / m), r"\frac{(k - l)\,\dot{x}}{m}");
+    assert_eq!(latex(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5), r"\tfrac{1}{2}\,k\,(x - l)^{2}");
+    assert_eq!(latex(|g, [m, ..]| m * g.num(1.5e-6)), r"1.5\times 10^{-6}\,m");
+}
+
+#[test]
+fn latex_functions() {
+    assert_eq!(latex(|_, [_, _, _, x, ..]| x.cos() * x.cos()), r"\cos^{2}x");
+    assert_eq!(
+        latex(|_, [m, k, _, _, _, v, ..]| k * (v / m).call(Function::Tanh)),
+        r"k\,\tanh\!\left(\frac{\dot{x}}{m}\right)"
+    );
+    assert_eq!(latex(|_, [_, _, _, x, ..]| x.call(Function::Sqrt)), r"\sqrt{x}");
+    assert_eq!(latex(|_, [_, _, _, _, _, v, ..]| v.call(Function::Abs)), r"\left|\dot{x}\right|");
+    assert_eq!(latex(|_, [_, _, _, _, _, v, ..]| v.call(Function::Signum)), r"\operatorname{sgn}\dot{x}");
+    assert_eq!(latex(|_, [_, _, _, x, ..]| x.call(Function::Atan)), r"\arctan x");
+}
+
+#[test]
+fn latex_names() {
+    for (text, expected) in [
+        ("m", "m"),
+        ("m1", "m_{1}"),
+        ("theta", r"\theta"),
+        ("theta2", r"\theta_{2}"),
+        ("θ", r"\theta"),
+        ("pi", r"\mathrm{pi}"),
+        ("Omega_z", r"\Omega_{z}"),
+        ("alpha_10", r"\alpha_{10}"),
+        ("k_spring", r"k_{\mathrm{spring}}"),
+        ("k1_front_left", r"k_{1,\mathrm{front\_left}}"),
+        ("cart_mass", r"\mathrm{cart\_mass}"),
+        ("link2", r"\mathrm{link}_{2}"),
+        ("link_2", r"\mathrm{link}_{2}"),
+        ("m1a", r"\mathrm{m1a}"),
+        ("_spare", r"\mathrm{\_spare}"),
+        ("tip.wx", r"\omega_{\mathrm{tip},x}"),
+        ("tip.qw", r"q_{\mathrm{tip},w}"),
+        ("table.x", r"x_{\mathrm{table}}"),
+        ("hip1.second", r"\mathrm{second}_{\mathrm{hip1}}"),
+    ] {
+        assert_eq!(super::latex::spelled(&Name::of(text), 0), expected);
+    }
+    assert_eq!(super::latex::spelled(&Name::of("theta2"), 1), r"\dot{\theta}_{2}");
+    assert_eq!(super::latex::spelled(&Name::of("x"), 2), r"\ddot{x}");
+}
+
+/// What would look alike stays as it is.
+#[test]
+fn names_are_kept_apart() {
+    let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
+    let spelled = |text| super::latex::spelled(&names.get(text), 0);
+    assert_eq!(spelled("m1"), r"\mathrm{m1}");
+    assert_eq!(spelled("m_1"), r"\mathrm{m\_1}");
+    assert_eq!(spelled("table.x"), r"\mathrm{table.x}");
+    assert_eq!(spelled("x_table"), r"\mathrm{x\_table}");
+    assert_eq!(spelled("m2"), "m_{2}");
 }

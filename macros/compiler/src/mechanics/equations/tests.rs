@@ -7,9 +7,10 @@ use crate::expr::polynomial::tests::Random;
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};
-use crate::model::{Motion, Pose};
+use crate::model::{Chart, Motion, Pose};
 use std::path::Path;
 
+mod latex;
 mod mechanisms;
 
 use mechanisms::*;

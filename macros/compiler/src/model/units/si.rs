@@ -38,7 +38,7 @@ pub const GRAVITATION: Dimension = Dimension::new(3, -1, -2);
 pub const ATTRACTION: Dimension = Dimension::new(3, 0, -2);
 
 /// Dimensions with a name of their own, and units that are not written in m, kg and s.
-const NAMES: [(Dimension, &str, &str); 17] = [
+static NAMES: [(Dimension, &str, &str); 17] = [
     (PLAIN, "a plain number", "1"),
     (LENGTH, "a length", "m"),
     (MASS, "a mass", "kg"),
@@ -59,7 +59,7 @@ const NAMES: [(Dimension, &str, &str); 17] = [
 ];
 
 /// The units that may be written in `#[unit(…)]`, beside their powers: `m2`, `s3`.
-const UNITS: [(&str, Dimension); 9] = [
+static UNITS: [(&str, Dimension); 9] = [
     ("m", LENGTH),
     ("kg", MASS),
     ("s", TIME),
@@ -72,7 +72,7 @@ const UNITS: [(&str, Dimension); 9] = [
 ];
 
 /// Units of other systems, and the one to write instead.
-const OTHERS: [(&str, &str); 16] = [
+static OTHERS: [(&str, &str); 16] = [
     ("mm", "m"),
     ("cm", "m"),
     ("km", "m"),

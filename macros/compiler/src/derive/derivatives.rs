@@ -1,0 +1,209 @@
+//! The functions of the option `derivatives`.
+
+use super::done;
+use crate::emit::{Argument, Function, Shape};
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::lower::Program;
+use crate::mechanics::derivatives::{self, ForceDerivatives, Linearized, Method, analytic};
+use crate::mechanics::{self, Joint, crba, forces};
+use crate::model::{Chart, Model, Quantity};
+use crate::passes::{self, Passes};
+
+/// Up to how many velocities all forms of the model are tried.
+const COMPARE: usize = 10;
+
+/// Up to how many velocities differentiation is tried.
+const DIFFERENTIATE: usize = 6;
+
+/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
+pub fn functions(model: &Model<'_>, passes: Passes) -> Vec<Function> {
+    let mut forms = passes::forms(model, passes);
+    if passes.frames && model.nv() <= COMPARE {
+        forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
+    }
+    forms.retain(|form| !form.anchored);
+    if model.nv() > COMPARE {
+        forms.truncate(1);
+    }
+    let parts = forms.iter().map(|form| Parts::new(&form.model));
+    let Some(mut parts) = parts.min_by_key(Parts::cost) else { return Vec::new() };
+    if model.nv() <= DIFFERENTIATE {
+        let other = Parts { method: Method::Differentiation, ..Parts::new(parts.model) };
+        if other.cost() < parts.cost() {
+            parts = other;
+        }
+    }
+    let tau = forces::generalized_forces(model, &mechanics::joints(model));
+    let mut functions = signatures(model.nv(), model.nu(), model.time);
+    for f in &mut functions {
+        f.program = parts.program(&f.name, &tau);
+    }
+    functions
+}
+
+/// A model with what all functions need of it.
+struct Parts<'a, 'g> {
+    model: &'a Model<'g>,
+    joints: Vec<Joint<'g>>,
+    mass: crba::Matrix<'g>,
+    method: Method,
+}
+
+impl<'a, 'g> Parts<'a, 'g> {
+    fn new(model: &'a Model<'g>) -> Parts<'a, 'g> {
+        let joints = mechanics::joints(model);
+        let mass = crba::mass_matrix(model, &joints);
+        Parts { model, joints, mass, method: Method::Recursion }
+    }
+
+    fn cost(&self) -> usize {
+        self.inverse_dynamics().counts.total()
+    }
+
+    fn inverse_dynamics(&self) -> Program {
+        let a = mechanics::accelerations(self.model);
+        done(&force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, self.method)))
+    }
+
+    fn forward_dynamics(&self) -> Program {
+        let g = self.model.graph;
+        let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
+        done(&all_columns(&derivatives::forward_dynamics(
+            self.model,
+            &self.joints,
+            &self.mass,
+            &tau,
+            self.method,
+        )))
+    }
+
+    fn linearization(&self, tau: &[Expr<'g>]) -> Program {
+        let linear = derivatives::linearized(self.model, &self.joints, &self.mass, tau, self.method);
+        let mut outputs = all_columns(&linear);
+        outputs.extend(columns(&commutators(self.model)));
+        done(&outputs)
+    }
+
+    /// The program of a function, with `tau` the forces of the inputs.
+    fn program(&self, name: &str, tau: &[Expr<'g>]) -> Program {
+        match name {
+            "mass_matrix_inverse" => {
+                done(&columns(&derivatives::Factor::of(&self.mass, &self.joints).inverse()))
+            }
+            "coriolis_matrix" => {
+                let v = mechanics::velocities(self.model);
+                done(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+            }
+            "inverse_dynamics_derivatives" => self.inverse_dynamics(),
+            "forward_dynamics_derivatives" => self.forward_dynamics(),
+            _ => self.linearization(tau),
+        }
+    }
+}
+
+/// A matrix column by column.
+fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+    let width = m.first().map_or(0, Vec::len);
+    (0..width).flat_map(|j| m.iter().map(move |row| row[j])).collect()
+}
+
+fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
+    [&d.by_q, &d.by_v].into_iter().flat_map(columns).collect()
+}
+
+fn all_columns<'g>(l: &Linearized<'g>) -> Vec<Expr<'g>> {
+    let mut all = force_columns(&l.forces);
+    all.extend(columns(&l.inverse));
+    all.extend(columns(&l.by_u));
+    all
+}
+
+/// The matrix of `φ ↦ φ × v`: by this the displacement `φ` between two neighbouring motions changes, `φ̇ = δv + φ × v`,
+/// since it is measured in axes that turn (ball and free joints).
+fn commutators<'g>(model: &Model<'g>) -> crba::Matrix<'g> {
+    let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let v = mechanics::velocities(model);
+    let mut block = |row: usize, column: usize, first: usize| {
+        let minus = Mat3::skew(-Vec3([v[first], v[first + 1], v[first + 2]]));
+        for i in 0..3 {
+            m[row + i][column..column + 3].copy_from_slice(&minus.0[i]);
+        }
+    };
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(_, b) => block(b, b, b),
+            Chart::Free(_, b) => {
+                block(b, b, b + 3);
+                block(b + 3, b + 3, b + 3);
+                block(b, b + 3, b);
+            }
+        }
+    }
+    m
+}
+
+/// The functions without their programs.
+pub fn signatures(nv: usize, nu: usize, time: bool) -> Vec<Function> {
+    use Argument::{A, Q, Tau, U, V};
+    let function = |name: &str, arguments: &[Argument], shape, docs: [&str; 3]| Function {
+        name: name.to_string(),
+        docs: docs.into_iter().flat_map(|text| [text, ""]).map(ToString::to_string).collect(),
+        arguments: time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect(),
+        shape,
+        program: Program::default(),
+    };
+    const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
+    vec![
+        function(
+            "mass_matrix_inverse",
+            &[Q],
+            Shape::Square(nv),
+            [
+                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
+                "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
+                "",
+            ],
+        ),
+        function(
+            "coriolis_matrix",
+            &[Q, V],
+            Shape::Square(nv),
+            [
+                "A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.",
+                "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols* (2021).",
+                "",
+            ],
+        ),
+        function(
+            "inverse_dynamics_derivatives",
+            &[Q, V, A],
+            Shape::Pair(nv),
+            [
+                "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
+                TANGENT,
+                "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022).",
+            ],
+        ),
+        function(
+            "forward_dynamics_derivatives",
+            &[Q, V, Tau],
+            Shape::Forward(nv),
+            [
+                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
+                TANGENT,
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); these two products are not among the operations counted.",
+            ],
+        ),
+        function(
+            "linearize",
+            &[Q, V, U],
+            Shape::Linear(nv, nu),
+            [
+                "`(A, B)` of `ẋ = A x + B δu`: the motion to first order about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
+                TANGENT,
+                "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
+            ],
+        ),
+    ]
+}

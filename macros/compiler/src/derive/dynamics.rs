@@ -1,0 +1,138 @@
+//! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
+//! the cheapest program is kept.
+
+use super::done;
+use crate::expr::Expr;
+use crate::lower::Program;
+use crate::mechanics::{self, Joint, aba, crba, energy, frames, ldl, momentum, rnea};
+use crate::model::{Model, Quantity};
+use crate::passes::{self, Form, Passes};
+
+/// Up to how many velocities both frames, and both algorithms of forward dynamics, are derived and compared.
+const COMPARE: usize = 18;
+
+/// What dynamics is derived from.
+pub(super) struct Dynamics<'g> {
+    forms: Forms<'g>,
+    mass_matrix: Program,
+    inverse_dynamics: Program,
+}
+
+impl<'g> Dynamics<'g> {
+    /// The forms that the passes give; of a small mechanism, in the frames as they are or in the moved ones, whichever
+    /// cost less.
+    pub(super) fn new(model: &Model<'g>, passes: Passes) -> Dynamics<'g> {
+        let moved = Dynamics::of(Forms::new(model, passes));
+        if !passes.frames || model.nv() > COMPARE {
+            return moved;
+        }
+        let still = Dynamics::of(Forms::new(model, Passes { frames: false, ..passes }));
+        let total = |d: &Dynamics<'g>| d.mass_matrix.counts.total() + d.inverse_dynamics.counts.total();
+        Dynamics {
+            forms: if total(&still) < total(&moved) { still.forms } else { moved.forms },
+            mass_matrix: cheapest([moved.mass_matrix, still.mass_matrix].into_iter()),
+            inverse_dynamics: cheapest([moved.inverse_dynamics, still.inverse_dynamics].into_iter()),
+        }
+    }
+
+    fn of(forms: Forms<'g>) -> Dynamics<'g> {
+        let (mass_matrix, inverse_dynamics) = (forms.mass_matrix(), forms.recursion(true));
+        Dynamics { forms, mass_matrix, inverse_dynamics }
+    }
+
+    /// The program of a function; `None` if it is none of dynamics.
+    pub(super) fn program(&self, name: &str) -> Option<Program> {
+        let expressions: fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>> = match name {
+            "mass_matrix" => return Some(self.mass_matrix.clone()),
+            "inverse_dynamics" => return Some(self.inverse_dynamics.clone()),
+            "bias_forces" => return Some(self.forms.recursion(false)),
+            "forward_dynamics" => return Some(self.forms.forward_dynamics()),
+            "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
+            "potential_energy" => |m, j, _| vec![energy::potential_energy(m, j)],
+            "generalized_momentum" => |m, j, v| momentum::generalized_momentum(m, j, v),
+            "momentum_rate" => |m, j, v| momentum::momentum_rate(m, j, v),
+            "center_of_mass" => |m, j, _| energy::center_of_mass(m, j).0.to_vec(),
+            "momentum" => |m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)),
+            _ => return None,
+        };
+        let joints = &self.forms.joints;
+        Some(cheapest(self.forms.plain().map(|model| {
+            let v = mechanics::velocities(model);
+            done(&expressions(model, joints, &v))
+        })))
+    }
+}
+
+/// Forms of a model with the same frames.
+struct Forms<'g> {
+    all: Vec<Form<'g>>,
+    joints: Vec<Joint<'g>>,
+}
+
+impl<'g> Forms<'g> {
+    fn new(model: &Model<'g>, passes: Passes) -> Forms<'g> {
+        let all = passes::forms(model, passes);
+        let joints = all.first().map_or(Vec::new(), |form| mechanics::joints(&form.model));
+        Forms { all, joints }
+    }
+
+    /// Forms that serve all functions.
+    fn plain(&self) -> impl Iterator<Item = &Model<'g>> {
+        self.all.iter().filter(|form| !form.anchored).map(|form| &form.model)
+    }
+
+    fn mass_matrix(&self) -> Program {
+        cheapest(self.plain().map(|model| done(&crba::mass_matrix(model, &self.joints).concat())))
+    }
+
+    /// Inverse dynamics, or the bias alone.
+    fn recursion(&self, accelerations: bool) -> Program {
+        cheapest(self.all.iter().map(|form| self.recursion_of(&form.model, accelerations)))
+    }
+
+    fn recursion_of(&self, model: &Model<'g>, accelerations: bool) -> Program {
+        let v = mechanics::velocities(model);
+        let a = accelerations.then(|| mechanics::accelerations(model));
+        done(&rnea::inverse_dynamics(model, &self.joints, &v, a.as_deref()))
+    }
+
+    /// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
+    /// divisions wait less for each other.
+    fn forward_dynamics(&self) -> Program {
+        // All forms need the same forces, so that each part can be taken from the form where it is cheapest.
+        let bias = self.all.iter().min_by_key(|form| cost(&self.recursion_of(&form.model, false)));
+        let Some(bias) = bias.map(|form| &form.model) else { return Program::default() };
+        let v = mechanics::velocities(bias);
+        let tau: Vec<Expr<'g>> = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph)).collect();
+        let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
+        let articulated = self.plain().filter_map(|model| {
+            let a = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
+            Some(done(&a))
+        });
+        let articulated = articulated.min_by_key(cost);
+        if let Some(program) = &articulated
+            && bias.nv() > COMPARE
+        {
+            return program.clone();
+        }
+        let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
+        let r: Vec<Expr<'g>> = tau.iter().zip(h).map(|(tau, h)| *tau - h).collect();
+        let factorised = cheapest(self.plain().map(|model| {
+            let mass = crba::mass_matrix(model, &self.joints);
+            done(&ldl::solve(mass, r.clone(), &self.joints))
+        }));
+        match articulated {
+            Some(program) if factorised.counts.total() * 20 > program.counts.total() * 21 => program,
+            _ => factorised,
+        }
+    }
+}
+
+fn cheapest(programs: impl Iterator<Item = Program>) -> Program {
+    programs.min_by_key(cost).unwrap_or_default()
+}
+
+/// Operations, and of equally many the instructions that are left when products are fused into sums.
+fn cost(program: &Program) -> (usize, usize) {
+    (program.counts.total(), program.instructions.len())
+}

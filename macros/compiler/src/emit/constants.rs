@@ -1,0 +1,57 @@
+//! Associated constants of a mechanism.
+
+use super::item::Interface;
+use crate::expr::print::Written;
+use std::fmt::Write;
+
+/// Sizes, names, equations.
+pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written) {
+    let numbers = [
+        ("NQ", i.configuration.len(), "configuration numbers"),
+        ("NV", i.velocities.len(), "velocities"),
+        ("NU", i.inputs.len(), "inputs"),
+    ];
+    for (name, value, what) in numbers {
+        let _ = writeln!(out, "/// Number of {what}.\npub const {name}: usize = {value};");
+    }
+    let lists = [
+        ("CONFIGURATION", &i.configuration, "every entry of `q`"),
+        ("VELOCITIES", &i.velocities, "every entry of `v`"),
+        ("INPUTS", &i.inputs, "every entry of `u`"),
+        ("FRAMES", &i.frames, "every frame"),
+    ];
+    for (name, names, what) in lists {
+        let _ = writeln!(
+            out,
+            "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};",
+            names.len()
+        );
+    }
+    let texts = [
+        (
+            "EQUATIONS",
+            &equations.plain,
+            "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
+        ),
+        (
+            "EQUATIONS_LATEX",
+            &equations.latex,
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with the Lagrangian and every equation in a line of its own, for where mathematics is displayed: between `\\[` and `\\]`.",
+        ),
+    ];
+    for (name, text, about) in texts {
+        let about = match text.as_str() {
+            "" => "Empty: the equations of this mechanism are too long to be read.",
+            _ => about,
+        };
+        // Rustdoc would show a literal, with all its escapes.
+        let _ = writeln!(out, "/// {about}\npub const {name}: &'static str = [{text:?}][0];");
+    }
+    out.push_str(
+        "/// Index in `FRAMES` of the frame with a name; `frame!` checks it at compile time.
+        #[must_use]
+        pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {
+            ::linkwork::__private::frame_index(&Self::FRAMES, name)
+        }\n",
+    );
+}

@@ -1,0 +1,132 @@
+//! LaTeX, for its math mode with `amsmath`.
+
+use super::names::{Glyph, Name};
+use super::style::{Argument, Factor, Number, Style};
+use crate::expr::graph::Symbol;
+
+/// LaTeX, with names for symbols and how many dots stand above them: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
+pub struct Latex<'a> {
+    /// Name of a symbol, and its dots.
+    pub name: &'a dyn Fn(Symbol) -> (Name, u8),
+}
+
+/// The space between factors.
+const SPACE: &str = "\\,";
+
+impl Style for Latex<'_> {
+    fn symbol(&self, symbol: Symbol, power: u8) -> String {
+        let (name, dots) = (self.name)(symbol);
+        format!("{}{}", spelled(&name, dots), exponent(power))
+    }
+
+    fn number(&self, number: &Number) -> String {
+        match number {
+            Number::Fraction(p, q) if *q != 1 => format!("\\tfrac{{{p}}}{{{q}}}"),
+            Number::Scientific(digits, power) => format!("{digits}\\times 10^{{{power}}}"),
+            _ => number.to_string(),
+        }
+    }
+
+    fn power(&self, sum: &str, power: u8) -> String {
+        format!("{}{}", fenced(sum), exponent(power))
+    }
+
+    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
+        let power = exponent(power);
+        let head = match (function, arguments) {
+            ("sqrt", [x]) if power.is_empty() => return format!("\\sqrt{{{}}}", x.text),
+            ("sqrt", [x]) => return format!("\\left(\\sqrt{{{}}}\\right){power}", x.text),
+            ("abs", [x]) => return format!("\\left|{}\\right|{power}", x.text),
+            ("pow", [base, exponent]) => {
+                let base = if base.lone { base.text.clone() } else { fenced(&base.text) };
+                let text = format!("{base}^{{{}}}", exponent.text);
+                return if power.is_empty() { text } else { format!("{}{power}", fenced(&text)) };
+            }
+            ("asin" | "acos" | "atan", _) => format!("\\arc{}", &function[1..]),
+            ("signum", _) => "\\operatorname{sgn}".to_string(),
+            ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "exp" | "ln", _) => format!("\\{function}"),
+            _ => format!("\\operatorname{{{function}}}"),
+        };
+        // A word alone would run together with the next one.
+        if let [Argument { text, lone: true }] = arguments
+            && !["\\mathrm", "\\dot{\\mathrm"].iter().any(|word| text.starts_with(word))
+        {
+            let letter = text.starts_with(|c: char| c.is_alphanumeric());
+            let gap = if letter && power.is_empty() { " " } else { "" };
+            return format!("{head}{power}{gap}{text}");
+        }
+        let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
+        let arguments = fenced(&arguments.join(", "));
+        // `\left` would stand off like a factor.
+        let gap = if arguments.starts_with("\\left") { "\\!" } else { "" };
+        format!("{head}{power}{gap}{arguments}")
+    }
+
+    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
+        if divisors.is_empty() {
+            let number = number.map(|n| self.number(&n));
+            return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE);
+        }
+        // A fraction is not put on another one.
+        let small = matches!(&number, Some(Number::Fraction(_, q)) if *q != 1);
+        let number = number.map(|n| self.number(&n));
+        let (before, above) = if small { (number, None) } else { (None, number) };
+        let above = over(above.into_iter(), factors);
+        let fraction = format!("\\frac{{{above}}}{{{}}}", over(std::iter::empty(), divisors));
+        before.map_or(fraction.clone(), |number| format!("{number}{SPACE}{fraction}"))
+    }
+}
+
+/// One side of a fraction.
+fn over(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+    let first: Vec<String> = first.collect();
+    match (first.as_slice(), factors) {
+        ([], []) => "1".to_string(),
+        ([], [Factor::Sum(text)]) => text.clone(),
+        _ => first.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE),
+    }
+}
+
+fn factor(factor: &Factor) -> String {
+    match factor {
+        Factor::Single(text) => text.clone(),
+        Factor::Sum(text) => fenced(text),
+    }
+}
+
+/// In parentheses as high as what is in them. `\left` is the last resort, since it stands off from its neighbours.
+fn fenced(text: &str) -> String {
+    let has = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
+    if has(&["\\frac", "\\left", "\\sqrt", "\\bigl"]) {
+        format!("\\left({text}\\right)")
+    } else if has(&["\\tfrac"]) {
+        format!("\\bigl({text}\\bigr)")
+    } else {
+        format!("({text})")
+    }
+}
+
+fn exponent(power: u8) -> String {
+    if power == 1 { String::new() } else { format!("^{{{power}}}") }
+}
+
+/// A name with dots above it.
+pub fn spelled(name: &Name, dots: u8) -> String {
+    let base = glyph(&name.base);
+    let base = match dots {
+        0 => base,
+        1 => format!("\\dot{{{base}}}"),
+        _ => format!("\\ddot{{{base}}}"),
+    };
+    let indices: Vec<String> = name.indices.iter().map(glyph).collect();
+    if indices.is_empty() { base } else { format!("{base}_{{{}}}", indices.join(",")) }
+}
+
+fn glyph(glyph: &Glyph) -> String {
+    match glyph {
+        Glyph::Letter(letter) => letter.to_string(),
+        Glyph::Greek(name, _) => format!("\\{name}"),
+        Glyph::Digits(digits) => digits.clone(),
+        Glyph::Word(word) => format!("\\mathrm{{{}}}", word.replace('_', "\\_")),
+    }
+}

@@ -1,0 +1,148 @@
+//! Names taken apart for typesetting: `theta2` is θ with an index, `k_spring` a k with a word below it.
+
+/// A name: what stands on the line, and what stands below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// On the line.
+    pub base: Glyph,
+    /// Indices.
+    pub indices: Vec<Glyph>,
+}
+
+/// What is set as one.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it all")]
+pub enum Glyph {
+    Letter(char),
+    /// Its name, and the letter.
+    Greek(&'static str, char),
+    Digits(String),
+    Word(String),
+}
+
+/// Greek letters that have a shape of their own. Not π, which would be taken for the number.
+const GREEK: [(&str, char); 34] = [
+    ("alpha", 'α'),
+    ("beta", 'β'),
+    ("gamma", 'γ'),
+    ("delta", 'δ'),
+    ("epsilon", 'ϵ'),
+    ("varepsilon", 'ε'),
+    ("zeta", 'ζ'),
+    ("eta", 'η'),
+    ("theta", 'θ'),
+    ("iota", 'ι'),
+    ("kappa", 'κ'),
+    ("lambda", 'λ'),
+    ("mu", 'μ'),
+    ("nu", 'ν'),
+    ("xi", 'ξ'),
+    ("rho", 'ρ'),
+    ("sigma", 'σ'),
+    ("tau", 'τ'),
+    ("upsilon", 'υ'),
+    ("phi", 'ϕ'),
+    ("varphi", 'φ'),
+    ("chi", 'χ'),
+    ("psi", 'ψ'),
+    ("omega", 'ω'),
+    ("Gamma", 'Γ'),
+    ("Delta", 'Δ'),
+    ("Theta", 'Θ'),
+    ("Lambda", 'Λ'),
+    ("Xi", 'Ξ'),
+    ("Sigma", 'Σ'),
+    ("Upsilon", 'Υ'),
+    ("Phi", 'Φ'),
+    ("Psi", 'Ψ'),
+    ("Omega", 'Ω'),
+];
+
+impl Glyph {
+    fn of(word: &str) -> Glyph {
+        let mut letters = word.chars();
+        let single = letters.next().filter(|_| letters.next().is_none());
+        let greek = GREEK.iter().find(|(name, letter)| *name == word || Some(*letter) == single);
+        match (greek, single) {
+            (Some((name, letter)), _) => Glyph::Greek(name, *letter),
+            _ if word.bytes().all(|b| b.is_ascii_digit()) => Glyph::Digits(word.to_string()),
+            (None, Some(letter)) if letter.is_alphabetic() => Glyph::Letter(letter),
+            _ => Glyph::Word(word.to_string()),
+        }
+    }
+}
+
+impl Name {
+    /// A name as one word.
+    pub fn verbatim(text: &str) -> Name {
+        Name { base: Glyph::Word(text.to_string()), indices: Vec::new() }
+    }
+
+    /// A name taken apart.
+    pub fn of(text: &str) -> Name {
+        if let Some((joint, member)) = text.split_once('.') {
+            return Name::of_member(joint, member);
+        }
+        if text.split('_').any(str::is_empty) {
+            return Name::verbatim(text);
+        }
+        let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
+        let (stem, digits) = numbered(head);
+        let base = Glyph::of(stem);
+        let index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
+        if let Glyph::Letter(_) | Glyph::Greek(..) = base {
+            let indices = index(digits).into_iter().chain(tail.map(Glyph::of)).collect();
+            return Name { base, indices };
+        }
+        let (stem, digits) = numbered(text);
+        let stem = stem.trim_end_matches('_');
+        Name { base: Glyph::Word(stem.to_string()), indices: index(digits).into_iter().collect() }
+    }
+
+    /// A coordinate of a joint with several: angular velocities, velocities and quaternions have an axis besides.
+    fn of_member(joint: &str, member: &str) -> Name {
+        let joint = Glyph::of(joint);
+        let mut letters = member.chars();
+        if let (Some(kind @ ('w' | 'v' | 'q')), Some(axis @ 'w'..='z'), None) =
+            (letters.next(), letters.next(), letters.next())
+        {
+            let base = if kind == 'w' { Glyph::Greek("omega", 'ω') } else { Glyph::Letter(kind) };
+            return Name { base, indices: vec![joint, Glyph::Letter(axis)] };
+        }
+        Name { base: Glyph::of(member), indices: vec![joint] }
+    }
+}
+
+/// A name without the digits at its end, and these.
+fn numbered(text: &str) -> (&str, &str) {
+    text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len())
+}
+
+/// Names for typesetting: those that would look like another one are left whole.
+pub struct Names(Vec<(String, Name)>);
+
+impl Names {
+    /// For all names that occur.
+    pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> Names {
+        let mut names: Vec<(String, Name)> = Vec::new();
+        for text in texts {
+            if names.iter().all(|(known, _)| known != text) {
+                names.push((text.to_string(), Name::of(text)));
+            }
+        }
+        let alike = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
+        let alike: Vec<bool> = names.iter().map(|(_, name)| alike(name)).collect();
+        for ((text, name), _) in names.iter_mut().zip(alike).filter(|(_, alike)| *alike) {
+            *name = Name::verbatim(text);
+        }
+        Names(names)
+    }
+
+    /// The name that stands for a text.
+    pub fn get(&self, text: &str) -> Name {
+        self.0
+            .iter()
+            .find(|(known, _)| known == text)
+            .map_or_else(|| Name::of(text), |(_, name)| name.clone())
+    }
+}

@@ -1,0 +1,340 @@
+//! Signs: which of `x` and `−x` is computed. A difference is as cheap one way as the other, and a constant factor can
+//! have either sign, so most negations can be avoided by computing the negatives of some values.
+//!
+//! Every value has a sign, that of what is stored in proportion to what is meant. Those of differences and of multiples
+//! are free, those of all else follow; what leaves the program must be positive, and costs a negation if not. Starting
+//! from all free signs positive, single signs are changed as long as that saves negations.
+
+use super::{Op, Operand, Program};
+use crate::expr::Function;
+use std::collections::BTreeSet;
+
+/// How far above a negated value free signs are looked for.
+const DEPTH: usize = 6;
+/// Most free signs that are tried for one negated value.
+const TRIES: usize = 6;
+/// Most values that a changed sign may change; beyond, it is left.
+const REACH: usize = 400;
+
+impl Program {
+    /// The same program with fewer negations.
+    pub(super) fn with_cheap_signs(self) -> Program {
+        if !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
+            return self;
+        }
+        let mut signs = Signs::new(&self);
+        signs.search();
+        signs.rewrite()
+    }
+}
+
+struct Signs<'a> {
+    program: &'a Program,
+    users: Vec<Vec<usize>>,
+    /// True for values whose positive is needed.
+    sink: Vec<bool>,
+    /// The sign that a free value has.
+    choice: Vec<bool>,
+    /// True for values that are stored with the opposite sign.
+    negative: Vec<bool>,
+}
+
+impl<'a> Signs<'a> {
+    fn new(program: &'a Program) -> Signs<'a> {
+        let n = program.instructions.len();
+        let mut signs = Signs {
+            program,
+            users: vec![Vec::new(); n],
+            sink: vec![false; n],
+            choice: vec![false; n],
+            negative: vec![false; n],
+        };
+        for (k, op) in program.instructions.iter().enumerate() {
+            let keeps = keeps_signs(op);
+            op.operands(|o| {
+                if let Operand::Value(a) = o {
+                    signs.users[a].push(k);
+                    signs.sink[a] |= !keeps;
+                }
+            });
+            signs.negative[k] = signs.sign(k);
+        }
+        for output in &program.outputs {
+            if let Operand::Value(a) = output {
+                signs.sink[*a] = true;
+            }
+        }
+        signs
+    }
+
+    fn of(&self, o: Operand) -> bool {
+        matches!(o, Operand::Value(a) if self.negative[a])
+    }
+
+    /// The sign of a value, by those of its operands and by its choice where it is free.
+    fn sign(&self, k: usize) -> bool {
+        match self.program.instructions[k] {
+            Op::Neg(a) => !self.of(a),
+            Op::Add(a, b) => self.sum(k, a, b, false),
+            Op::Sub(a, b) => self.sum(k, a, b, true),
+            Op::Mul(a, b) | Op::Div(a, b) => match is_constant(a) || is_constant(b) {
+                true => self.choice[k],
+                false => self.of(a) != self.of(b),
+            },
+            Op::Call(f, a) => is_odd(f) && self.of(a),
+            _ => false,
+        }
+    }
+
+    fn sum(&self, k: usize, a: Operand, b: Operand, difference: bool) -> bool {
+        let (first, second) = (self.of(a), self.of(b) != difference);
+        match is_constant(a) || is_constant(b) || first != second {
+            true => self.choice[k],
+            false => first,
+        }
+    }
+
+    fn is_free(&self, k: usize) -> bool {
+        match self.program.instructions[k] {
+            Op::Add(a, b) => is_constant(a) || is_constant(b) || self.of(a) != self.of(b),
+            Op::Sub(a, b) => is_constant(a) || is_constant(b) || self.of(a) == self.of(b),
+            Op::Mul(a, b) | Op::Div(a, b) => is_constant(a) || is_constant(b),
+            _ => false,
+        }
+    }
+
+    fn search(&mut self) {
+        for least in [1, 0, 1, 0, 1] {
+            let mut better = false;
+            for k in 0..self.negative.len() {
+                if !(self.sink[k] && self.negative[k]) {
+                    continue;
+                }
+                let mut paths = Vec::new();
+                self.paths_to_free(&mut vec![k], &mut paths);
+                better |= paths.iter().any(|path| self.try_change(path, least));
+            }
+            if !better {
+                return;
+            }
+        }
+    }
+
+    /// Ways up from the last value of `path` to free values that its sign depends on.
+    fn paths_to_free(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
+        let Some(k) = path.last().copied().filter(|_| found.len() < TRIES) else { return };
+        if self.is_free(k) {
+            found.push(path.clone());
+        } else if path.len() < DEPTH {
+            self.program.instructions[k].operands(|o| {
+                if let Operand::Value(a) = o {
+                    path.push(a);
+                    self.paths_to_free(path, found);
+                    path.pop();
+                }
+            });
+        }
+    }
+
+    /// Changes the signs along a path, as far as they are free or become so, if that saves negations.
+    fn try_change(&mut self, path: &[usize], least: isize) -> bool {
+        let before: Vec<bool> = path.iter().map(|k| self.choice[*k]).collect();
+        for &k in path {
+            self.choice[k] = !self.negative[k];
+        }
+        let mut changed = Vec::new();
+        if self.propagate(path, &mut changed) >= least {
+            return true;
+        }
+        for c in changed {
+            self.negative[c] = !self.negative[c];
+        }
+        for (&k, choice) in path.iter().zip(before) {
+            self.choice[k] = choice;
+        }
+        false
+    }
+
+    /// Brings signs up to date after some choices; how many negations that saves.
+    fn propagate(&mut self, from: &[usize], changed: &mut Vec<usize>) -> isize {
+        let mut gain = 0;
+        let mut todo: BTreeSet<usize> = from.iter().copied().collect();
+        while let Some(k) = todo.pop_first() {
+            let sign = self.sign(k);
+            if sign == self.negative[k] {
+                continue;
+            }
+            // What was brought up to date only in part must not be kept.
+            if changed.len() >= REACH {
+                return isize::MIN;
+            }
+            self.negative[k] = sign;
+            changed.push(k);
+            if self.sink[k] {
+                gain += if sign { -1 } else { 1 };
+            }
+            todo.extend(&self.users[k]);
+        }
+        gain
+    }
+
+    fn rewrite(&self) -> Program {
+        let mut out =
+            Rewrite { signs: self, instructions: Vec::new(), stored: Vec::new(), positive: Vec::new() };
+        for k in 0..self.negative.len() {
+            out.add(k);
+        }
+        let outputs = self.program.outputs.iter().map(|o| out.positive(*o)).collect();
+        let mut program = Program { instructions: out.instructions, outputs, ..Program::default() };
+        program.sweep();
+        program
+    }
+}
+
+struct Rewrite<'a> {
+    signs: &'a Signs<'a>,
+    instructions: Vec<Op>,
+    /// Where each value is stored, with its sign.
+    stored: Vec<Operand>,
+    /// Where each value is stored positive, if it is.
+    positive: Vec<Option<Operand>>,
+}
+
+impl Rewrite<'_> {
+    fn push(&mut self, op: Op) -> Operand {
+        self.instructions.push(op);
+        Operand::Value(self.instructions.len() - 1)
+    }
+
+    fn stored(&self, o: Operand) -> Operand {
+        match o {
+            Operand::Value(a) => self.stored[a],
+            other => other,
+        }
+    }
+
+    /// An operand itself, negated if it is not stored so.
+    fn positive(&mut self, o: Operand) -> Operand {
+        let Operand::Value(a) = o else { return o };
+        if let Some(found) = self.positive[a] {
+            return found;
+        }
+        let negated = self.push(Op::Neg(self.stored[a]));
+        self.positive[a] = Some(negated);
+        negated
+    }
+
+    fn add(&mut self, k: usize) {
+        let (signs, negative) = (self.signs, self.signs.negative[k]);
+        let stored = match signs.program.instructions[k] {
+            // The operand itself is its negative, or what that one is stored as.
+            Op::Neg(a) => self.stored(a),
+            Op::Add(a, b) => self.sum((a, signs.of(a) != negative), (b, signs.of(b) != negative)),
+            Op::Sub(a, b) => self.sum((a, signs.of(a) != negative), (b, signs.of(b) == negative)),
+            Op::Mul(a, b) => {
+                let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
+                self.push(Op::Mul(a, b))
+            }
+            Op::Div(a, b) => {
+                let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
+                self.push(Op::Div(a, b))
+            }
+            Op::Call(f, a) if is_odd(f) => {
+                let a = self.stored(a);
+                self.push(Op::Call(f, a))
+            }
+            op => {
+                let op = op.mapped(|o| self.positive(o));
+                self.push(op)
+            }
+        };
+        self.stored.push(stored);
+        self.positive.push((!negative).then_some(stored));
+    }
+
+    /// The sum of two terms with signs, of which at most one is negative or a constant has the other.
+    fn sum(&mut self, (a, a_negative): (Operand, bool), (b, b_negative): (Operand, bool)) -> Operand {
+        let (x, y) = (self.stored(a), self.stored(b));
+        let op = match (a_negative, b_negative) {
+            (false, false) => Op::Add(x, y),
+            (false, true) => Op::Sub(x, y),
+            (true, false) => Op::Sub(y, x),
+            (true, true) => match (x, y) {
+                (Operand::Const(c), y) => Op::Sub(Operand::Const(-c), y),
+                (x, y) => Op::Sub(negated(y), x),
+            },
+        };
+        self.push(op)
+    }
+
+    fn factors(&self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
+        let (a, b) = (self.stored(a), self.stored(b));
+        match (negate, is_constant(a)) {
+            (false, _) => (a, b),
+            (true, true) => (negated(a), b),
+            (true, false) => (a, negated(b)),
+        }
+    }
+}
+
+fn negated(o: Operand) -> Operand {
+    match o {
+        Operand::Const(c) => Operand::Const(-c),
+        other => other,
+    }
+}
+
+fn is_constant(o: Operand) -> bool {
+    matches!(o, Operand::Const(_))
+}
+
+/// True for operations whose operands may be stored with either sign.
+fn keeps_signs(op: &Op) -> bool {
+    match op {
+        Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) => true,
+        Op::Call(f, _) => is_odd(*f),
+        _ => false,
+    }
+}
+
+fn is_odd(f: Function) -> bool {
+    use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
+    matches!(f, Sin | Tan | Asin | Atan | Sinh | Tanh)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Graph, Symbol};
+    use crate::lower::lower;
+
+    #[test]
+    fn negatives_are_computed_where_they_are_wanted() {
+        let g = Graph::new();
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
+        let difference = a - b;
+        let product = difference * c;
+        let sum = g.num(2.0) * a + g.num(3.0) * b;
+        for outputs in [
+            vec![-product, difference + d],
+            vec![-(product * d), product * a * b],
+            vec![-sum, sum * c + d, c - sum],
+            vec![-a, c - a],
+            vec![(b - a).sin() * c, -(g.num(2.0) * difference), difference.cos()],
+        ] {
+            let program = lower(&outputs);
+            let values = program.run(&|s| f64::from(s.0) + 0.5);
+            let expected = crate::expr::eval::eval(&outputs, &|s| f64::from(s.0) + 0.5);
+            assert_eq!(values, expected);
+            let negations = program.instructions.iter().filter(|op| matches!(op, super::Op::Neg(_)));
+            assert!(negations.count() <= 1, "{:?}", program.instructions);
+        }
+    }
+
+    #[test]
+    fn what_must_have_both_signs_is_negated_once() {
+        let g = Graph::new();
+        let (a, b) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
+        let program = lower(&[a * b, -(a * b)]);
+        assert_eq!((program.counts.mul, program.counts.add), (1, 1));
+    }
+}

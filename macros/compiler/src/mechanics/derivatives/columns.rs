@@ -1,0 +1,140 @@
+//! Motion of the links, and how each degree of freedom changes it (Singh, Russell and Wensing 2022): with the twist `V`
+//! and the acceleration `A` of its parent, a degree of freedom `S` has `Ψ̇ = V × S` and `Ψ̈ = A × S + V × Ψ̇`.
+
+use super::super::Spatial;
+use super::super::kinematics::{Dof, Joint};
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::model::Model;
+
+/// Motion of a frame in its own axes. Accelerations are classical, those of points, and gravity is an acceleration of
+/// the ground upwards.
+#[derive(Clone, Copy)]
+pub struct State<'g> {
+    /// Velocity of the origin.
+    pub v: Vec3<'g>,
+    /// Angular velocity.
+    pub w: Vec3<'g>,
+    /// Angular acceleration.
+    pub dw: Vec3<'g>,
+    /// Acceleration of the origin.
+    pub a: Vec3<'g>,
+}
+
+impl<'g> State<'g> {
+    /// The ground.
+    pub fn ground(model: &Model<'g>) -> State<'g> {
+        let zero = Vec3::zero(model.graph);
+        State { v: zero, w: zero, dw: zero, a: -model.gravity }
+    }
+
+    /// `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
+    pub fn matrix(&self) -> Mat3<'g> {
+        let ([x, y, z], dw) = (self.w.0, self.dw);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (yz, zx, xy) = (y * z, z * x, x * y);
+        Mat3([
+            [-(yy + zz), xy - dw[2], zx + dw[1]],
+            [xy + dw[2], -(xx + zz), yz - dw[0]],
+            [zx - dw[1], yz + dw[0], -(xx + yy)],
+        ])
+    }
+
+    /// Velocity and angular velocity.
+    pub fn twist(&self) -> Spatial<'g> {
+        Spatial { linear: self.v, angular: self.w }
+    }
+}
+
+/// Motion of a link, and of its parent's points where the link's origin is, both in link axes.
+#[derive(Clone, Copy)]
+pub struct LinkMotion<'g> {
+    /// The link's.
+    pub own: State<'g>,
+    /// The parent's.
+    pub parent: State<'g>,
+}
+
+/// Outward recursion.
+pub fn motions<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    a: &[Expr<'g>],
+) -> Vec<LinkMotion<'g>> {
+    let mut motions: Vec<LinkMotion<'g>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let above = joint.parent.map_or(State::ground(model), |p| motions[p.0].own);
+        let (turn, p) = (&joint.rotation, joint.translation);
+        let parent = State {
+            v: turn.to_child(above.v + above.w.cross(p)),
+            w: turn.to_child(above.w),
+            dw: turn.to_child(above.dw),
+            a: turn.to_child(above.a + above.matrix() * p),
+        };
+        let (rate, change) = (joint.twist(model, v), joint.relative(model, a));
+        let w = parent.w;
+        let own = State {
+            v: parent.v + rate.linear,
+            w: w + rate.angular,
+            dw: parent.dw + w.cross(rate.angular) + change.angular,
+            a: parent.a + (w + w + rate.angular).cross(rate.linear) + change.linear,
+        };
+        motions.push(LinkMotion { own, parent });
+    }
+    motions
+}
+
+/// A degree of freedom, and what a displacement along it and its rate do to the motion of all that it carries.
+#[derive(Clone, Copy)]
+pub struct Column<'g> {
+    /// Entry of `v`.
+    pub index: usize,
+    /// Joint rate per entry of `v`.
+    pub ratio: f64,
+    /// `S`.
+    pub subspace: Spatial<'g>,
+    /// `Ψ̇`.
+    pub first: Spatial<'g>,
+    /// `Ψ̈`.
+    pub second: Spatial<'g>,
+    /// `Ψ̇ + Ṡ`, with `Ṡ = V × S` of the link itself.
+    pub rate: Spatial<'g>,
+}
+
+/// The columns of a link for the derivatives of inverse dynamics.
+pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
+    let (above, single) = (&motion.parent, joint.dofs.len() == 1);
+    // The rotation about an axis does not change what U does to the axis, nor V × S of the only S.
+    let u = if single { motion.own.matrix() } else { above.matrix() };
+    let column = |dof: &Dof<'g>| {
+        let s = &dof.subspace;
+        let first = cross(&above.twist(), s);
+        let change = if single { first } else { cross(&motion.own.twist(), s) };
+        let rate = first.plus(&change);
+        // In terms of classical accelerations: A × S + V × Ψ̇ = (U s + a × r + 2 v × (w × r), U r) for S = (s, r).
+        let turning = above.w.cross(s.angular);
+        let linear = u * s.linear + above.a.cross(s.angular) + above.v.cross(turning + turning);
+        let second = Spatial { linear, angular: u * s.angular };
+        Column { index: dof.index, ratio: dof.ratio, subspace: *s, first, second, rate }
+    };
+    joint.dofs.iter().map(column).collect()
+}
+
+/// The columns of a link for the Coriolis matrix: `Ṡ` in place of `Ψ̇ + Ṡ`, and no displacements.
+pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g>) -> Vec<Column<'g>> {
+    let zero = Spatial::zero(model);
+    let column = |(k, dof): (usize, &Dof<'g>)| {
+        let own = joint.drift.as_ref().and_then(|drift| drift.subspace_rates.get(k));
+        let rate = own.unwrap_or(&zero).plus(&cross(twist, &dof.subspace));
+        Column { index: dof.index, ratio: dof.ratio, subspace: dof.subspace, first: zero, second: zero, rate }
+    };
+    joint.dofs.iter().enumerate().map(column).collect()
+}
+
+/// `V × X`: the rate of a motion `X` that moves with the twist `V`.
+fn cross<'g>(v: &Spatial<'g>, x: &Spatial<'g>) -> Spatial<'g> {
+    Spatial {
+        linear: v.angular.cross(x.linear) + v.linear.cross(x.angular),
+        angular: v.angular.cross(x.angular),
+    }
+}

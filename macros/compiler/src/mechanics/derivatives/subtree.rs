@@ -1,0 +1,96 @@
+//! Sums over a link and all that it carries, about its origin in its axes: inertia, wrench, and the linear map
+//! `X ↦ −I (V × X) + X ×* I V + V ×* I X` by which the forces change with the velocity.
+//!
+//! That map depends on the angular part `x` of `X` alone, and for particles of mass `m` at `r` with velocity `u` it is
+//! `−2 Σ m (u × x, r × (u × x))`: force `−2 p × x` with `p = Σ m u`, moment `−2 (K − tr K) x` with `K = Σ m u rᵀ`.
+
+use super::super::Spatial;
+use super::super::crba;
+use super::super::kinematics::Joint;
+use crate::expr::{Mat3, Sym3, Vec3};
+use crate::model::{Inertia, Model};
+
+/// The sums of one link.
+#[derive(Clone, Copy)]
+pub struct Subtree<'g> {
+    /// Mass properties.
+    pub inertia: Inertia<'g>,
+    /// The wrench that gives all bodies their accelerations.
+    pub wrench: Spatial<'g>,
+    /// A multiple of `p`.
+    momentum: Vec3<'g>,
+    /// The same multiple of `K`.
+    moments: Mat3<'g>,
+}
+
+impl<'g> Subtree<'g> {
+    /// Forces of the velocity map for a motion `x`.
+    pub fn map(&self, x: &Spatial<'g>) -> Spatial<'g> {
+        Spatial { linear: x.angular.cross(self.momentum), angular: without_trace(&self.moments) * -x.angular }
+    }
+
+    /// The transposed map; it gives a moment and no force.
+    pub fn transposed_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
+        self.momentum.cross(x.linear) + without_trace(&self.moments.transpose()) * -x.angular
+    }
+}
+
+/// `K − tr K`.
+fn without_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
+    let other = |i: usize| k.0[(i + 1) % 3][(i + 1) % 3] + k.0[(i + 2) % 3][(i + 2) % 3];
+    Mat3::from_fn(|i, j| if i == j { -other(i) } else { k.0[i][j] })
+}
+
+/// The sums of all links with these twists and wrenches; the velocity map is multiplied by `multiple / 2`.
+pub fn subtrees<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    twists: &[Spatial<'g>],
+    wrenches: &[Spatial<'g>],
+    multiple: f64,
+) -> Vec<Subtree<'g>> {
+    let inertias = crba::composites(model, joints);
+    let bodies = model.links.iter().map(|link| &link.inertia);
+    let mut sums: Vec<Subtree<'g>> =
+        bodies.zip(twists).map(|(body, twist)| of_body(body, twist, multiple)).collect();
+    for (sum, (inertia, wrench)) in sums.iter_mut().zip(inertias.into_iter().zip(wrenches)) {
+        (sum.inertia, sum.wrench) = (inertia, *wrench);
+    }
+    for (k, joint) in joints.iter().enumerate().rev() {
+        if let Some(parent) = joint.parent {
+            let child = sums[k];
+            let sum = &mut sums[parent.0];
+            sum.wrench = sum.wrench.plus(&joint.wrench_to_parent(&child.wrench));
+            let momentum = joint.rotation.to_parent(child.momentum);
+            sum.momentum += momentum;
+            let moved = joint.rotation.mat_to_parent(child.moments) + outer(momentum, joint.translation);
+            sum.moments = sum.moments + moved;
+        }
+    }
+    sums
+}
+
+/// What a body itself adds. With its first moment `h` and `J = Σ m r rᵀ`: `p = m v + w × h`, `K = v hᵀ + [w]× J`.
+fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
+    let second = second_moments(&body.tensor);
+    let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
+    let j = Mat3::from_fn(|i, k| second.at(i, k) * multiple);
+    let zero = Vec3::zero(body.mass.graph());
+    Subtree {
+        inertia: *body,
+        wrench: Spatial { linear: zero, angular: zero },
+        momentum: twist.linear * mass + twist.angular.cross(h),
+        moments: outer(twist.linear, h) + Mat3::skew(twist.angular) * j,
+    }
+}
+
+/// `J = ½ tr(I) − I`.
+fn second_moments<'g>(tensor: &Sym3<'g>) -> Sym3<'g> {
+    let [x, y, z] = tensor.diagonal;
+    let half = (x + y + z) * 0.5;
+    Sym3 { diagonal: [half - x, half - y, half - z], off: tensor.off.map(|c| -c) }
+}
+
+fn outer<'g>(a: Vec3<'g>, b: Vec3<'g>) -> Mat3<'g> {
+    Mat3::from_fn(|i, j| a[i] * b[j])
+}

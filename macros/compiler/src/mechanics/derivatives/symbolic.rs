@@ -1,0 +1,60 @@
+//! Derivatives of any expressions of the state by differentiation along the tangent directions of the configurations.
+
+use super::super::crba::Matrix;
+use super::super::kinematics::{configuration_rate, resistance};
+use super::ForceDerivatives;
+use crate::expr::diff::Derivative;
+use crate::expr::{Expr, Symbol};
+use crate::model::{Model, Quantity};
+
+/// Derivatives of expressions by configuration and velocity.
+pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
+    ForceDerivatives { by_q: by_configuration(model, e), by_v: by_velocity(model, e) }
+}
+
+/// Adds the derivatives of springs, dashpots, friction, potentials and loads.
+pub fn add_resistance<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
+    let forces = resistance(model, true);
+    for (to, from) in
+        [(&mut out.by_q, by_configuration(model, &forces)), (&mut out.by_v, by_velocity(model, &forces))]
+    {
+        for (entry, change) in to.iter_mut().flatten().zip(from.into_iter().flatten()) {
+            *entry += change;
+        }
+    }
+}
+
+/// A column for each velocity: the rate of the expressions where that velocity is one and all others are zero.
+fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+    let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
+    let direction = |i: usize| {
+        let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
+        let seed = |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.of(*rate));
+        rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect()
+    };
+    columns(model, e, (0..model.nv()).map(direction))
+}
+
+fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+    columns(model, e, (0..model.nv()).map(|k| vec![(Quantity::Velocity(k).symbol(), model.graph.one())]))
+}
+
+/// Derivatives of expressions by the inputs.
+pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+    columns(model, e, (0..model.nu()).map(|k| vec![(Quantity::Input(k).symbol(), model.graph.one())]))
+}
+
+fn columns<'g>(
+    model: &Model<'g>,
+    e: &[Expr<'g>],
+    directions: impl Iterator<Item = Vec<(Symbol, Expr<'g>)>>,
+) -> Matrix<'g> {
+    let mut rows = vec![Vec::new(); e.len()];
+    for direction in directions {
+        let mut d = Derivative::along(direction, model.graph);
+        for (row, e) in rows.iter_mut().zip(e) {
+            row.push(if e.value().is_some() { e.zero() } else { d.of(*e) });
+        }
+    }
+    rows
+}

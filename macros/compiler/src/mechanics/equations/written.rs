@@ -1,0 +1,117 @@
+//! Equations of motion as text, plain and typeset, in the user's own names.
+
+use super::Equations;
+use crate::expr::Symbol;
+use crate::expr::print::names::Names;
+use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::model::{Chart, Model, Quantity};
+
+/// Columns of text.
+const WIDTH: usize = 100;
+/// Columns that rustdoc's pages have room for.
+const PAGE: usize = 92;
+
+/// Equations in all ways of writing.
+pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
+    let rates = rates(model);
+    Written { plain: plain(model, equations, &rates), latex: latex(model, equations, &rates) }
+}
+
+/// The Lagrangian, and both sides of the equation of every velocity.
+struct Lines {
+    lagrangian: String,
+    motion: Vec<(String, String)>,
+}
+
+impl Lines {
+    fn of<S: Style>(equations: &Equations, style: S) -> Lines {
+        let writer = Writer::styled(&equations.ring, style);
+        let sides = equations.motion.iter().zip(&equations.forces);
+        Lines {
+            lagrangian: writer.polynomial(&equations.lagrangian),
+            motion: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
+        }
+    }
+}
+
+/// The Lagrangian, an equation for every velocity, and what primes mean.
+fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
+    let name = |symbol| {
+        let (name, dots) = name(model, rates, symbol);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let lines = Lines::of(equations, Plain { name: &name });
+    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let mut out = line(&format!("L = {}", lines.lagrangian));
+    out.push('\n');
+    for (motion, force) in lines.motion {
+        out += &line(&format!("{motion} = {force}"));
+    }
+    out.push('\n');
+    let legend = legend(model, rates);
+    out + &if legend.len() > PAGE { legend.replacen("; ", ";\n", 1) } else { legend } + "\n"
+}
+
+/// The Lagrangian and an equation for every velocity, a line each, from the left: aligned at their signs of equality, the
+/// long side of one would begin where that of another ends.
+fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
+    let names = names(model);
+    let name = |symbol| {
+        let (name, dots) = name(model, rates, symbol);
+        (names.get(&name), dots)
+    };
+    let lines = Lines::of(equations, Latex { name: &name });
+    let mut out = format!("\\begin{{aligned}}\n& \\mathcal{{L}} = {}", lines.lagrangian);
+    for (motion, force) in lines.motion {
+        out += &format!(" \\\\\n& {motion} = {force}");
+    }
+    out + "\n\\end{aligned}\n"
+}
+
+/// All names, so that no two look alike.
+fn names(model: &Model<'_>) -> Names {
+    let velocities = model.velocities.iter().map(|(name, _)| name);
+    let inputs = model.inputs.iter().map(|(name, _)| name);
+    let names = model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
+    Names::new(names.map(String::as_str))
+}
+
+/// By velocity, whether it is the rate of a coordinate that has its name.
+fn rates(model: &Model<'_>) -> Vec<bool> {
+    let mut rates = vec![false; model.nv()];
+    for chart in &model.charts {
+        if let Chart::Plain(q, v) = chart {
+            rates[*v] = model.configuration[*q] == model.velocities[*v].0;
+        }
+    }
+    rates
+}
+
+/// The name of a symbol, and the rate of what it is.
+fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
+    match Quantity::of(symbol) {
+        Quantity::Parameter(k) => (model.parameters[k].clone(), 0),
+        Quantity::Configuration(k) => (model.configuration[k].clone(), 0),
+        Quantity::Velocity(k) => (model.velocities[k].0.clone(), u8::from(rates[k])),
+        Quantity::Acceleration(k) => (model.velocities[k].0.clone(), 1 + u8::from(rates[k])),
+        Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
+        Quantity::Time => ("t".to_string(), 0),
+        Quantity::Force(k) => (format!("tau{k}"), 0),
+        _ => (format!("s{}", symbol.0), 0),
+    }
+}
+
+fn legend(model: &Model<'_>, rates: &[bool]) -> String {
+    match rates.iter().position(|is_rate| *is_rate) {
+        Some(k) => {
+            let x = &model.velocities[k].0;
+            format!(
+                "L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}."
+            )
+        }
+        None => {
+            let w = &model.velocities[0].0;
+            format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
+        }
+    }
+}

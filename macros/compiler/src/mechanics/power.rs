@@ -1,0 +1,46 @@
+//! Power balance: `d(T + U)/dt = control + disturbance − dissipated` for a mechanism that is not driven in time. Force
+//! elements are conservative (in `U`), dissipative, control (inputs) or disturbance (other applied forces), as in
+//! Table 1.4 of Bernstein, Goel and Ansari.
+
+use super::kinematics::velocity_gradient;
+use super::{forces, rate, velocities};
+use crate::expr::replace::replace;
+use crate::expr::{Expr, Function};
+use crate::model::kinematics::Joint;
+use crate::model::{Load, Model, Quantity};
+
+/// Power that dashpots, friction and dissipation functions take out.
+pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {
+    let g = model.graph;
+    let mut power = g.zero();
+    for dashpot in &model.dashpots {
+        power += dashpot.damping * rate(model, &dashpot.on).square();
+    }
+    for dry in &model.frictions {
+        let speed = rate(model, &dry.on);
+        power += dry.friction * (speed / model.friction_speed).call(Function::Tanh) * speed;
+    }
+    for function in &model.dissipations {
+        for (k, d) in velocity_gradient(*function) {
+            power += d * Quantity::Velocity(k).expr(g);
+        }
+    }
+    let taken = model.loads.iter().filter(|l| l.dissipative);
+    taken.fold(power, |sum, load| sum - load.force * load.rate)
+}
+
+/// Power of the inputs: `v · τ(u)`.
+pub fn control<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
+    let tau = forces::generalized_forces(model, joints);
+    tau.iter().zip(velocities(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
+}
+
+/// Power of the other applied forces.
+pub fn disturbance<'g>(model: &Model<'g>) -> Expr<'g> {
+    let g = model.graph;
+    let alone = |load: &Load<'g>| {
+        replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()))
+    };
+    let applied = model.loads.iter().filter(|l| !l.dissipative);
+    applied.fold(g.zero(), |sum, load| sum + alone(load) * load.rate)
+}

@@ -1,0 +1,162 @@
+//! What does not fit together, said at both places.
+
+use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
+use super::si::describe;
+use super::unify::{Dimension, Variable};
+use crate::diag::{Diagnostics, Place};
+use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
+
+/// Most places of other uses that one mistake shows.
+const MOST_PLACES: usize = 2;
+
+/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the same mistake.
+pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
+    let mut shown: Vec<Variable> = Vec::new();
+    for mismatch in std::mem::take(&mut inference.mismatches) {
+        let mut names = Vec::new();
+        parameters_in(mismatch.origin.at, inference, d.parameters.len(), &mut names);
+        mismatch.origin.like.iter().for_each(|e| parameters_in(e, inference, d.parameters.len(), &mut names));
+        if names.iter().any(|(v, _)| shown.contains(v)) {
+            continue;
+        }
+        shown.extend(names.iter().map(|(v, _)| *v));
+        match names.as_slice() {
+            [(v, e)] if one_parameter(d, &mismatch, *v, &e.place, inference, cx).is_some() => {}
+            _ => several(d, &mismatch, &names, inference, cx),
+        }
+    }
+}
+
+/// The parameters in an expression, each once, where it first stands.
+fn parameters_in<'a>(
+    e: &'a Expr,
+    inference: &Inference<'_>,
+    count: usize,
+    found: &mut Vec<(Variable, &'a Expr)>,
+) {
+    let mut inner = |e: &'a Expr| parameters_in(e, inference, count, found);
+    match &e.kind {
+        ExprKind::Number(_) => {}
+        ExprKind::Name(name) => {
+            if let Some(Meaning::Named(v, _)) = inference.names.get(name)
+                && *v < count
+                && found.iter().all(|(known, _)| known != v)
+            {
+                found.push((*v, e));
+            }
+        }
+        ExprKind::Field(base, _) | ExprKind::Neg(base) => inner(base),
+        ExprKind::Method(base, _, arguments) => {
+            inner(base);
+            arguments.iter().for_each(inner);
+        }
+        ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
+            arguments.iter().for_each(inner);
+        }
+        ExprKind::Binary(_, a, b, _) => {
+            inner(a);
+            inner(b);
+        }
+    }
+}
+
+/// One parameter that would have to be two things at once.
+fn one_parameter(
+    d: &Description,
+    mismatch: &Mismatch<'_>,
+    v: Variable,
+    here: &Place,
+    inference: &mut Inference<'_>,
+    cx: &mut Diagnostics,
+) -> Option<()> {
+    let name = &d.parameters.get(v)?.text;
+    let is = inference.system.resolve(&Dimension::variable(v))?;
+    let (found, expected) =
+        (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
+    // To be what is expected, the parameter would have to be another thing by this power of the quotient.
+    let power = mismatch.found.exponent(v).plus(mismatch.expected.exponent(v).negated())?;
+    let needed = is.times_power(&expected.over(&found)?, power.inverse()?)?;
+    let first = inference.origins.get(&v).copied()?;
+    if !is.is_known() || !needed.is_known() {
+        return None;
+    }
+    let (is, needed) = (describe(&is), describe(&needed));
+    if first.reason == Reason::Unit {
+        cx.error(first.at.place.clone(), format!("`{name}` is declared as {is}, but used as {needed}"));
+        cx.error(here.clone(), format!("`{name}` is {needed} here"));
+        return Some(());
+    }
+    cx.error(here.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
+    show(d, v, &is, first, inference, cx);
+    Some(())
+}
+
+/// Things that do not fit, at the place where they meet, and what made each of them what it is.
+fn several(
+    d: &Description,
+    mismatch: &Mismatch<'_>,
+    names: &[(Variable, &Expr)],
+    inference: &mut Inference<'_>,
+    cx: &mut Diagnostics,
+) {
+    let (found, expected) =
+        (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
+    let (Some(found), Some(expected)) = (found, expected) else { return };
+    let place = match (&mismatch.origin.at.kind, mismatch.origin.reason) {
+        (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
+        _ => &mismatch.origin.at.place,
+    };
+    let diagnostic = cx.error(place.clone(), message(mismatch, &found, &expected));
+    if names.is_empty() && matches!(mismatch.origin.reason, Reason::Place | Reason::Argument) {
+        diagnostic.help("a factor is missing; a number in front has any unit that it needs");
+    }
+    for (v, _) in names.iter().take(MOST_PLACES) {
+        let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
+        if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
+            show(d, *v, &describe(&is), origin, inference, cx);
+        }
+    }
+}
+
+/// Shows where a parameter has become what it is.
+fn show(
+    d: &Description,
+    v: Variable,
+    is: &str,
+    origin: Origin<'_>,
+    inference: &Inference<'_>,
+    cx: &mut Diagnostics,
+) {
+    let Some(parameter) = d.parameters.get(v) else { return };
+    let mut names = Vec::new();
+    parameters_in(origin.at, inference, d.parameters.len(), &mut names);
+    origin.like.iter().for_each(|e| parameters_in(e, inference, d.parameters.len(), &mut names));
+    let name = &parameter.text;
+    match names.iter().find(|(known, _)| *known == v) {
+        Some((_, e)) => cx.error(e.place.clone(), format!("`{name}` is {is} here")),
+        None => cx.error(origin.at.place.clone(), format!("by this `{name}` is {is}")),
+    };
+}
+
+fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> String {
+    let reason = mismatch.origin.reason;
+    if !found.is_known() || !expected.is_known() {
+        let factor = found
+            .over(expected)
+            .filter(Dimension::is_known)
+            .map_or(String::new(), |d| format!(": they differ by {}", super::si::unit(&d)));
+        return match reason {
+            Reason::Sum(_) => format!("these terms cannot have one unit{factor}"),
+            _ => format!("this cannot have the unit that is needed here{factor}"),
+        };
+    }
+    let (found, expected) = (describe(found), describe(expected));
+    match reason {
+        Reason::Sum(BinaryOp::Sub) => format!("{found} cannot be subtracted from {expected}"),
+        Reason::Sum(_) => format!("{found} cannot be added to {expected}"),
+        Reason::Components => format!("this component is {found}, but another is {expected}"),
+        Reason::Alike(function) => format!("`{function}` cannot compare {expected} with {found}"),
+        Reason::Argument => format!("expected a plain number or an angle, found {found}"),
+        Reason::Unit | Reason::Place => format!("expected {expected}, found {found}"),
+    }
+}

@@ -1,0 +1,172 @@
+//! Link frames where placements are sparse: each is moved along and turned about its joint's axis, as in the frames of
+//! Denavit and Hartenberg (1955), of which every link has its own best. The origin sits where the axis meets the common
+//! normal with a child's axis, an axis of the frame points along that normal, and what is left of a placement's
+//! rotation about the joint's axis goes to the joint's zero.
+//!
+//! Candidates of all links are weighed together: the cost of a placement depends on the frames of both links, so the
+//! best choice follows from the leaves to the roots (Bellman 1957).
+
+use super::candidates::{Freedom, Site, candidates};
+use super::cost;
+use super::number::{Place, clean};
+use crate::expr::Vec3;
+use crate::model::{Coordinate, Direction, Input, Model, Motion, Pose};
+
+/// A choice for one link.
+#[derive(Clone, Copy)]
+struct Step {
+    /// The new frame in the old one.
+    frame: Place,
+    /// The joint's frame in the parent's new one.
+    placement: Place,
+    /// What the joint's coordinate starts at, about or along the coordinate axis.
+    offset: f64,
+}
+
+/// Moves the frames.
+pub fn place_frames(model: &mut Model<'_>) {
+    let sites = sites(model);
+    let Some(frames) = choose(&sites) else { return };
+    let steps: Vec<Option<Step>> = (0..sites.len())
+        .map(|k| {
+            let parent = sites[k].parent.map_or(Place::IDENTITY, |p| frames[p]);
+            let (_, placement, offset) = cost::joint(&sites[k], &parent, &frames[k])?;
+            Some(Step { frame: frames[k], placement, offset })
+        })
+        .collect();
+    apply(model, &sites, &steps);
+}
+
+/// What the choice depends on.
+fn sites(model: &Model<'_>) -> Vec<Site> {
+    let mut sites: Vec<Site> = model.links.iter().map(Site::of).collect();
+    for k in 0..sites.len() {
+        // A placement that is not made of numbers stays as it is, on both sides.
+        if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
+            sites[p].freedom = Freedom::None;
+        }
+    }
+    sites
+}
+
+/// The cheapest frame of every link, in its present one. `None` if nothing can move.
+fn choose(sites: &[Site]) -> Option<Vec<Place>> {
+    if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
+        return None;
+    }
+    let mut choices: Vec<Vec<Place>> = vec![Vec::new(); sites.len()];
+    let mut costs: Vec<Vec<f64>> = vec![Vec::new(); sites.len()];
+    for k in (0..sites.len()).rev() {
+        choices[k] = candidates(sites, k, &choices);
+        costs[k] = choices[k].iter().map(|frame| cost::masses(&sites[k], frame)).collect();
+        for child in (k + 1..sites.len()).filter(|c| sites[*c].parent == Some(k)) {
+            for (c, frame) in choices[k].iter().enumerate() {
+                costs[k][c] += best(&sites[child], frame, &choices[child], &costs[child]).1;
+            }
+        }
+    }
+    let mut frames: Vec<Place> = Vec::with_capacity(sites.len());
+    for k in 0..sites.len() {
+        let parent = sites[k].parent.map_or(Place::IDENTITY, |p| frames[p]);
+        frames.push(choices[k][best(&sites[k], &parent, &choices[k], &costs[k]).0]);
+    }
+    Some(frames)
+}
+
+/// The best choice for a link, given its parent's frame: its index, and its cost with all that it carries.
+fn best(site: &Site, parent: &Place, choices: &[Place], costs: &[f64]) -> (usize, f64) {
+    let mut best = (0, f64::INFINITY);
+    for (c, frame) in choices.iter().enumerate() {
+        let own = cost::joint(site, parent, frame).map_or(0.0, |(cost, ..)| cost);
+        // The first of equals is kept: it is the frame as it was, if that is among them.
+        if own + costs[c] < best.1 - 1e-9 {
+            best = (c, own + costs[c]);
+        }
+    }
+    best
+}
+
+fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
+    let g = model.graph;
+    for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
+        let Some(step) = step else { continue };
+        link.placement = step.placement.pose(g);
+        if matches!(site.freedom, Freedom::None) {
+            continue;
+        }
+        if let Some(mass) = &site.mass {
+            link.inertia = mass.seen_from(&step.frame).inertia(g);
+        }
+        match &mut link.motion {
+            Motion::Turn { axis, coordinate } => shift(coordinate, *axis, step.offset),
+            Motion::Slide { axis, .. } => *axis = step.frame.pose(g).rotation.to_child(*axis),
+            _ => {}
+        }
+    }
+    let back = steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.pose(g).inverse()));
+    move_contents(model, &back.collect::<Vec<_>>());
+}
+
+/// Everything that is fixed in the links, seen from their new frames: `back` are the old frames there.
+fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
+    // All fields are named, so that whoever adds one is asked what the frames mean to it. Expressions of the state,
+    // as those of loads and outputs, are complete by now: they do not know the frames.
+    let Model {
+        graph: _,
+        name: _,
+        place: _,
+        scalar: _,
+        parameters: _,
+        gravity: _,
+        friction_speed: _,
+        links: _,
+        still: _,
+        time: _,
+        velocity_inputs: _,
+        charts: _,
+        configuration: _,
+        velocities: _,
+        inputs,
+        frames,
+        springs: _,
+        dashpots: _,
+        frictions: _,
+        potentials: _,
+        dissipations: _,
+        loads: _,
+        inertances: _,
+        outputs: _,
+        units: _,
+    } = model;
+    for frame in frames {
+        if let Some(link) = frame.link {
+            frame.pose = back[link.0].then(&frame.pose);
+        }
+    }
+    for (_, input) in inputs {
+        match input {
+            Input::Named | Input::Coordinate(_) => {}
+            Input::Force { link, point, along } => {
+                *point = back[link.0].point(*point);
+                turn(along, back);
+            }
+            Input::Torque { about, .. } => turn(about, back),
+        }
+    }
+}
+
+fn turn<'g>(direction: &mut Direction<'g>, back: &[Pose<'g>]) {
+    for (link, v) in direction {
+        if let Some(link) = link {
+            *v = back[link.0].rotation.to_parent(*v);
+        }
+    }
+}
+
+/// The coordinate of a joint about `axis` with an angle about the coordinate axis added.
+fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
+    let negative = axis.values().is_some_and(|n| n.iter().sum::<f64>() < 0.0);
+    let angle = if negative { -offset } else { offset };
+    let scale = coordinate.offset.abs() + angle.abs();
+    coordinate.offset = clean(coordinate.offset + angle, scale);
+}

@@ -1,0 +1,87 @@
+//! `Model` → `Model`: the same mechanism with other link frames and other mass properties, whose equations cost less.
+//! Every pass is exact up to rounding and can be switched off.
+
+use crate::model::Model;
+
+mod candidates;
+mod cost;
+mod frames;
+mod number;
+mod regroup;
+
+pub use frames::place_frames;
+pub use regroup::{Gauge, Regroup, regroup};
+
+/// Which passes are run.
+#[derive(Clone, Copy, Debug)]
+pub struct Passes {
+    /// Link frames are moved to where placements are sparse.
+    pub frames: bool,
+    /// Mass properties are moved towards the base.
+    pub regroup: bool,
+}
+
+impl Default for Passes {
+    fn default() -> Passes {
+        Passes { frames: true, regroup: true }
+    }
+}
+
+/// A model that has the same functions as another.
+#[derive(Clone)]
+pub struct Form<'g> {
+    /// The model.
+    pub model: Model<'g>,
+    /// Masses were moved to children too: that is good for inverse dynamics alone.
+    pub anchored: bool,
+}
+
+/// The model after the passes, its mass properties distributed in several ways. The frames are the same in all.
+pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
+    let mut start = model.clone();
+    if passes.regroup {
+        // Frames are chosen by what is left of the mass properties.
+        regroup(&mut start, Regroup::default());
+    }
+    if passes.frames {
+        place_frames(&mut start);
+    }
+    if !passes.regroup {
+        return vec![Form { model: start, anchored: false }];
+    }
+    let mut forms: Vec<Form<'g>> = Vec::new();
+    let small = model.nv() <= SMALL;
+    for (gauge, anchors, symbolic, always) in DISTRIBUTIONS {
+        if !(small || always) {
+            continue;
+        }
+        let mut model = start.clone();
+        regroup(&mut model, Regroup { gauge, anchors, symbolic });
+        add(&mut forms, Form { model, anchored: anchors });
+    }
+    if !passes.frames {
+        add(&mut forms, Form { model: model.clone(), anchored: false });
+    }
+    forms
+}
+
+/// Up to how many velocities all distributions are tried: beyond, the little that some may save is not worth the time.
+const SMALL: usize = 18;
+
+/// Gauge, whether masses go to children, whether parameters are moved too, whether it is tried for any size.
+const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
+    (Gauge::Second, false, false, true),
+    (Gauge::First, false, false, false),
+    (Gauge::Second, false, true, true),
+    (Gauge::Second, true, false, true),
+    (Gauge::First, true, false, false),
+    (Gauge::Flat, true, false, true),
+];
+
+/// Adds a form unless it is there.
+fn add<'g>(forms: &mut Vec<Form<'g>>, form: Form<'g>) {
+    let links = |f: &Form<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
+    if !forms.iter().any(|known| links(known) == links(&form)) {
+        forms.push(form);
+    }
+}

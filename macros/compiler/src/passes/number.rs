@@ -1,0 +1,207 @@
+//! Vectors, rotations and mass properties in plain numbers, with what is only rounding told from what is small.
+
+use crate::expr::{Graph, Mat3, Rotation, Sym3, Vec3};
+use crate::model::{Inertia, Pose};
+
+/// A vector.
+pub type Vector = [f64; 3];
+/// A matrix by rows.
+pub type Matrix = [[f64; 3]; 3];
+
+/// What rounding of a few operations leaves of a one.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A number, or zero if it is but the rounding of terms of size `scale`.
+pub fn clean(x: f64, scale: f64) -> f64 {
+    if x.abs() <= ROUNDING * scale { 0.0 } else { x }
+}
+
+/// An entry of a rotation matrix without rounding about 0 and ±1.
+fn clean_entry(x: f64) -> f64 {
+    if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) }
+}
+
+/// Scalar product.
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Vector product.
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Length.
+pub fn norm(a: Vector) -> f64 {
+    a[0].hypot(a[1]).hypot(a[2])
+}
+
+/// `s a + b`.
+pub fn along(s: f64, a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|k| s * a[k] + b[k])
+}
+
+/// The unit vector along coordinate axis `k`.
+pub fn axis(k: usize) -> Vector {
+    std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
+}
+
+/// Column `j`.
+pub fn column(m: &Matrix, j: usize) -> Vector {
+    [m[0][j], m[1][j], m[2][j]]
+}
+
+/// Product with a vector.
+pub fn times(m: &Matrix, v: Vector) -> Vector {
+    m.map(|row| dot(row, v))
+}
+
+/// Product of the transpose with a vector.
+pub fn transposed_times(m: &Matrix, v: Vector) -> Vector {
+    std::array::from_fn(|j| dot(column(m, j), v))
+}
+
+/// Product.
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| dot(a[i], column(b, j))))
+}
+
+/// Transpose.
+pub fn transpose(m: &Matrix) -> Matrix {
+    std::array::from_fn(|i| column(m, i))
+}
+
+/// The unit matrix.
+pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// A rotation about coordinate axis `k`.
+pub fn about(k: usize, angle: f64) -> Matrix {
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = (clean_entry(sin), clean_entry(cos));
+    let mut m = IDENTITY;
+    (m[i][i], m[i][j], m[j][i], m[j][j]) = (cos, -sin, sin, cos);
+    m
+}
+
+/// A rotation matrix without rounding about 0 and ±1.
+pub fn clean_rotation(m: &Matrix) -> Matrix {
+    m.map(|row| row.map(clean_entry))
+}
+
+/// A frame in another.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Columns are its axes.
+    pub rotation: Matrix,
+    /// Its origin.
+    pub translation: Vector,
+}
+
+impl Place {
+    /// The same frame.
+    pub const IDENTITY: Place = Place { rotation: IDENTITY, translation: [0.0; 3] };
+
+    /// The numbers of a pose, if it is made of numbers, and its rotation is one up to rounding.
+    pub fn of(pose: &Pose<'_>) -> Option<Place> {
+        let rotation = clean_rotation(&pose.rotation.matrix().values()?);
+        let square = product(&transpose(&rotation), &rotation);
+        let error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
+        if (0..9).any(|k| error(k / 3, k % 3) > 4.0 * ROUNDING) {
+            return None;
+        }
+        Some(Place { rotation, translation: clean_vector(pose.translation.values()?) })
+    }
+
+    /// It as a pose.
+    pub fn pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
+        let matrix = Mat3::from_fn(|i, j| g.num(self.rotation[i][j]));
+        Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::numbers(g, self.translation) }
+    }
+
+    /// This frame in one that is placed at `other`, moved on by `next` in itself.
+    pub fn between(&self, other: &Place, next: &Place) -> Place {
+        let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
+        let ahead = times(&self.rotation, next.translation);
+        let scale = norm(self.translation) + norm(ahead) + norm(other.translation);
+        let from =
+            std::array::from_fn(|k| clean(self.translation[k] + ahead[k] - other.translation[k], scale));
+        let translation = transposed_times(&other.rotation, from).map(|c| clean(c, scale));
+        Place { rotation: clean_rotation(&rotation), translation }
+    }
+}
+
+/// A vector without components that are but rounding next to the others.
+fn clean_vector(v: Vector) -> Vector {
+    let scale = norm(v);
+    v.map(|c| clean(c, scale))
+}
+
+/// Mass properties in numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Mass {
+    /// Mass.
+    pub mass: f64,
+    /// First moment.
+    pub moment: Vector,
+    /// Inertia about the origin.
+    pub tensor: Matrix,
+}
+
+impl Mass {
+    /// The numbers of mass properties, if they are numbers.
+    pub fn of(inertia: &Inertia<'_>) -> Option<Mass> {
+        Some(Mass {
+            mass: inertia.mass.value()?,
+            moment: inertia.moment.values()?,
+            tensor: inertia.tensor.full().values()?,
+        })
+    }
+
+    /// They as expressions.
+    pub fn inertia<'g>(&self, g: &'g Graph) -> Inertia<'g> {
+        Inertia {
+            mass: g.num(self.mass),
+            moment: Vec3::numbers(g, self.moment),
+            tensor: Sym3::from_upper(&Mat3::from_fn(|i, j| g.num(self.tensor[i][j]))),
+        }
+    }
+
+    /// The same about the origin of a frame placed in this one, in its axes: with `p` its origin, the tensor loses
+    /// `2 (p · h) 1 − p hᵀ − h pᵀ` and gains `m (|p|² 1 − p pᵀ)`.
+    pub fn seen_from(&self, place: &Place) -> Mass {
+        let (r, p, h) = (&place.rotation, place.translation, self.moment);
+        let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
+        let tensor: Matrix = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let unit = if i == j { diagonal } else { 0.0 };
+                self.tensor[i][j] + unit + p[i] * h[j] + h[i] * p[j] - self.mass * p[i] * p[j]
+            })
+        });
+        let tensor = product(&transpose(r), &product(&tensor, r));
+        let moment = transposed_times(r, along(-self.mass, p, h));
+        Mass { mass: self.mass, moment, tensor }.cleaned()
+    }
+
+    /// The sum with a point mass at `p`.
+    pub fn plus_point(&self, mass: f64, p: Vector) -> Mass {
+        let square = dot(p, p);
+        let entry = |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
+        let tensor = std::array::from_fn(|i| std::array::from_fn(|j| self.tensor[i][j] + mass * entry(i, j)));
+        Mass { mass: self.mass + mass, moment: along(mass, p, self.moment), tensor }
+    }
+
+    /// Without first moments and products of inertia that are but rounding.
+    fn cleaned(&self) -> Mass {
+        let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let entry = |i: usize, j: usize| match i == j {
+            true => self.tensor[i][j],
+            false => clean(self.tensor[i][j], size),
+        };
+        Mass {
+            mass: self.mass,
+            moment: clean_vector(self.moment),
+            tensor: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+        }
+    }
+}

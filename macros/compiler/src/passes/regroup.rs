@@ -1,0 +1,169 @@
+//! Mass properties moved from links to their parents: what a joint's motion neither changes nor sets moving acts as if
+//! it were fixed to the parent (Khalil and Kleinfinger 1987; Gautier and Khalil 1990).
+//!
+//! Of a link with mass properties `X` and a joint with subspace `S`, a part with `X S = 0` that the joint's motion
+//! carries into itself gives the same wrench, momentum and energy whether the joint moves or not. About a turning axis
+//! `z` these are a mass at the origin, a moment along `z`, and equal moments of inertia about `x` and `y`; for a sliding
+//! joint all moments of inertia; for a screw equal moments about `x` and `y`; for a ball a mass at the centre.
+
+use super::number::{Mass, Place};
+use crate::expr::{Sym3, Vec3};
+use crate::model::{Inertia, Link, LinkId, Model, Motion};
+
+/// Which moment of inertia of a turning link vanishes. About an axis `k` the others are `k + 1` and `k + 2`, cyclic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gauge {
+    /// That about axis `k + 1`.
+    First,
+    /// That about axis `k + 2`.
+    Second,
+    /// The moments about both add up to that about `k`: no mass is off the plane through the origin.
+    #[default]
+    Flat,
+}
+
+/// How mass properties are distributed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Regroup {
+    /// What is left of the moments of inertia.
+    pub gauge: Gauge,
+    /// A part of a link's mass goes to a child's origin where that takes away a component of the link's first moment.
+    pub anchors: bool,
+    /// Also where mass properties or places are not numbers: moving them costs operations too.
+    pub symbolic: bool,
+}
+
+/// Moves all that can be moved.
+pub fn regroup(model: &mut Model<'_>, Regroup { gauge, anchors, symbolic }: Regroup) {
+    for k in (0..model.links.len()).rev() {
+        if anchors {
+            anchor(model, k);
+        }
+        let link = &model.links[k];
+        let target = link.parent.map_or(&model.still, |p| &model.links[p.0].inertia);
+        if !(symbolic || is_numeric(&link.inertia) && is_numeric(target) && has_numeric_place(link)) {
+            continue;
+        }
+        let Some(part) = movable(link, gauge) else { continue };
+        let placement = link.placement.clone();
+        let parent = link.parent;
+        model.links[k].inertia = without(&model.links[k], &part);
+        let target = match parent {
+            Some(p) => &mut model.links[p.0].inertia,
+            None => &mut model.still,
+        };
+        *target = target.plus_placed(&part, &placement.rotation, placement.translation);
+    }
+}
+
+/// Moves a mass from link `k` to the origin of a child that turns about it, so that a component of the link's first
+/// moment vanishes. The force on that mass is one product of three numbers with an acceleration that is known, while
+/// the moment would need that of the link's origin as well.
+fn anchor(model: &mut Model<'_>, k: usize) {
+    let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
+    let (Some(own), Some(mut inertia)) = (coordinate_axis(*axis), Mass::of(&model.links[k].inertia)) else {
+        return;
+    };
+    if !pushes(model, k) {
+        return;
+    }
+    let g = model.graph;
+    for c in k + 1..model.links.len() {
+        let child = &model.links[c];
+        let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
+        let (Some(place), Some(mut other)) = (Place::of(&child.placement), Mass::of(&child.inertia)) else {
+            continue;
+        };
+        // Without a first moment the child's acceleration may not be needed at all.
+        if !turns || child.parent != Some(LinkId(k)) || other.mass != 0.0 || other.moment == [0.0; 3] {
+            continue;
+        }
+        let p = place.translation;
+        let normal: Vec<usize> = (0..3).filter(|i| *i != own).collect();
+        let along: Vec<usize> = normal.iter().copied().filter(|i| p[*i] != 0.0).collect();
+        let [i] = along[..] else { continue };
+        if inertia.moment[i] == 0.0 {
+            continue;
+        }
+        let mass = inertia.moment[i] / p[i];
+        inertia = inertia.plus_point(-mass, p);
+        inertia.moment[i] = 0.0;
+        other.mass = mass;
+        model.links[c].inertia = other.inertia(g);
+        model.links[k].inertia = inertia.inertia(g);
+    }
+}
+
+/// True if the force on a link matters, not its moment alone: between it and the root there is an arm that turns.
+fn pushes(model: &Model<'_>, mut k: usize) -> bool {
+    loop {
+        let link = &model.links[k];
+        match (&link.motion, link.parent) {
+            (Motion::Turn { .. } | Motion::Ball { .. }, None) => return false,
+            (Motion::Turn { .. } | Motion::Ball { .. }, Some(parent)) => {
+                if !link.placement.translation.is_zero() && model.links[parent.0].parent.is_some() {
+                    return true;
+                }
+                k = parent.0;
+            }
+            _ => return true,
+        }
+    }
+}
+
+fn is_numeric(inertia: &Inertia<'_>) -> bool {
+    inertia.mass.value().is_some()
+        && inertia.moment.values().is_some()
+        && inertia.tensor.full().values().is_some()
+}
+
+fn has_numeric_place(link: &Link<'_>) -> bool {
+    link.placement.translation.values().is_some() && link.placement.rotation.matrix().values().is_some()
+}
+
+/// What of a link's mass properties acts as if it were fixed to the parent.
+fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
+    let Inertia { mass, moment, tensor } = link.inertia;
+    let nothing = Inertia::zero(mass.graph());
+    match &link.motion {
+        Motion::Turn { axis, .. } => {
+            let k = coordinate_axis(*axis)?;
+            let mut along = nothing.moment;
+            along.0[k] = moment[k];
+            Some(Inertia { mass, moment: along, tensor: transverse(&tensor, k, gauge) })
+        }
+        Motion::Slide { .. } => Some(Inertia { tensor, ..nothing }),
+        Motion::Helix { axis, .. } => {
+            let k = coordinate_axis(*axis)?;
+            Some(Inertia { tensor: transverse(&tensor, k, gauge), ..nothing })
+        }
+        Motion::Ball { .. } => Some(Inertia { mass, ..nothing }),
+        Motion::Free { .. } | Motion::Placed => None,
+    }
+}
+
+/// Equal moments about the two axes normal to `k`.
+fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    let d = &tensor.diagonal;
+    let both = match gauge {
+        Gauge::First => d[i],
+        Gauge::Second => d[j],
+        Gauge::Flat => (d[i] + d[j] - d[k]) * 0.5,
+    };
+    let mut out = Sym3::scalar(both);
+    out.diagonal[k] = both.zero();
+    out
+}
+
+fn without<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
+    let Inertia { mass, moment, tensor } = link.inertia;
+    Inertia { mass: mass - part.mass, moment: moment - part.moment, tensor: tensor - part.tensor }
+}
+
+/// The coordinate axis that a vector points along (either way), if it does.
+pub fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
+    let k = (0..3).find(|k| !v[*k].is_zero())?;
+    let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();
+    others.then_some(k)
+}

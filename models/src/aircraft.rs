@@ -1,0 +1,173 @@
+use linkwork::mechanism;
+
+/// An aircraft as a rigid body with linear aerodynamics in pitch: lift, drag, pitching moment, elevator and thrust.
+///
+/// Source: Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, on aircraft; Etkin and Reid,
+/// *Dynamics of Flight* (1996), ch. 2 and 4.
+///
+/// - Axes: forward, right, down, of the ground too. Configuration: place and unit quaternion of `flight`; velocity:
+///   linear and angular in the aircraft's axes, (u, v, w) and (p, q, r). Inputs: `elevator`, rad; `thrust`, N, forward.
+/// - Angle of attack `α = atan2(w, u)`, dynamic pressure `Q = ½ ρ V²`. In the plane of symmetry: lift
+///   `Q S (C_L0 + C_Lα α)`, drag `Q S (C_D0 + K C_L²)`, pitching moment
+///   `Q S c (C_m0 + C_mα α + C_mq q c / (2 V) + C_mδ δ)`.
+/// - Level flight: `L + T sin α = m g`, `T cos α = D`, no moment. Level turn with the bank `φ` without drag:
+///   `L = m g / cos φ`, and the path turns at the rate `g tan φ / V`.
+#[mechanism(gravity = g * z)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aircraft {
+    /// Acceleration of free fall, m/s².
+    pub g: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about the forward axis, kg·m².
+    pub ixx: f64,
+    /// Moment of inertia about the right axis, kg·m².
+    pub iyy: f64,
+    /// Moment of inertia about the downward axis, kg·m².
+    pub izz: f64,
+    /// Entry of the inertia matrix in row x and column z, kg·m²: minus the product of inertia of the handbooks.
+    pub ixz: f64,
+    /// Density of the air, kg/m³.
+    pub density: f64,
+    /// Wing area, m².
+    pub area: f64,
+    /// Mean chord, m.
+    pub chord: f64,
+    /// Lift coefficient at zero angle of attack.
+    pub cl_0: f64,
+    /// Its slope with the angle of attack, 1/rad.
+    pub cl_alpha: f64,
+    /// Drag coefficient without lift.
+    pub cd_0: f64,
+    /// Induced drag: factor of the squared lift coefficient.
+    pub cd_induced: f64,
+    /// Coefficient of the pitching moment at zero angle of attack.
+    pub cm_0: f64,
+    /// Its slope with the angle of attack, 1/rad, negative if stable.
+    pub cm_alpha: f64,
+    /// Its slope with the pitch rate, made dimensionless by half the chord over the speed.
+    pub cm_rate: f64,
+    /// Its slope with the elevator's angle, 1/rad.
+    pub cm_elevator: f64,
+
+    elevator: Input,
+    #[body(mass = mass, inertia = [[ixx, 0, ixz], [0, iyy, 0], [ixz, 0, izz]])]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(norm(velocity))]
+    speed: Scalar,
+    #[define(atan2(dot(velocity, airframe.z), dot(velocity, airframe.x)))]
+    attack: Scalar,
+    #[define(density / 2 * dot(velocity, velocity) * area)]
+    load: Scalar,
+    #[define(cl_0 + cl_alpha * attack)]
+    lift_coefficient: Scalar,
+    #[define(dot(omega(airframe / ground), airframe.y))]
+    pitch_rate: Scalar,
+
+    #[acts(on = airframe, value = load * lift_coefficient * (sin(attack) * airframe.x - cos(attack) * airframe.z))]
+    lift: Force,
+    #[acts(
+        on = airframe,
+        value = -load * (cd_0 + cd_induced * pow(lift_coefficient, 2))
+            * (cos(attack) * airframe.x + sin(attack) * airframe.z)
+    )]
+    drag: Force,
+    #[acts(
+        on = airframe,
+        value = load * chord * (cm_0 + cm_alpha * attack + cm_rate * pitch_rate * chord / (2 * speed)
+            + cm_elevator * elevator) * airframe.y
+    )]
+    pitching_moment: Torque,
+    #[acts(on = airframe, along = airframe.x)]
+    thrust: Force,
+
+    #[output(attack)]
+    angle_of_attack: Scalar,
+    #[output(speed)]
+    airspeed: Scalar,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near};
+    use linkwork::nalgebra::{UnitQuaternion, Vector3};
+    use linkwork::prelude::*;
+
+    /// A light aircraft.
+    const A: Aircraft = Aircraft {
+        g: 9.81,
+        mass: 1050.0,
+        ixx: 1290.0,
+        iyy: 1830.0,
+        izz: 2670.0,
+        ixz: -40.0,
+        density: 1.225,
+        area: 16.2,
+        chord: 1.5,
+        cl_0: 0.3,
+        cl_alpha: 4.6,
+        cd_0: 0.03,
+        cd_induced: 0.05,
+        cm_0: 0.02,
+        cm_alpha: -0.9,
+        cm_rate: -12.0,
+        cm_elevator: -1.3,
+    };
+
+    fn state(
+        turn: UnitQuaternion<f64>,
+        v: Vector3<f64>,
+        w: Vector3<f64>,
+    ) -> (SVector<f64, 7>, SVector<f64, 6>) {
+        let v = turn.inverse() * v;
+        let w = turn.inverse() * w;
+        ([0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into(), [v.x, v.y, v.z, w.x, w.y, w.z].into())
+    }
+
+    /// Trim in level flight: lift, thrust and elevator worked out by hand leave no acceleration.
+    #[test]
+    fn level_flight() {
+        let (alpha, weight) = (0.06_f64, A.mass * A.g);
+        let cl = A.cl_0 + A.cl_alpha * alpha;
+        let cd = A.cd_0 + A.cd_induced * cl * cl;
+        // L + D tan α = m g gives the speed.
+        let load = weight / (cl + cd * alpha.tan());
+        let speed = (2.0 * load / (A.density * A.area)).sqrt();
+        let thrust = load * cd / alpha.cos();
+        let elevator = -(A.cm_0 + A.cm_alpha * alpha) / A.cm_elevator;
+        let attitude = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
+        let (q, v) = state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
+        assert_close(A.angle_of_attack(&q, &v), alpha, 1e-14);
+        assert_close(A.airspeed(&q, &v), speed, 1e-14);
+        let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
+        assert_near(A.forward_dynamics(&q, &v, &tau), SVector::zeros(), 1e-12);
+
+        // Pitched up by a little the nose is driven back down.
+        let nose_up = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha + 0.01);
+        let (q, v) = state(nose_up, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
+        let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
+        let back = A.forward_dynamics(&q, &v, &tau)[4];
+        assert_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
+    }
+
+    /// Level turn of a glider without drag: the velocity is constant in its own axes.
+    #[test]
+    fn level_turn() {
+        let smooth = Aircraft { cd_0: 0.0, cd_induced: 0.0, ..A };
+        let (alpha, bank) = (0.06_f64, 0.7_f64);
+        let load = A.mass * A.g / bank.cos() / (A.cl_0 + A.cl_alpha * alpha);
+        let speed = (2.0 * load / (A.density * A.area)).sqrt();
+        let rate = A.g * bank.tan() / speed;
+        let attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), bank)
+            * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
+        let (q, v) = state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::new(0.0, 0.0, rate));
+        let a = smooth.forward_dynamics(&q, &v, &SVector::zeros());
+        assert_near(a.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
+    }
+}

@@ -1,0 +1,76 @@
+use linkwork::mechanism;
+
+/// A rigid body that flies freely, without gravity: Euler's top. Spun about its middle axis it turns over again and
+/// again (Dzhanibekov's effect, the tennis racket theorem).
+///
+/// Source: Euler, *Theoria motus corporum* (1765); Landau and Lifshitz, *Mechanics* (1976), §37; Ashbaugh, Chicone and
+/// Cushman, *The twisting tennis racket*, J. Dyn. Diff. Eq. 3 (1991).
+///
+/// - Configuration: place and unit quaternion of `flight`; velocity: linear `v` and angular `ω`, in the body's axes.
+/// - Newton's and Euler's equations: `m (v̇ + ω × v) = 0`, `I ω̇ + ω × I ω = 0`.
+/// - Energy and angular momentum (fixed in space) are constant. With `I₁ < I₂ < I₃`, the energy `E` and the angular
+///   momentum `L` such that `L² > 2 E I₂`, the angular velocity returns after
+///   `4 K(k) √(I₁ I₂ I₃ / ((I₃ − I₂)(L² − 2 E I₁)))`, `k² = (I₂ − I₁)(2 E I₃ − L²) / ((I₃ − I₂)(L² − 2 E I₁))`.
+#[mechanism]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeRigidBody {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about x, kg·m².
+    pub ixx: f64,
+    /// Moment of inertia about y, kg·m².
+    pub iyy: f64,
+    /// Moment of inertia about z, kg·m².
+    pub izz: f64,
+
+    #[body(mass = mass, inertia = diagonal(ixx, iyy, izz))]
+    body: Body,
+    #[joint(ground -> body)]
+    flight: Free,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near, elliptic, precisely};
+    use linkwork::nalgebra::Vector3;
+    use linkwork::prelude::*;
+
+    const B: FreeRigidBody = FreeRigidBody { mass: 0.4, ixx: 1.0, iyy: 2.0, izz: 2.5 };
+
+    #[test]
+    fn newtons_and_eulers_equations() {
+        let (v, w) = (Vector3::new(1.0, -2.0, 0.5), Vector3::new(0.3, 2.0, -1.1));
+        let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
+        let found = B.bias_forces(&B.neutral(), &[v.x, v.y, v.z, w.x, w.y, w.z].into());
+        assert_near(found.fixed_rows::<3>(0).into_owned(), 0.4 * w.cross(&v), 1e-15);
+        assert_near(found.fixed_rows::<3>(3).into_owned(), w.cross(&(inertia * w)), 1e-14);
+    }
+
+    /// Spun about the middle axis with a slight wobble: over after half a period, back after a whole one.
+    #[test]
+    fn turns_over() -> Result<(), Error> {
+        // No spin about x at first, so that L² > 2 E I₂.
+        let start = Vector3::new(0.0, 5.0, 0.01);
+        let inertia = Vector3::new(B.ixx, B.iyy, B.izz);
+        let twice = start.component_mul(&start).dot(&inertia);
+        let momentum2 = start.component_mul(&inertia).norm_squared();
+        let (excess, rest) = (momentum2 - twice * B.ixx, twice * B.izz - momentum2);
+        let k2 = (B.iyy - B.ixx) * rest / ((B.izz - B.iyy) * excess);
+        let scale = (B.ixx * B.iyy * B.izz / ((B.izz - B.iyy) * excess)).sqrt();
+        let period = 4.0 * elliptic(k2) * scale;
+        let run = simulate(&B)
+            .from(B.neutral(), [0.0, 0.0, 0.0, start.x, start.y, start.z])
+            .method(precisely())
+            .duration(period);
+        let angular = B.momentum(&B.neutral(), &[0.0, 0.0, 0.0, start.x, start.y, start.z].into());
+        for (k, sample) in run.sample_every(period / 2.0).enumerate() {
+            let Sample { q, v, .. } = sample?;
+            let sign = if k == 1 { -1.0 } else { 1.0 };
+            assert_near(v.fixed_rows::<3>(3).into_owned(), Vector3::new(0.0, sign * 5.0, 0.01), 1e-7);
+            assert_near(B.momentum(&q, &v), angular, 1e-9);
+            assert_close(B.kinetic_energy(&q, &v), twice / 2.0, 1e-10);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,99 @@
+use linkwork::mechanism;
+
+/// A satellite in orbit, which gravity turns because it is weaker at the far end.
+///
+/// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 9; Bernstein, Goel and Ansari, *Geometry, Kinematics,
+/// Statics, and Dynamics*, on central gravity.
+///
+/// - Configuration: place and unit quaternion of `flight`, the free joint from the centre of attraction; velocity:
+///   linear and angular, in the satellite's axes.
+/// - With `r` the place and `n = r/|r|`: force `−μ m r / r³` (and the small part of the same origin as the torque),
+///   torque `3 μ / r³ · n × I n`, to second order in size over distance.
+/// - On a circular orbit with the rate `Ω = √(μ/r³)`, one axis up (yaw), one forward (roll), one across (pitch), the
+///   satellite stays so; small oscillations in pitch have the frequency `Ω √(3 (I_roll − I_yaw) / I_pitch)`. Stable if
+///   the long axis is up.
+#[mechanism]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GravityGradientSatellite {
+    /// Gravitational parameter of the centre, m³/s²: 3.986004418e14 for the earth.
+    pub mu: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about x, kg·m².
+    pub ixx: f64,
+    /// Moment of inertia about y, kg·m².
+    pub iyy: f64,
+    /// Moment of inertia about z, kg·m².
+    pub izz: f64,
+
+    #[body(mass = mass, inertia = diagonal(ixx, iyy, izz))]
+    satellite: Body,
+    #[joint(ground -> satellite)]
+    flight: Free,
+    #[acts(between = (ground, satellite), mu = mu)]
+    gravity: Gravity,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near, precisely};
+    use linkwork::nalgebra::{UnitQuaternion, Vector3};
+    use linkwork::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// Earth; up is x, forward y, across z.
+    const S: GravityGradientSatellite =
+        GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
+
+    fn configuration(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
+        SVector::from([r.x, r.y, r.z, turn.i, turn.j, turn.k, turn.w])
+    }
+
+    #[test]
+    fn force_and_torque() {
+        let (r, turn) =
+            (Vector3::new(4.1e6, -5.2e6, 1.7e6), UnitQuaternion::from_euler_angles(0.4, -0.8, 1.9));
+        let h = S.bias_forces(&configuration(r, turn), &SVector::zeros());
+        let own = turn.inverse() * r;
+        let (distance, n) = (own.norm(), own.normalize());
+        let weight = S.mu * S.mass / distance.powi(2) * n;
+        assert_near(h.fixed_rows::<3>(0).into_owned() / weight.norm(), weight.normalize(), 1e-12);
+        let inertia = Vector3::new(S.ixx, S.iyy, S.izz);
+        let scale = 3.0 * S.mu / distance.powi(3);
+        let torque = n.cross(&inertia.component_mul(&n));
+        // The torque is a small difference of large terms only in the last digits.
+        assert_near(h.fixed_rows::<3>(3).into_owned() / scale, -torque, 1e-9);
+    }
+
+    #[test]
+    fn pitch_oscillation() -> Result<(), Error> {
+        // In units of the orbit: radius, gravitational parameter and rate are one. The satellite is so small that its
+        // shape does not disturb the orbit.
+        let tiny = 1e-11;
+        let unit = GravityGradientSatellite {
+            mu: 1.0,
+            mass: 1.0,
+            ixx: S.ixx * tiny,
+            iyy: S.iyy * tiny,
+            izz: S.izz * tiny,
+        };
+        let start = UnitQuaternion::from_euler_angles(0.0, 0.0, 1e-3);
+        let v = start.inverse() * Vector3::new(0.0, 1.0, 0.0);
+        let frequency = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
+        // The pitch angle is that between x and the direction up.
+        let pitch = |q: &SVector<f64, 7>| {
+            let x = UnitQuaternion::new_unchecked([q[3], q[4], q[5], q[6]].into()) * Vector3::x();
+            (q[0] * x.y - q[1] * x.x) / q[0].hypot(q[1])
+        };
+        let run = simulate(&unit)
+            .from(configuration(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
+            .method(precisely())
+            .duration(TAU / frequency);
+        for sample in run.sample_every(TAU / frequency / 8.0) {
+            let Sample { t, q, .. } = sample?;
+            assert_close(pitch(&q) / 1e-3, (frequency * t).cos(), 1e-5);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,205 @@
+//! Model passes change no function: every form of a model has the same equations, energies, momenta and frames as the
+//! model itself, on random trees of every joint and on the robots.
+
+mod random_tree;
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::emit::Output;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
+use linkwork_compiler::mechanics::regularity::random_configuration;
+use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
+use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::passes::{Passes, forms};
+use linkwork_compiler::{compile_with, derive_with, read};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use random_tree::{Tree, trees};
+use std::path::Path;
+
+/// Relative to the largest entry.
+const TOLERANCE: f64 = 1e-10;
+
+const CHOICES: [Passes; 3] = [
+    Passes { frames: true, regroup: false },
+    Passes { frames: false, regroup: true },
+    Passes { frames: true, regroup: true },
+];
+
+fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
+    let (arguments, item) = tree.source();
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
+    match model {
+        Some(model) => check(&model),
+        None => panic!("{}\n{item}", cx.messages().join("\n")),
+    }
+}
+
+/// Numbers for all symbols at a random state.
+fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(linkwork_compiler::expr::Symbol) -> f64 {
+    let q = random_configuration(model, seed);
+    move |s| match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        Quantity::Parameter(_) => sample(s, seed),
+        _ => 4.0 * (sample(s, seed) - 1.0),
+    }
+}
+
+fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) {
+    assert_eq!(new.len(), old.len(), "{what}");
+    let scale = old.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for (k, (a, b)) in new.iter().zip(old).enumerate() {
+        assert!((a - b).abs() <= tolerance * scale, "{what}, entry {k}: {a} and {b} (seed {seed})");
+    }
+}
+
+/// All functions of a model as expressions.
+fn functions<'g>(model: &Model<'g>) -> Vec<(&'static str, Vec<Expr<'g>>)> {
+    let joints = &mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let (mass, moment) = energy::mass_and_moment(model, joints);
+    vec![
+        ("mass matrix", crba::mass_matrix(model, joints).concat()),
+        ("bias", rnea::inverse_dynamics(model, joints, &v, None)),
+        ("inverse dynamics", rnea::inverse_dynamics(model, joints, &v, Some(&a))),
+        ("inputs", forces::generalized_forces(model, joints)),
+        ("kinetic energy", vec![energy::kinetic_energy(model, joints, &v)]),
+        ("potential energy", vec![energy::potential_energy(model, joints)]),
+        ("mass and moment", [vec![mass], moment.0.to_vec()].concat()),
+        ("generalized momentum", momentum::generalized_momentum(model, joints, &v)),
+        ("momentum rate", momentum::momentum_rate(model, joints, &v)),
+        ("momentum", frames::flat(&momentum::centroidal_momentum(model, joints, &v))),
+        ("frames", placements(model, joints)),
+    ]
+}
+
+/// Rotation and position of all named frames in the ground.
+fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
+    for joint in joints {
+        let (r, p) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |parent| world[parent.0]);
+        world.push((r * joint.rotation.matrix(), p + r * joint.translation));
+    }
+    let mut all = Vec::new();
+    for frame in &model.frames {
+        let (r, p) = frame.link.map_or((Mat3::identity(g), Vec3::zero(g)), |link| world[link.0]);
+        all.extend((r * frame.pose.rotation.matrix()).0.concat());
+        all.extend((p + r * frame.pose.translation).0);
+    }
+    all
+}
+
+/// Every form of a model has its functions, and forward dynamics inverts inverse dynamics.
+fn check_forms(model: &Model<'_>, seed: u64) {
+    let at = symbols(model, seed);
+    let old: Vec<_> = functions(model).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
+    for passes in CHOICES {
+        for form in forms(model, passes) {
+            for ((name, new), (_, old)) in functions(&form.model).iter().zip(&old) {
+                assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
+            }
+            check_forward(&form.model, seed);
+        }
+    }
+}
+
+fn check_forward(model: &Model<'_>, seed: u64) {
+    let at = symbols(model, seed);
+    let joints = mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
+    let h = rnea::inverse_dynamics(model, &joints, &v, None);
+    let r: Vec<Expr<'_>> = tau.iter().zip(&h).map(|(t, h)| *t - *h).collect();
+    let expected = eval(&a, &at);
+    let mass = crba::mass_matrix(model, &joints);
+    let solved = eval(&ldl::solve(mass, r.clone(), &joints), &at);
+    assert_near("factorisation", seed, 10.0 * TOLERANCE, &solved, &expected);
+    let wrenches = rnea::wrenches(model, &joints, &v, None);
+    for articulated in
+        [aba::accelerations(model, &joints, &r), aba::forward_dynamics(model, &joints, wrenches, &tau)]
+    {
+        let found = eval(&articulated.expect("no coordinate is coupled"), &at);
+        assert_near("articulated bodies", seed, 10.0 * TOLERANCE, &found, &expected);
+    }
+}
+
+/// The generated programs compute the same with and without passes, and cost no more with them.
+fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
+    for seed in 0..3 {
+        let at = symbols(model, seed);
+        for (new, old) in new.functions.iter().zip(&old.functions) {
+            let (a, b) = (new.program.run(&at), old.program.run(&at));
+            assert_near(&format!("{name}: {}", new.name), seed, tolerance, &a, &b);
+        }
+    }
+    for (new, old) in new.functions.iter().zip(&old.functions) {
+        if ["mass_matrix", "inverse_dynamics"].contains(&new.name.as_str()) {
+            let (after, before) = (new.program.counts.total(), old.program.counts.total());
+            assert!(after <= before, "{name}: {}: {after} operations, {before} without passes", new.name);
+        }
+    }
+}
+
+const OFF: Passes = Passes { frames: false, regroup: false };
+
+fn check_robot(name: &str, options: &str) {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let source = read(tokens(&arguments), tokens("pub struct Robot;"), folder, &mut cx).expect("it is read");
+    let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
+    for passes in CHOICES {
+        let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");
+        check_programs(name, &model, &new, &old, 1e-12);
+    }
+}
+
+#[test]
+fn robots_move_as_without_passes() {
+    for (name, options) in [
+        ("cartpole", ""),
+        ("double_pendulum", ""),
+        ("ur5", ""),
+        ("kinova", ""),
+        ("panda", ""),
+        ("panda", ", mimic = independent"),
+        ("solo12", ", base = free, inertia = trust"),
+        ("simple_humanoid", ", base = free, inertia = trust"),
+    ] {
+        check_robot(name, options);
+    }
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_261_121),
+        ..Default::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(config(40))]
+
+    #[test]
+    fn forms_are_the_same_mechanism(tree in trees(4), seed in 0_u64..1000) {
+        with_model(&tree, |model| check_forms(model, seed));
+    }
+
+    #[test]
+    fn programs_are_the_same_functions(tree in trees(6), seed in 0_u64..1000) {
+        let _ = seed;
+        with_model(&tree, |model| {
+            let mut cx = Diagnostics::new();
+            let (new, old) = (derive_with(model, Passes::default(), &mut cx), derive_with(model, OFF, &mut cx));
+            check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
+        });
+    }
+}

@@ -1,0 +1,276 @@
+//! The models and the language's own page: all are accepted; none is with a factor too many or too few.
+
+use super::units;
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use quote::ToTokens;
+use std::fs;
+use std::path::Path;
+use syn::{Item, ItemStruct, Meta};
+
+/// A mechanism of a source file.
+struct Source {
+    arguments: TokenStream,
+    item: ItemStruct,
+}
+
+impl Source {
+    fn messages(&self) -> Vec<String> {
+        units(&self.arguments.to_string(), &self.item.to_token_stream().to_string()).err().unwrap_or_default()
+    }
+
+    /// The parameters with the units that their documentation ends with: "Mass of the cart, kg."
+    fn documented(&self) -> Vec<(String, String)> {
+        let field = |f: &syn::Field| {
+            let doc = f.attrs.iter().filter_map(|a| match &a.meta {
+                Meta::NameValue(doc) if a.path().is_ident("doc") => Some(doc.value.to_token_stream().to_string()),
+                _ => None,
+            });
+            let doc = doc.collect::<Vec<_>>().join(" ");
+            let first = doc.trim_matches(['"', ' ']).split(['.', ':', ';']).next()?.to_string();
+            let unit = first.split(", ").map(str::trim).find(|part| is_unit(part))?;
+            Some((f.ident.as_ref()?.to_string(), unit.to_string()))
+        };
+        self.item.fields.iter().filter_map(field).collect()
+    }
+
+    /// The same with another text for one occurrence of a parameter; none if there are not so many.
+    fn replaced(&self, parameter: &str, occurrence: usize, by: &str) -> Option<Source> {
+        let mut left = occurrence as isize;
+        let by: TokenStream = by.parse().unwrap();
+        let arguments = replace(self.arguments.clone(), parameter, &by, &mut left);
+        let mut item = self.item.clone();
+        for attribute in item.fields.iter_mut().flat_map(|f| &mut f.attrs) {
+            if let Meta::List(list) = &mut attribute.meta {
+                list.tokens = replace(list.tokens.clone(), parameter, &by, &mut left);
+            }
+        }
+        (left < 0).then_some(Source { arguments, item })
+    }
+
+    /// The same with a unit for every documented parameter.
+    fn pinned(&self) -> Source {
+        let mut item = self.item.clone();
+        let documented = self.documented();
+        for field in &mut item.fields {
+            let name = field.ident.as_ref().map(ToString::to_string).unwrap_or_default();
+            if let Some((_, unit)) = documented.iter().find(|(known, _)| *known == name) {
+                let unit: TokenStream = unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
+                field.attrs.push(syn::parse_quote!(#[unit(#unit)]));
+            }
+        }
+        Source { arguments: self.arguments.clone(), item }
+    }
+}
+
+fn is_unit(text: &str) -> bool {
+    let words = text.split(['/', '·', '(', ')']).map(|w| w.trim_end_matches(['²', '³']));
+    !text.is_empty() && words.filter(|w| !w.is_empty()).all(|w| ["m", "kg", "s", "rad", "N", "J", "1"].contains(&w))
+}
+
+/// Replaces the occurrence of a parameter that the count comes to; keys and members are none.
+fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut isize) -> TokenStream {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let is = |k: usize, c: char| matches!(tokens.get(k), Some(TokenTree::Punct(p)) if p.as_char() == c);
+    let mut new = TokenStream::new();
+    for (k, token) in tokens.iter().enumerate() {
+        match token {
+            TokenTree::Group(group) => {
+                let inner = replace(group.stream(), parameter, by, left);
+                new.extend([TokenTree::from(Group::new(group.delimiter(), inner))]);
+            }
+            TokenTree::Ident(i) if i == parameter && !is(k + 1, '=') && !(k > 0 && is(k - 1, '.')) => {
+                match *left {
+                    0 => new.extend([TokenTree::from(Group::new(Delimiter::Parenthesis, by.clone()))]),
+                    _ => new.extend([token.clone()]),
+                }
+                *left -= 1;
+            }
+            _ => new.extend([token.clone()]),
+        }
+    }
+    new
+}
+
+/// The mechanisms of a file.
+fn sources(text: &str) -> Vec<Source> {
+    let found = syn::parse_file(text).unwrap().items.into_iter().filter_map(|item| {
+        let Item::Struct(mut item) = item else { return None };
+        let at = item.attrs.iter().position(|a| a.path().is_ident("mechanism"))?;
+        let arguments = match item.attrs.remove(at).meta {
+            Meta::List(list) => list.tokens,
+            _ => TokenStream::new(),
+        };
+        item.attrs.clear();
+        Some(Source { arguments, item })
+    });
+    found.collect()
+}
+
+/// The mechanisms of all models that have parameters.
+fn gallery() -> Vec<Source> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/src");
+    let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let all = paths.iter().flat_map(|path| sources(&fs::read_to_string(path).unwrap()));
+    all.filter(|source| !source.documented().is_empty()).collect()
+}
+
+/// What is inferred is what the authors wrote.
+#[test]
+fn units_are_those_of_the_documentation() {
+    let mut compared = 0;
+    for source in gallery() {
+        let name = source.item.ident.to_string();
+        let found = units(&source.arguments.to_string(), &source.item.to_token_stream().to_string())
+            .unwrap_or_else(|messages| panic!("{name}: {messages:?}"));
+        let parameters: Vec<String> = source.item.fields.iter().map(|f| f.ident.as_ref().unwrap().to_string()).collect();
+        for (parameter, written) in source.documented() {
+            let k = parameters.iter().position(|p| *p == parameter).unwrap();
+            let inferred = &found.parameters[k];
+            let same = inferred == &written || inferred == &written.replace("rad", "1") || inferred == "any";
+            assert!(same || dimension(&written) == dimension(inferred), "{name}.{parameter}: {written} and {inferred}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 30, "{compared} units");
+}
+
+/// Exponents of m, kg and s.
+fn dimension(unit: &str) -> [i32; 3] {
+    let mut sum = [0; 3];
+    let (mut sign, mut inside) = (1, 1);
+    let mut word = String::new();
+    let mut end = |word: &mut String, sign: i32| {
+        let power = if word.ends_with('²') { 2 } else if word.ends_with('³') { 3 } else { 1 };
+        let of = match word.trim_end_matches(['²', '³']) {
+            "m" => [1, 0, 0],
+            "kg" => [0, 1, 0],
+            "s" => [0, 0, 1],
+            "N" => [1, 1, -2],
+            "J" => [2, 1, -2],
+            _ => [0; 3],
+        };
+        (0..3).for_each(|k| sum[k] += sign * power * of[k]);
+        word.clear();
+    };
+    for c in unit.chars() {
+        match c {
+            '/' | '·' | '(' | ')' => {
+                end(&mut word, sign);
+                match c {
+                    '(' => inside = sign,
+                    ')' => inside = 1,
+                    _ => sign = if c == '/' { -1 } else { inside },
+                }
+            }
+            _ => word.push(c),
+        }
+    }
+    end(&mut word, sign);
+    sum
+}
+
+#[test]
+fn a_factor_too_many_is_refused() {
+    let mut refused = 0;
+    for source in gallery() {
+        let name = source.item.ident.to_string();
+        for (parameter, unit) in source.documented() {
+            // What stands only once is what it is there.
+            if dimension(&unit) == [0; 3] || source.replaced(&parameter, 1, &parameter).is_none() {
+                continue;
+            }
+            for k in 0.. {
+                let Some(changed) = source.replaced(&parameter, k, &format!("{parameter} * {parameter}")) else { break };
+                let messages = changed.messages();
+                let mentions = messages.iter().any(|m| m.contains(&format!("`{parameter}`")));
+                assert!(mentions, "{name}: {parameter} twice at {k}: {messages:?}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 15, "{refused} mistakes");
+}
+
+#[test]
+fn a_factor_too_few_is_refused() {
+    let mut refused = 0;
+    for source in gallery() {
+        let name = source.item.ident.to_string();
+        let pinned = source.pinned();
+        assert_eq!(pinned.messages(), Vec::<String>::new(), "{name}");
+        for (parameter, unit) in source.documented().iter().filter(|(_, unit)| dimension(unit) != [0; 3]) {
+            for k in 0.. {
+                // Its ratio to itself: the factor is gone, the parameter is still used.
+                let Some(changed) = pinned.replaced(parameter, k, &format!("{parameter} / {parameter}")) else { break };
+                let messages = changed.messages();
+                let mentions = messages.iter().any(|m| m.contains(&format!("`{parameter}`")));
+                assert!(mentions, "{name}: without {parameter} ({unit}) at {k}: {messages:?}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 40, "{refused} mistakes");
+}
+
+/// The page of the language, as far as it is compiled.
+#[test]
+fn the_page_of_the_language_is_accepted() {
+    for (name, arguments, fields, expected) in PAGE {
+        let found = units(arguments, &format!("struct {name} {{ {fields} }}"));
+        let found = found.unwrap_or_else(|messages| panic!("{name}: {messages:?}"));
+        assert_eq!(found.parameters.join(" "), *expected, "{name}");
+    }
+}
+
+const PAGE: &[(&str, &str, &str, &str)] = &[
+    (
+        "DoublePendulum",
+        "gravity = -g * y",
+        "g: f64, m1: f64, m2: f64, l1: f64, l2: f64,
+        #[body(mass = m1, com = -l1 / 2 * y, inertia = rod(m1, l1, y))] upper: Body,
+        #[body(mass = m2, com = -l2 / 2 * y, inertia = rod(m2, l2, y))] lower: Body,
+        #[joint(ground -> upper, about = z)] shoulder: Pin,
+        #[joint(upper.at(-l1 * y) -> lower, about = z)] elbow: Pin,",
+        "m/s² kg kg m m",
+    ),
+    (
+        "BeadOnSpinningHoop",
+        "gravity = -g * z",
+        "g: f64, m: f64, radius: f64, spin: f64, theta: Coordinate,
+        #[frame(ground, z(spin * t))] hoop: Frame,
+        #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,",
+        "m/s² kg m 1/s",
+    ),
+    (
+        "TunedSuspension",
+        "",
+        "m1: f64, m2: f64, k1: f64, k2: f64, c: f64, b: f64,
+        #[body(mass = m1)] first: Body, #[body(mass = m2)] second: Body,
+        #[joint(ground -> first, along = x)] rail: Sleeve,
+        #[joint(ground -> second, along = x)] rail2: Sleeve,
+        #[acts(between = (ground, first), stiffness = k1, free_length = 0)] anchor: Spring,
+        #[acts(between = (first, second), stiffness = k2, free_length = 0)] coil: Spring,
+        #[acts(between = (first, second), damping = c)] damper: Dashpot,
+        #[acts(between = (first, second), inertance = b)] inerter: Inerter,",
+        "kg kg N/m N/m N·s/m kg",
+    ),
+    (
+        "Aircraft",
+        "gravity = 9.81 * z",
+        "m: f64, ixx: f64, iyy: f64, izz: f64, ixz: f64,
+        rho: f64, #[unit(m2)] area: f64, #[unit(m)] chord: f64,
+        #[unit(1)] cl0: f64, cl_alpha: f64, cm_elevator: f64,
+        elevator: Input,
+        #[body(mass = m, inertia = [[ixx, 0, ixz], [0, iyy, 0], [ixz, 0, izz]])] airframe: Body,
+        #[joint(ground -> airframe)] flight: Free,
+        #[define(v(airframe / ground / ground))] velocity: Vector,
+        #[define(atan2(dot(velocity, airframe.z), dot(velocity, airframe.x)))] alpha: Scalar,
+        #[define(rho / 2 * dot(velocity, velocity))] pressure: Scalar,
+        #[acts(on = airframe, value = pressure * area * (cl0 + cl_alpha * alpha) * (sin(alpha) * airframe.x - cos(alpha) * airframe.z))]
+        lift: Force,
+        #[acts(on = airframe, value = pressure * area * chord * cm_elevator * elevator * airframe.y)] pitch: Torque,
+        #[output(alpha)] angle_of_attack: Scalar,",
+        "kg kg·m² kg·m² kg·m² kg·m² kg/m³ m² m 1 1 any",
+    ),
+];
