@@ -4,7 +4,7 @@
 use linkwork::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
-use linkwork::{Mechanism, frame, simulate};
+use linkwork::{Mechanism, frame, mechanism, simulate};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
@@ -128,4 +128,20 @@ fn generated_functions() {
     check_kinematics!(Humanoid, Humanoid, "r_wrist");
     check_kinematics!(workshop(), Workshop, "tip");
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
+}
+
+/// A robot with its derivatives.
+#[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives)]
+struct PandaWithDerivatives;
+
+#[test]
+fn derivatives() {
+    let m = PandaWithDerivatives;
+    let q = &Random::new(15).configuration(&m);
+    let (v, a, u) = (&Random::new(16).vector(1.0), &Random::new(17).vector(1.0), &Random::new(18).vector(1.0));
+    assert_eq!(heap_calls(|| m.inverse_dynamics_derivatives(q, v, a)), 0, "inverse_dynamics_derivatives");
+    assert_eq!(heap_calls(|| m.forward_dynamics_derivatives(q, v, a)), 0, "forward_dynamics_derivatives");
+    assert_eq!(heap_calls(|| m.mass_matrix_inverse(q)), 0, "mass_matrix_inverse");
+    assert_eq!(heap_calls(|| m.coriolis_matrix(q, v)), 0, "coriolis_matrix");
+    assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
 }

@@ -131,7 +131,6 @@ fn numbers_take_any_unit() {
         "#[acts(on = rail, value = -rail - rate(rail) + 0 * a)] s: Force,",
         "#[acts(on = rail, force = stretch + pow(stretch, 3))] k: Spring, #[energy(a)] e: Potential,",
         "#[particle(mass = a, at = sin(hinge) * x - cos(hinge) * y)] p: Particle,",
-        "#[energy(a * hinge - cos(hinge))] e: Potential,",
         "#[energy(a * sin(rail + t))] e: Potential,",
     ] {
         if let Err(messages) = of_machine(&format!("a: f64, {fields}")) {
@@ -286,8 +285,8 @@ fn large_structs_are_read_in_time() {
         Path::new(""),
         &mut cx,
     );
-    let graph = Graph::new();
-    assert!(source.is_some_and(|s| {
-        linkwork_compiler::model::build_model(&s.mechanism.description, &graph, &mut cx).is_some()
-    }));
+    if let Some(source) = source {
+        linkwork_compiler::model::build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+    }
+    assert_eq!(cx.messages(), Vec::<String>::new());
 }

@@ -31,6 +31,7 @@ pub mod integrate;
 mod lie;
 mod mechanism;
 mod private;
+mod product;
 mod rheonomic;
 pub mod rotation;
 pub mod simulate;
@@ -58,6 +59,7 @@ pub mod __private {
         signum, sin, sinh, sqrt, tan, tanh,
     };
     pub use crate::trigonometry::{sin_cos, sin_cos_all};
+    pub use crate::product::minus_product;
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

@@ -23,7 +23,7 @@ pub fn compose(shape: Shape, scalar: &str, part: impl Fn(usize, usize, usize) ->
             let (by_u, turning) = (part(3 * n * n, n, m), part(3 * n * n + n * m, n, n));
             let number = |x: &str| format!("::linkwork::__private::constant::<{scalar}>({x})");
             format!(
-                "{solved}let by_u = inverse * {by_u};
+                "{solved}let by_u = minus_product(&inverse, &{by_u});
                 let turning = {turning};
                 let mut a = [[{zero}; {twice}]; {twice}];
                 let mut b = [[{zero}; {twice}]; {m}];
@@ -36,7 +36,7 @@ pub fn compose(shape: Shape, scalar: &str, part: impl Fn(usize, usize, usize) ->
                     a[{n} + j][j] = {one};
                 }}
                 for j in 0..{m} {{
-                    for i in 0..{n} {{ b[j][{n} + i] = by_u.data.0[j][i]; }}
+                    for i in 0..{n} {{ b[j][{n} + i] = -by_u.data.0[j][i]; }}
                 }}
                 ({storage}(a)), {storage}(b)))\n",
                 solved = solved(n, &part),
@@ -54,7 +54,8 @@ pub fn compose(shape: Shape, scalar: &str, part: impl Fn(usize, usize, usize) ->
 /// Derivatives of the accelerations from those of the forces: `−M⁻¹ ∂τ/∂x`.
 fn solved(n: usize, part: &impl Fn(usize, usize, usize) -> String) -> String {
     format!(
-        "let inverse = {};\nlet by_q = -(inverse * {});\nlet by_v = -(inverse * {});\n",
+        "use ::linkwork::__private::minus_product;
+        let inverse = {};\nlet by_q = minus_product(&inverse, &{});\nlet by_v = minus_product(&inverse, &{});\n",
         part(2 * n * n, n, n),
         part(0, n, n),
         part(n * n, n, n)

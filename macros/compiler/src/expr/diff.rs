@@ -2,6 +2,9 @@
 
 use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
 
+/// Added to a length before it divides: too small to matter, large enough for `f32`.
+pub const TINY: f64 = 1e-37;
+
 /// Derivatives of expressions of one graph along one direction; what was computed once is kept.
 pub struct Derivative<'g> {
     graph: &'g Graph,
@@ -92,7 +95,8 @@ impl<'g> Derivative<'g> {
             Function::Tanh => one - y.square(),
             Function::Exp => y,
             Function::Ln => one / x,
-            Function::Sqrt => one / (y * 2.0),
+            // Finite where the root is zero: what multiplies it is zero there too in every length.
+            Function::Sqrt => one / ((y + y.num(TINY)) * 2.0),
             Function::Abs => x.call(Function::Signum),
             Function::Signum => self.graph.zero(),
         }

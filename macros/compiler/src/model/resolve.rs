@@ -474,5 +474,4 @@ pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
     }
 }
 
-/// Added to a length before it divides: too small to matter, large enough for `f32`.
-pub const TINY: f64 = 1e-37;
+pub use crate::expr::diff::TINY;

@@ -63,6 +63,8 @@ fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let lines = Lines::of(equations, Latex { name: &name });
     let mut out = format!("\\begin{{aligned}}\n& \\mathcal{{L}} = {}", lines.lagrangian);
     for (motion, force) in lines.motion {
+        // At the start of a column a sign would be that of a difference.
+        let motion = motion.strip_prefix('-').map_or(motion.clone(), |rest| format!("{{-}}{rest}"));
         out += &format!(" \\\\\n& {motion} = {force}");
     }
     out + "\n\\end{aligned}\n"

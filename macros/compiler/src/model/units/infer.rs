@@ -76,8 +76,8 @@ pub struct Inference<'a> {
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// By unknown: how its unit is written where it stands alone.
     pub hints: BTreeMap<Variable, String>,
-    /// What is a plain number unless something else demands a unit.
-    pub wishes: Vec<Dimension>,
+    /// What is a plain number unless something else demands a unit; the second one if the first is.
+    wishes: Vec<(Dimension, Option<Dimension>)>,
     /// Terms that are not alike, in expressions without parameters.
     unlike: Vec<Mismatch<'a>>,
     /// Contradictions.
@@ -138,6 +138,22 @@ impl<'a> Inference<'a> {
             Outcome::GaveUp => {
                 self.gave_up = true;
                 true
+            }
+        }
+    }
+
+    /// Lets something be a plain number if nothing else demands a unit of it.
+    pub fn wish(&mut self, dimension: Dimension) {
+        self.wishes.push((dimension, None));
+    }
+
+    /// Grants the wishes that contradict nothing, in order.
+    pub fn grant(&mut self) {
+        for (wish, then) in std::mem::take(&mut self.wishes) {
+            if self.system.equate(&wish, &PLAIN) != Outcome::Contradicts
+                && let Some(then) = then
+            {
+                self.system.equate(&then, &PLAIN);
             }
         }
     }
@@ -300,7 +316,7 @@ impl<'a> Inference<'a> {
         let (value, free) = product(factors);
         let (Value::Quantity { dimension, named }, true) = (&value, free) else { return value };
         let number = Dimension::variable(self.system.variable());
-        self.wishes.push(number.clone());
+        self.wish(number.clone());
         match dimension.times(&number) {
             Some(dimension) => Value::Quantity { dimension, named: *named },
             None => Value::Unknown,
@@ -371,7 +387,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain.
+    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the end.
     fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
         let base = self.value(a);
         let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
@@ -382,10 +398,11 @@ impl<'a> Inference<'a> {
             (Value::Number { .. }, _) => Value::quantity(PLAIN),
             (base, Value::Number { value, .. }) => base.power(Ratio::of(value)),
             (Value::Mixed(k), _) => Value::Mixed(k),
-            (Value::Quantity { dimension, .. }, _) => match self.system.resolve(&dimension) {
-                Some(known) if known.is_plain() => Value::quantity(PLAIN),
-                _ => Value::Unknown,
-            },
+            (Value::Quantity { dimension, named }, _) => {
+                let power = Dimension::variable(self.system.variable());
+                self.wishes.push((dimension, Some(power.clone())));
+                Value::Quantity { dimension: power, named }
+            }
             _ => Value::Unknown,
         }
     }

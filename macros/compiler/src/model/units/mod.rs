@@ -17,6 +17,7 @@ use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
 use std::collections::BTreeSet;
 use unify::{Dimension, Variable};
+use value::Value;
 
 /// Units as they are written in the documentation; `any` where nothing determines one.
 #[derive(Clone, Debug, Default)]
@@ -63,10 +64,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
         inference.mismatches.clear();
     }
     report::report(d, &mut inference, cx);
-    for wish in std::mem::take(&mut inference.wishes) {
-        // A wish that cannot be granted is none.
-        inference.system.equate(&wish, &si::PLAIN);
-    }
+    inference.grant();
     let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
         units.parameters.push(pinned.unwrap_or_else(|| shown(&mut inference, &Dimension::variable(k), k)));
@@ -97,8 +95,8 @@ fn name_everything(d: &Description, coordinates: &Coordinates, inference: &mut I
         let (found, rest): (Vec<&Definition>, Vec<&Definition>) =
             others.iter().partition(|d| mentions(&d.value, &named));
         named = found.iter().map(|d| d.name.text.as_str()).collect();
-        for definition in &found {
-            name_definition(definition, true, inference);
+        for name in &named {
+            inference.name_unknown(name, true);
         }
         others = rest;
         if found.is_empty() {
@@ -106,13 +104,8 @@ fn name_everything(d: &Description, coordinates: &Coordinates, inference: &mut I
         }
     }
     for definition in others {
-        name_definition(definition, false, inference);
+        inference.name_unknown(&definition.name.text, false);
     }
-}
-
-fn name_definition(definition: &Definition, named: bool, inference: &mut Inference<'_>) {
-    let v = inference.name_unknown(&definition.name.text, named);
-    inference.wishes.push(Dimension::variable(v));
 }
 
 /// True if an expression names one of these.
@@ -140,7 +133,11 @@ fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
             continue;
         };
         inference.locals = task.locals;
-        inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
+        let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
+        // A definition that is a number is a plain one, unless its uses demand a unit.
+        if !matches!(value, Value::Quantity { .. }) {
+            inference.wish(task.dimension);
+        }
         inference.locals.clear();
     }
 }

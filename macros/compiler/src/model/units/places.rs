@@ -279,7 +279,7 @@ impl<'a> Places<'a> {
         let (input, variable) = (input.clone(), input.unknown.first().map(|(v, _)| *v));
         let Some(rest) = force.over(&input) else { return };
         // A bare direction has no unit.
-        inference.wishes.push(rest.clone());
+        inference.wish(rest.clone());
         if let Some(v) = variable {
             inference.hints.insert(v, unit.to_string());
         }

@@ -14,8 +14,8 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
     let mut shown: Vec<Variable> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
-        parameters_in(mismatch.origin.at, inference, d.parameters.len(), &mut names);
         mismatch.origin.like.iter().for_each(|e| parameters_in(e, inference, d.parameters.len(), &mut names));
+        parameters_in(mismatch.origin.at, inference, d.parameters.len(), &mut names);
         if names.iter().any(|(v, _)| shown.contains(v)) {
             continue;
         }

@@ -120,7 +120,7 @@ fn cart_pole() {
     let expected = r"\begin{aligned}
 & \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}} + \tfrac{1}{6}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\dot{\mathrm{hinge}}^{2} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge}) \\
 & (\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\ddot{\mathrm{rail}} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{hinge}} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge})\,\dot{\mathrm{hinge}}^{2} + \mathrm{rail\_damping}\,\dot{\mathrm{rail}} = \mathrm{push} \\
-& -\tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} + \tfrac{1}{3}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\ddot{\mathrm{hinge}} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge}) = 0
+& {-}\tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} + \tfrac{1}{3}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\ddot{\mathrm{hinge}} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge}) = 0
 \end{aligned}
 ";
     assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
