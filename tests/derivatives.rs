@@ -1,17 +1,31 @@
-//! First derivatives of the dynamics: against reference values, against differentiation of the equations themselves, and
-//! against differences.
+//! First derivatives of the dynamics against reference values, and against differentiation of the equations themselves;
+//! what they cost.
 
-use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork::{Mechanism, mechanism};
+mod random_tree;
+
+use linkwork::mechanism;
+use linkwork::nalgebra::SMatrix;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::expr::Graph;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::{Expr, Graph};
+use linkwork_compiler::mechanics::derivatives::{self, Method, analytic, symbolic};
+use linkwork_compiler::mechanics::regularity::random_configuration;
+use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
+use linkwork_compiler::model::{Model, Quantity, build_model, sample};
 use linkwork_compiler::{compile, read};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use random_tree::{Tree, trees};
 use std::path::Path;
-use support::compare::assert_close;
+use support::compare::assert_similar;
 use support::table::Record;
 
-/// Relative to reference values.
+/// Relative to the largest entry of a reference.
 const REFERENCE: f64 = 1e-9;
+/// Between two derivations.
+const DERIVATION: f64 = 1e-10;
+
+// ---- Robots against Pinocchio ------------------------------------------------------------------------------------
 
 macro_rules! robot {
     ($robot:ident, $test:ident, $name:literal, $($options:tt)*) => {
@@ -30,9 +44,7 @@ macro_rules! robot {
                 let of = |what: &str| format!("{name}, case {i}: {what}");
                 let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
                 let close = |what: &str, actual: &[f64], expected: &[f64]| {
-                    let scale = expected.iter().fold(1.0_f64, |m, e| m.max(e.abs()));
-                    let scaled = |x: &[f64]| x.iter().map(|x| x / scale).collect::<Vec<_>>();
-                    assert_close(of(what), &scaled(actual), &scaled(expected), REFERENCE);
+                    assert_similar(&of(what), actual, expected, REFERENCE);
                 };
                 type Square = SMatrix<f64, { $robot::NV }, { $robot::NV }>;
                 let expected = |key: &str| -> Square { case.matrix(key) };
@@ -59,9 +71,99 @@ robot!(Panda, panda, "../models/urdf/panda.urdf", , mimic = independent);
 robot!(Solo12, solo12, "../models/urdf/solo12.urdf", , base = free);
 robot!(Humanoid, simple_humanoid, "../models/urdf/simple_humanoid.urdf", , base = free);
 
+// ---- Two derivations ---------------------------------------------------------------------------------------------
+
+fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
+    let (arguments, item) = tree.source();
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
+    match model {
+        Some(model) => check(&model),
+        None => panic!("{}\n{item}", cx.messages().join("\n")),
+    }
+}
+
+fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
+    let q = random_configuration(model, seed);
+    let values = |e: &[Expr<'_>]| {
+        eval(e, &|s| match Quantity::of(s) {
+            Quantity::Configuration(k) => q[k],
+            Quantity::Parameter(_) => sample(s, seed),
+            _ => 4.0 * (sample(s, seed) - 1.0),
+        })
+    };
+    assert_similar(what, &values(a), &values(b), DERIVATION);
+}
+
+fn check_recursion(model: &Model<'_>, seed: u64) {
+    let joints = mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
+    let found = derivatives::inverse_dynamics(model, &joints, &a, Method::Recursion);
+    let expected = symbolic::derivatives(model, &tau);
+    assert_same("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
+    assert_same("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
+}
+
+/// `C v` is what of the bias depends on the velocities of the links, and `Ṁ = C + Cᵀ`.
+fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64) {
+    let joints = mechanics::joints(model);
+    let v = mechanics::velocities(model);
+    let still = vec![model.graph.zero(); model.nv()];
+    let c = analytic::coriolis_matrix(model, &joints, &v);
+    let bias = |v: &[Expr<'g>]| rnea::inverse_dynamics(model, &joints, v, None);
+    let (moving, resting) = (bias(&v), bias(&still));
+    let zero = model.graph.zero();
+    let product: Vec<Expr<'_>> =
+        c.iter().map(|row| row.iter().zip(&v).fold(zero, |sum, (c, v)| sum + *c * *v)).collect();
+    let expected: Vec<Expr<'_>> = moving.iter().zip(&resting).map(|(m, r)| *m - *r).collect();
+    assert_same("C v", model, seed, &product, &expected);
+    let mass = crba::mass_matrix(model, &joints).concat();
+    let rate: Vec<Expr<'_>> = mass.iter().map(|m| kinematics::time_derivative(model.space(), *m)).collect();
+    let n = model.nv();
+    let sum: Vec<Expr<'_>> = (0..n * n).map(|k| c[k / n][k % n] + c[k % n][k / n]).collect();
+    assert_same("Ṁ", model, seed, &sum, &rate);
+}
+
+fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
+    let joints = mechanics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let factor = derivatives::Factor::of(&mass, &joints);
+    let a = mechanics::accelerations(model);
+    let times = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        let zero = model.graph.zero();
+        m.iter().map(|row| row.iter().zip(x).fold(zero, |sum, (m, x)| sum + *m * *x)).collect()
+    };
+    let forces = times(&mass, &a);
+    assert_same("inverse", model, seed, &times(&factor.inverse(), &forces), &a);
+    assert_same("solution", model, seed, &factor.solve(forces), &a);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 80,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_261_121),
+        ..Default::default()
+    })]
+
+    #[test]
+    fn recursion_and_differentiation_agree(tree in trees(4), seed in 0_u64..1000) {
+        with_model(&tree, |model| {
+            check_recursion(model, seed);
+            check_coriolis_matrix(model, seed);
+            check_inverse(model, seed);
+        });
+    }
+}
+
 // ---- Operations --------------------------------------------------------------------------------------------------
 
-fn counts(arguments: &str) -> Vec<(String, usize, usize)> {
+/// Operations of the derivatives of inverse dynamics, and of the inverse of the mass matrix.
+fn operations(arguments: &str) -> [usize; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -70,23 +172,27 @@ fn counts(arguments: &str) -> Vec<(String, usize, usize)> {
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    output.functions.iter().map(|f| (f.name.clone(), f.program.counts.total(), f.program.instructions.len())).collect()
+    ["inverse_dynamics_derivatives", "mass_matrix_inverse"].map(|name| {
+        let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");
+        f.program.counts.total()
+    })
 }
 
 #[test]
-fn show() {
-    for (name, options) in [
-        ("cartpole", ""), ("ur5", ""), ("panda", ", mimic = independent"), ("panda", ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]"),
-        ("kinova", ""), ("solo12", ", base = free"), ("simple_humanoid", ", base = free"),
+fn operation_counts() {
+    let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
+    let free = "base = free";
+    for (robot, options, most) in [
+        ("cartpole", "base = fixed", [24, 20]),
+        ("ur5", "base = fixed", [1200, 330]),
+        ("panda", fingers, [2800, 700]),
+        ("panda", "mimic = independent", [3600, 970]),
+        ("kinova", "base = fixed", [3200, 730]),
+        ("solo12", free, [5100, 3550]),
+        ("simple_humanoid", free, [17_500, 18_700]),
     ] {
-        let start = std::time::Instant::now();
-        let all = counts(&format!("urdf = \"../models/urdf/{name}.urdf\"{options}"));
-        let plain = start.elapsed();
-        let start = std::time::Instant::now();
-        let all = counts(&format!("urdf = \"../models/urdf/{name}.urdf\"{options}, derivatives"));
-        println!("{name}{options}: {:?} -> {:?}", plain, start.elapsed());
-        for (f, total, instructions) in all {
-            println!("    {f} {total} ({instructions})");
-        }
+        let found = operations(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, derivatives"));
+        println!("{robot}, {options}: {found:?}");
+        assert!(found[0] <= most[0] && found[1] <= most[1], "{robot}: {found:?}, expected at most {most:?}");
     }
 }

@@ -171,6 +171,7 @@ pub enum Gravity {}
 /// Attraction between two points by the inverse square of their distance, such as of charges.
 ///
 /// `#[acts(between = (a, b), strength = k)]`: a pull `k / r²`, with `k` in N·m²; negative for repulsion. Conservative.
+/// Infinite where they meet.
 pub enum Attraction {}
 
 /// A generalized coordinate of its own: a field `theta: Coordinate` without attribute. Frames, points, particles and
@@ -184,13 +185,15 @@ pub enum Input {}
 ///
 /// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or `ground`
 /// and turns about carried axes, by expressions of coordinates, parameters and time. `name.x` is one of its axes.
+/// A body that three such coordinates turn is in gimbal lock where two of their axes are in line: the mass matrix is
+/// singular there, and accelerations are not finite.
 pub enum Frame {}
 
 /// A point.
 ///
 /// `#[point(on = body, at = vector)]`: fixed in a body, or at a vector from another point; without `on`, from the ground's
 /// origin. The vector may contain coordinates and time. Joints and force elements may act there, and it has a
-/// placement, velocity and Jacobian under its name.
+/// placement, velocity and Jacobian under its name. Its axes are those of what it is placed from.
 pub enum Point {}
 
 /// A potential energy given as an expression of coordinates and time, `#[energy(k / 2 * theta * theta)]`, J.

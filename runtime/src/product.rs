@@ -10,15 +10,18 @@ pub fn minus_product<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
-    let mut sums = SMatrix::<T, N, M>::zeros();
-    for (sum, column) in sums.data.0.iter_mut().zip(&b.data.0) {
+    let mut product = SMatrix::<T, N, M>::zeros();
+    for (result, column) in product.data.0.iter_mut().zip(&b.data.0) {
+        // A column of its own stays in registers.
+        let mut sums = [T::zero(); N];
         for (left, factor) in a.data.0.iter().zip(column) {
-            for (sum, left) in sum.iter_mut().zip(left) {
+            for (sum, left) in sums.iter_mut().zip(left) {
                 *sum = neg_mul_add(*left, *factor, *sum);
             }
         }
+        *result = sums;
     }
-    sums
+    product
 }
 
 #[cfg(test)]

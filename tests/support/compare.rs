@@ -19,6 +19,14 @@ pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolera
     }
 }
 
+/// Fails unless all entries agree, relative to the largest expected one.
+#[track_caller]
+pub fn assert_similar(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
+    let scale = expected.iter().fold(1.0_f64, |m, e| m.max(e.abs()));
+    let scaled = |x: &[f64]| x.iter().map(|x| x / scale).collect::<Vec<_>>();
+    assert_close(what, &scaled(actual), &scaled(expected), tolerance);
+}
+
 /// Fails unless two mechanisms with the same coordinates have the same equations of motion and energies, to
 /// `tolerance`, at `states` random states.
 #[track_caller]

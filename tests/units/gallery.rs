@@ -1,6 +1,6 @@
 //! The models and the language's own page: all are accepted; none is with a factor too many or too few.
 
-use super::units;
+use super::{Units, units};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::fs;
@@ -15,7 +15,7 @@ struct Source {
 
 impl Source {
     fn messages(&self) -> Vec<String> {
-        units(&self.arguments.to_string(), &self.item.to_token_stream().to_string()).err().unwrap_or_default()
+        self.units().err().unwrap_or_default()
     }
 
     /// The parameters with the units that their documentation ends with: "Mass of the cart, kg."
@@ -40,25 +40,36 @@ impl Source {
         let arguments = replace(self.arguments.clone(), parameter, &by, &mut left);
         let mut item = self.item.clone();
         for attribute in item.fields.iter_mut().flat_map(|f| &mut f.attrs) {
-            if let Meta::List(list) = &mut attribute.meta {
+            if let Meta::List(list) = &mut attribute.meta
+                && !list.path.is_ident("unit")
+            {
                 list.tokens = replace(list.tokens.clone(), parameter, &by, &mut left);
             }
         }
         (left < 0).then_some(Source { arguments, item })
     }
 
-    /// The same with a unit for every documented parameter.
-    fn pinned(&self) -> Source {
+    /// The same with the unit of every parameter but one.
+    fn pinned(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
-        let documented = self.documented();
-        for field in &mut item.fields {
-            let name = field.ident.as_ref().map(ToString::to_string).unwrap_or_default();
-            if let Some((_, unit)) = documented.iter().find(|(known, _)| *known == name) {
+        for (field, unit) in item.fields.iter_mut().zip(units) {
+            if unit != "any" && field.ident.as_ref().is_some_and(|name| name != except) {
                 let unit: TokenStream = unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
                 field.attrs.push(syn::parse_quote!(#[unit(#unit)]));
             }
         }
         Source { arguments: self.arguments.clone(), item }
+    }
+
+    /// The parameters with their units.
+    fn parameters(&self) -> Vec<(String, String)> {
+        let units = self.units().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
+        let fields = self.item.fields.iter().map(|f| f.ident.as_ref().unwrap().to_string());
+        fields.zip(units.parameters).collect()
+    }
+
+    fn units(&self) -> Result<Units, Vec<String>> {
+        units(&self.arguments.to_string(), &self.item.to_token_stream().to_string())
     }
 }
 
@@ -120,15 +131,11 @@ fn gallery() -> Vec<Source> {
 fn units_are_those_of_the_documentation() {
     let mut compared = 0;
     for source in gallery() {
-        let name = source.item.ident.to_string();
-        let found = units(&source.arguments.to_string(), &source.item.to_token_stream().to_string())
-            .unwrap_or_else(|messages| panic!("{name}: {messages:?}"));
-        let parameters: Vec<String> = source.item.fields.iter().map(|f| f.ident.as_ref().unwrap().to_string()).collect();
+        let found = source.parameters();
         for (parameter, written) in source.documented() {
-            let k = parameters.iter().position(|p| *p == parameter).unwrap();
-            let inferred = &found.parameters[k];
-            let same = inferred == &written || inferred == &written.replace("rad", "1") || inferred == "any";
-            assert!(same || dimension(&written) == dimension(inferred), "{name}.{parameter}: {written} and {inferred}");
+            let (_, inferred) = found.iter().find(|(p, _)| *p == parameter).unwrap();
+            let same = inferred == "any" || dimension(&written) == dimension(inferred);
+            assert!(same, "{}.{parameter}: {written} and {inferred}", source.item.ident);
             compared += 1;
         }
     }
@@ -170,51 +177,50 @@ fn dimension(unit: &str) -> [i32; 3] {
     sum
 }
 
-#[test]
-fn a_factor_too_many_is_refused() {
+/// Parameters that have a unit, and their occurrences with another text in turn.
+fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
     for source in gallery() {
-        let name = source.item.ident.to_string();
-        for (parameter, unit) in source.documented() {
+        let parameters = source.parameters();
+        let units: Vec<String> = parameters.iter().map(|(_, unit)| unit.clone()).collect();
+        for (parameter, unit) in parameters.iter().filter(|(_, unit)| unit != "any" && dimension(unit) != [0; 3]) {
+            let pinned = source.pinned(&units, if itself { "" } else { parameter });
+            assert_eq!(pinned.messages(), Vec::<String>::new(), "{}", source.item.ident);
             // What stands only once is what it is there.
-            if dimension(&unit) == [0; 3] || source.replaced(&parameter, 1, &parameter).is_none() {
+            if !itself && source.replaced(parameter, 1, parameter).is_none() {
                 continue;
             }
             for k in 0.. {
-                let Some(changed) = source.replaced(&parameter, k, &format!("{parameter} * {parameter}")) else { break };
+                let Some(changed) = pinned.replaced(parameter, k, &text(parameter)) else { break };
                 let messages = changed.messages();
-                // One of the two entries of a symmetric matrix is refused before.
-                let mentions = |m: &String| m.contains(&format!("`{parameter}`")) || m.contains("symmetric");
-                let mentions = messages.iter().any(mentions);
-                assert!(mentions, "{name}: {parameter} twice at {k}: {messages:?}");
+                let what = format!("{}: `{}` at {k}", source.item.ident, text(parameter));
+                assert!(is_refused(&messages, parameter), "{what} ({unit}): {messages:?}");
                 refused += 1;
             }
         }
     }
-    assert!(refused > 15, "{refused} mistakes");
+    refused
 }
 
 #[test]
+fn a_factor_too_many_is_refused() {
+    let refused = refuse_all(|p| format!("{p} * {p}"), false);
+    assert!(refused > 15, "{refused} mistakes");
+}
+
+/// Its ratio to itself: the factor is gone, the parameter is still used.
+#[test]
 fn a_factor_too_few_is_refused() {
-    let mut refused = 0;
-    for source in gallery() {
-        let name = source.item.ident.to_string();
-        let pinned = source.pinned();
-        assert_eq!(pinned.messages(), Vec::<String>::new(), "{name}");
-        for (parameter, unit) in source.documented().iter().filter(|(_, unit)| dimension(unit) != [0; 3]) {
-            for k in 0.. {
-                // Its ratio to itself: the factor is gone, the parameter is still used.
-                let Some(changed) = pinned.replaced(parameter, k, &format!("{parameter} / {parameter}")) else { break };
-                let messages = changed.messages();
-                // One of the two entries of a symmetric matrix is refused before.
-                let mentions = |m: &String| m.contains(&format!("`{parameter}`")) || m.contains("symmetric");
-                let mentions = messages.iter().any(mentions);
-                assert!(mentions, "{name}: without {parameter} ({unit}) at {k}: {messages:?}");
-                refused += 1;
-            }
-        }
-    }
+    let refused = refuse_all(|p| format!("{p} / {p}"), true);
     assert!(refused > 40, "{refused} mistakes");
+}
+
+/// A message names the parameter, or shows the definition that it stands in. One of the two entries of a symmetric
+/// matrix is refused before.
+fn is_refused(messages: &[String], parameter: &str) -> bool {
+    let parameter = format!("`{parameter}`");
+    let others = ["by this `", "an inertia matrix is symmetric"];
+    messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 
 /// The page of the language, as far as it is compiled.

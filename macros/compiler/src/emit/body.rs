@@ -364,11 +364,15 @@ fn write_result(out: &mut String, shape: Shape, outputs: &[Piece], s: &Signature
         Shape::Array(_) => out.push_str(&list(outputs)),
         Shape::Vector(_) => out.push_str(&storage(format!("[{}]", list(outputs)), "SVector")),
         Shape::Square(n) | Shape::Matrix(n, _) => out.push_str(&matrix(outputs, n)),
-        Shape::Pair(_) | Shape::Forward(_) | Shape::Linear(..) => {
+        Shape::Pair(_)
+        | Shape::Forward(_)
+        | Shape::Linear(..)
+        | Shape::CalledForward(_)
+        | Shape::CalledLinear(..) => {
             let part = |first: usize, rows: usize, columns: usize| {
                 matrix(&outputs[first..first + rows * columns], rows)
             };
-            out.push_str(&matrices::compose(shape, s.scalar.name(), part));
+            out.push_str(&matrices::compose(shape, s, part));
         }
     }
 }

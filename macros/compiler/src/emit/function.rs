@@ -74,6 +74,11 @@ pub enum Shape {
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
+    /// The same as `Forward`, by calls of the other functions; no outputs.
+    CalledForward(usize),
+    /// The same as `Linear`, by calls of the other functions; the outputs are the forces of the inputs, their derivatives
+    /// by `q`, `v` and the inputs, and what turns displacements.
+    CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
 }
@@ -133,7 +138,11 @@ impl Signature<'_> {
             Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
-            Shape::Pair(_) | Shape::Forward(_) | Shape::Linear(..) => matrices::several(shape, self),
+            Shape::Pair(_)
+            | Shape::Forward(_)
+            | Shape::Linear(..)
+            | Shape::CalledForward(_)
+            | Shape::CalledLinear(..) => matrices::several(shape, self),
         }
     }
 

@@ -63,7 +63,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     if inference.gave_up {
         inference.mismatches.clear();
     }
-    report::report(d, &mut inference, cx);
+    report::report(&mut inference, cx);
     inference.grant();
     let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {

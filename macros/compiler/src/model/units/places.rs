@@ -43,6 +43,12 @@ const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 /// Collects the places of a description. What comes from a file is all numbers.
 pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<'a> {
     let mut places = Places { tasks: Vec::new(), points: Vec::new() };
+    // Definitions have unknowns of their own, which come with their names; where they are used comes after.
+    for definition in &d.definitions {
+        if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
+            places.add(&definition.value, &Dimension::variable(*v), "");
+        }
+    }
     places.all(&d.gravity, &ACCELERATION, "m/s²");
     places.all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
     d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
@@ -66,12 +72,6 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     }
     for (_, e) in &d.dissipations {
         places.add(e, &POWER, "W");
-    }
-    // Definitions have unknowns of their own, which come with their names.
-    for definition in &d.definitions {
-        if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
-            places.add(&definition.value, &Dimension::variable(*v), "");
-        }
     }
     places
 }
@@ -234,7 +234,7 @@ impl<'a> Places<'a> {
                 };
                 self.all(value, force, unit);
                 if value.is_none() {
-                    self.input(action, direction.as_ref(), force, unit, inference);
+                    self.input(action, direction.as_ref(), force, inference);
                 }
             }
         }
@@ -272,17 +272,12 @@ impl<'a> Places<'a> {
         action: &'a Action,
         direction: Option<&'a Expr>,
         force: &Dimension,
-        unit: &'static str,
         inference: &mut Inference<'a>,
     ) {
         let Some(Meaning::Moving(input)) = inference.names.get(&action.name.text) else { return };
-        let (input, variable) = (input.clone(), input.unknown.first().map(|(v, _)| *v));
-        let Some(rest) = force.over(&input) else { return };
+        let Some(rest) = force.over(input) else { return };
         // A bare direction has no unit.
         inference.wish(rest.clone());
-        if let Some(v) = variable {
-            inference.hints.insert(v, unit.to_string());
-        }
         self.all(direction, &rest, "");
     }
 }

@@ -3,43 +3,41 @@
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::si::describe;
 use super::unify::{Dimension, Variable};
-use crate::diag::{Diagnostics, Place};
-use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
+use crate::diag::Diagnostics;
+use crate::syntax::{BinaryOp, Expr, ExprKind};
 
 /// Most places of other uses that one mistake shows.
 const MOST_PLACES: usize = 2;
 
 /// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the same mistake.
-pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
+pub fn report(inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
-        mismatch.origin.like.iter().for_each(|e| parameters_in(e, inference, d.parameters.len(), &mut names));
-        parameters_in(mismatch.origin.at, inference, d.parameters.len(), &mut names);
+        mismatch.origin.like.iter().for_each(|e| names_in(e, inference, &mut names));
+        names_in(mismatch.origin.at, inference, &mut names);
         if names.iter().any(|(v, _)| shown.contains(v)) {
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
         match names.as_slice() {
-            [(v, e)] if one_parameter(d, &mismatch, *v, &e.place, inference, cx).is_some() => {}
-            _ => several(d, &mismatch, &names, inference, cx),
+            [(v, e)] if one_parameter(&mismatch, *v, e, inference, cx).is_some() => {}
+            _ => several(&mismatch, &names, inference, cx),
         }
     }
 }
 
-/// The parameters in an expression, each once, where it first stands.
-fn parameters_in<'a>(
+/// The parameters and definitions in an expression, each once, where it first stands.
+fn names_in<'a>(
     e: &'a Expr,
     inference: &Inference<'_>,
-    count: usize,
     found: &mut Vec<(Variable, &'a Expr)>,
 ) {
-    let mut inner = |e: &'a Expr| parameters_in(e, inference, count, found);
+    let mut inner = |e: &'a Expr| names_in(e, inference, found);
     match &e.kind {
         ExprKind::Number(_) => {}
         ExprKind::Name(name) => {
             if let Some(Meaning::Named(v, _)) = inference.names.get(name)
-                && *v < count
                 && found.iter().all(|(known, _)| known != v)
             {
                 found.push((*v, e));
@@ -62,14 +60,13 @@ fn parameters_in<'a>(
 
 /// One parameter that would have to be two things at once.
 fn one_parameter(
-    d: &Description,
     mismatch: &Mismatch<'_>,
     v: Variable,
-    here: &Place,
+    here: &Expr,
     inference: &mut Inference<'_>,
     cx: &mut Diagnostics,
 ) -> Option<()> {
-    let name = &d.parameters.get(v)?.text;
+    let name = text(here);
     let is = inference.system.resolve(&Dimension::variable(v))?;
     let (found, expected) =
         (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
@@ -83,17 +80,16 @@ fn one_parameter(
     let (is, needed) = (describe(&is), describe(&needed));
     if first.reason == Reason::Unit {
         cx.error(first.at.place.clone(), format!("`{name}` is declared as {is}, but used as {needed}"));
-        cx.error(here.clone(), format!("`{name}` is {needed} here"));
+        cx.error(here.place.clone(), format!("`{name}` is {needed} here"));
         return Some(());
     }
-    cx.error(here.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
-    show(d, v, &is, first, inference, cx);
+    cx.error(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
+    show(here, v, &is, first, inference, cx);
     Some(())
 }
 
 /// Things that do not fit, at the place where they meet, and what made each of them what it is.
 fn several(
-    d: &Description,
     mismatch: &Mismatch<'_>,
     names: &[(Variable, &Expr)],
     inference: &mut Inference<'_>,
@@ -110,32 +106,36 @@ fn several(
     if names.is_empty() && matches!(mismatch.origin.reason, Reason::Place | Reason::Argument) {
         diagnostic.help("a factor is missing; a number in front has any unit that it needs");
     }
-    for (v, _) in names.iter().take(MOST_PLACES) {
+    for (v, e) in names.iter().take(MOST_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            show(d, *v, &describe(&is), origin, inference, cx);
+            show(e, *v, &describe(&is), origin, inference, cx);
         }
     }
 }
 
-/// Shows where a parameter has become what it is.
+/// Shows where a parameter or a definition has become what it is.
 fn show(
-    d: &Description,
+    here: &Expr,
     v: Variable,
     is: &str,
     origin: Origin<'_>,
     inference: &Inference<'_>,
     cx: &mut Diagnostics,
 ) {
-    let Some(parameter) = d.parameters.get(v) else { return };
     let mut names = Vec::new();
-    parameters_in(origin.at, inference, d.parameters.len(), &mut names);
-    origin.like.iter().for_each(|e| parameters_in(e, inference, d.parameters.len(), &mut names));
-    let name = &parameter.text;
+    names_in(origin.at, inference, &mut names);
+    origin.like.iter().for_each(|e| names_in(e, inference, &mut names));
+    let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
         Some((_, e)) => cx.error(e.place.clone(), format!("`{name}` is {is} here")),
         None => cx.error(origin.at.place.clone(), format!("by this `{name}` is {is}")),
     };
+}
+
+/// The word of a name.
+fn text(e: &Expr) -> &str {
+    if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }
 
 fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> String {

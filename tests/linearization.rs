@@ -1,0 +1,270 @@
+//! First derivatives and linearised motion against differences and closed forms.
+
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{Mechanism, at, mechanism};
+use support::compare::{assert_close, assert_similar};
+use support::random::Random;
+
+/// Against differences.
+const DIFFERENCE: f64 = 1e-8;
+
+/// Derivative at zero by central differences of fourth order.
+fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
+    let h = 1e-3;
+    ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+}
+
+fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
+    SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
+}
+
+/// Checks column by column, each the derivative of `f` along one unit vector.
+#[track_caller]
+fn check_columns<const R: usize, const C: usize>(
+    what: &str,
+    matrix: &SMatrix<f64, R, C>,
+    f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
+) {
+    let expected = SMatrix::<f64, R, C>::from_columns(&std::array::from_fn::<_, C, _>(|i| {
+        slope(|s| f(unit::<C>(i) * s))
+    }));
+    assert_similar(what, matrix.as_slice(), expected.as_slice(), DIFFERENCE);
+}
+
+/// All functions of a mechanism against differences; with `$t`, at that time.
+macro_rules! check_differences {
+    ($mechanism:expr, $type:ident, $at:ident => $instant:expr $(, $t:expr)?) => {{
+        const NV: usize = $type::NV;
+        const NU: usize = $type::NU;
+        const TWICE: usize = 2 * NV;
+        let $at = $mechanism;
+        let m = &$instant;
+        let mut random = Random::new(21);
+        for _ in 0..3 {
+            let q = random.configuration(m);
+            let (v, a, tau): (SVector<f64, NV>, SVector<f64, NV>, SVector<f64, NV>) =
+                (random.vector(1.0), random.vector(1.0), random.vector(1.0));
+            let u: SVector<f64, NU> = random.vector(1.0);
+
+            let (by_q, by_v) = $at.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
+            check_columns("∂τ/∂q", &by_q, |d| m.inverse_dynamics(&m.integrate(&q, &d), &v, &a));
+            check_columns("∂τ/∂v", &by_v, |d| m.inverse_dynamics(&q, &(v + d), &a));
+
+            let (by_q, by_v, inverse) = $at.forward_dynamics_derivatives($($t,)? &q, &v, &tau);
+            check_columns("∂v̇/∂q", &by_q, |d| m.forward_dynamics(&m.integrate(&q, &d), &v, &tau));
+            check_columns("∂v̇/∂v", &by_v, |d| m.forward_dynamics(&q, &(v + d), &tau));
+            check_columns("∂v̇/∂τ", &inverse, |d| m.forward_dynamics(&q, &v, &(tau + d)));
+            assert_close("M⁻¹", $at.mass_matrix_inverse($($t,)? &q).as_slice(), inverse.as_slice(), 1e-9);
+
+            let (state, input) = $at.linearize($($t,)? &q, &v, &u);
+            check_columns("B", &input, |d| {
+                let change = m.forward_dynamics(&q, &v, &Mechanism::generalized_forces(m, &q, &v, &(u + d)));
+                SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { 0.0 } else { change[i - NV] })
+            });
+            check_columns("A", &state, |d| {
+                let (dq, dv) = (SVector::from_fn(|i, _| d[i]), SVector::from_fn(|i, _| d[NV + i]));
+                let (start, w) = (m.integrate(&q, &dq), v + dv);
+                // How the displacement from one motion to the other changes.
+                let apart = slope(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
+                let change = m.forward_dynamics(&start, &w, &Mechanism::generalized_forces(m, &start, &w, &u));
+                SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
+            });
+        }
+    }};
+}
+
+/// Every joint, springs, dashpots, friction, inputs on coordinates and on bodies; not all numbers are constant.
+#[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z, derivatives)]
+struct Zoo {
+    mass: f64,
+    #[body(mass = 3 * mass, com = 0.05 * x, inertia = cuboid(3 * mass, 0.4, 0.3, 0.5))]
+    hub: Body,
+    #[body(mass = 0.4, com = 0.3 * x, inertia = rod(0.4, 0.6, x))]
+    boom: Body,
+    #[body(mass = 0.6, com = 0.1 * z - 0.05 * x, inertia = disk(0.6, 0.2, z))]
+    mirror: Body,
+    #[body(mass = 0.3, com = 0.02 * y, inertia = sphere(0.3, 0.05))]
+    weight: Body,
+    #[body(mass = 0.5, com = 0.1 * y, inertia = diagonal(0.01, 0.02, 0.015))]
+    nut: Body,
+    #[body(mass = 0.7, com = 0.1 * y - 0.1 * z, inertia = diagonal(0.02, 0.02, 0.015))]
+    cross: Body,
+    #[body(mass = 0.2, com = 0.1 * x, inertia = diagonal(0.01, 0.01, 0.015))]
+    puck: Body,
+    #[joint(ground -> hub)]
+    pose: Free,
+    #[joint(hub.at(0.2 * x) -> boom, about = [0.6, 0, -0.8])]
+    hinge: Pin,
+    #[joint(hub.at(-0.15 * y) -> mirror.at(0.02 * y))]
+    bearing: Ball,
+    #[joint(boom.at(0.6 * x) -> weight, along = y, about = x)]
+    rail: Slot,
+    #[joint(mirror.at(0.1 * z) -> nut, about = z, pitch = 0.05)]
+    thread: Screw,
+    #[joint(boom.at(0.3 * x + 0.1 * y) -> cross, about = (x, y))]
+    gimbal: Universal,
+    #[joint(nut.rotated(x(0.3)) -> puck, about = z)]
+    plane: Planar,
+    #[acts(on = hinge, stiffness = 2, free_angle = 0.5)]
+    spring: Spring,
+    #[acts(between = (hub.at(0.3 * z), weight.at(0.01 * x)), stiffness = 40, free_length = 0.1)]
+    band: Spring,
+    #[acts(on = thread, damping = 0.4)]
+    dashpot: Dashpot,
+    #[acts(on = rail.slide, coulomb = 0.7, speed = 0.5)]
+    friction: Friction,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = cross.at(0.1 * y + 0.05 * z), along = x)]
+    thrust: Force,
+    #[acts(on = weight, about = ground.z)]
+    gust: Torque,
+}
+
+#[test]
+fn every_joint_and_load() {
+    check_differences!(Zoo { mass: 1.1 }, Zoo, m => m);
+}
+
+/// Bodies placed by expressions of coordinates, and an inerter: no recursion applies.
+#[mechanism(gravity = -9.7 * y, derivatives)]
+struct Placed {
+    length: f64,
+    phi: Coordinate,
+    s: Coordinate,
+    #[frame(ground, z(phi * phi / 2))]
+    turned: Frame,
+    #[body(at = length * turned.x + s * s * turned.y, frame = turned, mass = 1.3, com = 0.1 * y, inertia = diagonal(0.1, 0.2, 0.3))]
+    block: Body,
+    #[body(mass = 0.4, com = 0.2 * x, inertia = rod(0.4, 0.4, x))]
+    arm: Body,
+    #[joint(block.at(0.1 * x) -> arm, about = z)]
+    pin: Pin,
+    #[acts(between = (ground.at(2 * y), arm.at(0.4 * x)), inertance = 0.3)]
+    inerter: Inerter,
+    #[acts(between = (ground.at(2 * x), arm.at(0.4 * x)), damping = 0.3)]
+    damper: Dashpot,
+    #[acts(on = pin)]
+    motor: Torque,
+}
+
+#[test]
+fn placed_bodies() {
+    check_differences!(Placed { length: 0.8 }, Placed, m => m);
+}
+
+/// A driven pivot: everything takes the time first.
+#[mechanism(gravity = -9.7 * y, derivatives)]
+struct Driven {
+    amplitude: f64,
+    #[point(at = amplitude * cos(3 * t) * y)]
+    pivot: Point,
+    #[body(mass = 0.7, com = 0.3 * x, inertia = rod(0.7, 0.6, x))]
+    upper: Body,
+    #[body(mass = 0.3, com = 0.2 * x - 0.05 * z, inertia = diagonal(0.01, 0.02, 0.03))]
+    lower: Body,
+    #[joint(pivot -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(0.6 * x) -> lower)]
+    elbow: Ball,
+    #[acts(on = shoulder)]
+    motor: Torque,
+}
+
+#[test]
+fn driven_pivot() {
+    check_differences!(Driven { amplitude: 0.2 }, Driven, m => at(&m, 0.4_f64), 0.4);
+}
+
+/// One finger follows the other.
+#[mechanism(urdf = "../models/urdf/panda.urdf", derivatives)]
+struct PandaMimic;
+
+#[test]
+fn coupled_joints() {
+    check_differences!(PandaMimic, PandaMimic, m => m);
+}
+
+// ---- Closed forms ------------------------------------------------------------------------------------------------
+
+/// A particle on a massless rod with a motor.
+#[mechanism(gravity = -g * y, derivatives)]
+struct Pendulum {
+    g: f64,
+    mass: f64,
+    length: f64,
+    damping: f64,
+    #[body]
+    rod: Body,
+    #[particle(mass = mass, at = rod.at(-length * y))]
+    bob: Particle,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+    #[acts(on = pin, damping = damping)]
+    friction: Dashpot,
+    #[acts(on = pin)]
+    motor: Torque,
+}
+
+#[test]
+fn pendulum() {
+    let p = Pendulum { g: 9.81, mass: 0.7, length: 0.4, damping: 0.03 };
+    for angle in [0.0, 0.4, 3.0] {
+        let (a, b) = p.linearize(&SVector::from([angle]), &SVector::from([0.3]), &SVector::from([0.1]));
+        let inertia = p.mass * p.length * p.length;
+        let expected =
+            SMatrix::<f64, 2, 2>::new(0.0, 1.0, -p.g / p.length * angle.cos(), -p.damping / inertia);
+        assert_close("A", a.as_slice(), expected.as_slice(), 1e-14);
+        assert_close("B", b.as_slice(), &[0.0, 1.0 / inertia], 1e-14);
+    }
+}
+
+/// A cart on a rail with a particle on a massless pole, which stands upright at zero.
+#[mechanism(gravity = -g * y, derivatives)]
+struct CartAndPole {
+    g: f64,
+    cart_mass: f64,
+    mass: f64,
+    length: f64,
+    #[body(mass = cart_mass)]
+    cart: Body,
+    #[body]
+    pole: Body,
+    #[particle(mass = mass, at = pole.at(length * y))]
+    bob: Particle,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> pole, about = z)]
+    pin: Pin,
+    #[acts(on = rail)]
+    push: Force,
+}
+
+/// Upright: `(m_c + m) ẍ − m l θ̈ = u` and `l θ̈ − ẍ = g θ`, with the angle counter-clockwise seen from +z.
+#[test]
+fn cart_and_pole() {
+    let c = CartAndPole { g: 9.81, cart_mass: 1.2, mass: 0.3, length: 0.5 };
+    let zero = SVector::zeros();
+    let (a, b) = c.linearize(&zero, &zero, &SVector::zeros());
+    let (mass, l) = (c.cart_mass, c.length);
+    let expected = SMatrix::<f64, 4, 4>::from_row_slice(&[
+        0.0,
+        0.0,
+        1.0,
+        0.0, //
+        0.0,
+        0.0,
+        0.0,
+        1.0, //
+        0.0,
+        c.mass * c.g / mass,
+        0.0,
+        0.0, //
+        0.0,
+        (mass + c.mass) * c.g / (mass * l),
+        0.0,
+        0.0,
+    ]);
+    assert_close("A", a.as_slice(), expected.as_slice(), 1e-13);
+    assert_close("B", b.as_slice(), &[0.0, 0.0, 1.0 / mass, 1.0 / (mass * l)], 1e-13);
+}

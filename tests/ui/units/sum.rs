@@ -1,0 +1,15 @@
+use linkwork::prelude::*;
+
+#[mechanism(gravity = -9.81 * y)]
+struct Pole {
+    m: f64,
+    l: f64,
+    #[body(mass = m, com = l / 2 * y)]
+    pole: Body,
+    #[joint(ground -> pole, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, value = 3.5 * (l + m) * sin(hinge))]
+    motor: Torque,
+}
+
+fn main() {}
