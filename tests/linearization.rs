@@ -268,3 +268,28 @@ fn cart_and_pole() {
     assert_close("A", a.as_slice(), expected.as_slice(), 1e-13);
     assert_close("B", b.as_slice(), &[0.0, 0.0, 1.0 / mass, 1.0 / (mass * l)], 1e-13);
 }
+
+/// Any scalar type will do.
+#[mechanism(gravity = -g * y, derivatives)]
+struct Swing<T> {
+    g: T,
+    length: T,
+    #[body(mass = 1, com = -length * y, inertia = cuboid(1, 0.1, length, 0.1))]
+    rod: Body,
+    #[joint(ground -> rod)]
+    ball: Ball,
+    #[acts(on = rod.at(-length * y), along = ground.x)]
+    push: Force,
+}
+
+#[test]
+fn scalar_types() {
+    let (narrow, wide) = (Swing { g: 9.81_f32, length: 0.4 }, Swing { g: 9.81_f64, length: 0.4 });
+    let mut random = Random::new(22);
+    let q = random.configuration(&wide);
+    let (v, u) = (random.vector::<3>(1.0), random.vector::<1>(1.0));
+    let (a, b) = narrow.linearize(&q.map(|x| x as f32), &v.map(|x| x as f32), &u.map(|x| x as f32));
+    let expected = wide.linearize(&q, &v, &u);
+    assert_similar("A", a.map(f64::from).as_slice(), expected.0.as_slice(), 1e-5);
+    assert_similar("B", b.map(f64::from).as_slice(), expected.1.as_slice(), 1e-5);
+}

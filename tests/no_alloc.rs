@@ -138,7 +138,8 @@ struct PandaWithDerivatives;
 fn derivatives() {
     let m = PandaWithDerivatives;
     let q = &Random::new(15).configuration(&m);
-    let (v, a, u) = (&Random::new(16).vector(1.0), &Random::new(17).vector(1.0), &Random::new(18).vector(1.0));
+    let (v, a, u) =
+        (&Random::new(16).vector(1.0), &Random::new(17).vector(1.0), &Random::new(18).vector(1.0));
     assert_eq!(heap_calls(|| m.inverse_dynamics_derivatives(q, v, a)), 0, "inverse_dynamics_derivatives");
     assert_eq!(heap_calls(|| m.forward_dynamics_derivatives(q, v, a)), 0, "forward_dynamics_derivatives");
     assert_eq!(heap_calls(|| m.mass_matrix_inverse(q)), 0, "mass_matrix_inverse");

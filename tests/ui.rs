@@ -9,20 +9,24 @@ use std::path::Path;
 const CRATE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/../tests/trybuild/", env!("CARGO_PKG_NAME"));
 
 /// The folders of `ui` with mistakes.
-const TOPICS: [&str; 13] = [
+const TOPICS: [&str; 17] = [
     "actions",
     "arguments",
     "axes",
     "expressions",
+    "laws",
     "later",
     "masses",
     "names",
+    "outputs",
+    "placement",
     "several",
     "structs",
     "topology",
     "units",
     "urdf",
     "uses",
+    "vectors",
 ];
 
 #[test]

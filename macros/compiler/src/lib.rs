@@ -128,7 +128,52 @@ pub fn compile_with<'g>(
     if source.mechanism.derivatives {
         output.functions.extend(derive::derivatives::functions(&model, passes));
     }
-    Some((model, output))
+    check_outputs(&source.mechanism.description, &output.functions, cx).then_some((model, output))
+}
+
+/// Functions of every mechanism that are not derived but written as they are.
+const WRITTEN: [&str; 9] = [
+    "difference",
+    "frame_acceleration",
+    "frame_index",
+    "frame_jacobian",
+    "frame_placement",
+    "frame_placements",
+    "frame_velocity",
+    "integrate",
+    "tangent_rate",
+];
+
+/// Reports outputs that would be functions of the same name as others.
+fn check_outputs(description: &Description, functions: &[emit::Function], cx: &mut Diagnostics) -> bool {
+    let outputs = &description.outputs;
+    let jacobian = |name: &str| format!("{name}_jacobian");
+    // Each output brings one function of its name and may bring its Jacobian: what is there besides was there before.
+    let is_taken = |name: &str| {
+        let own = outputs.iter().filter(|o| o.name.text == name || jacobian(&o.name.text) == name).count();
+        WRITTEN.contains(&name) || functions.iter().filter(|f| f.name == name).count() > own
+    };
+    for name in outputs.iter().map(|output| &output.name) {
+        let text = &name.text;
+        if let Some(other) = outputs.iter().find(|other| jacobian(&other.name.text) == *text) {
+            let other = &other.name.text;
+            cx.error(name.place.clone(), format!("`{text}` is the Jacobian of the output `{other}`"))
+                .help("each output has a function of its name and one of its name with `_jacobian`");
+        } else if is_taken(text) {
+            cx.error(
+                name.place.clone(),
+                format!("the name `{text}` is taken: every mechanism has this function"),
+            )
+            .help("choose another name for the output");
+        } else if is_taken(&jacobian(text)) {
+            cx.error(
+                name.place.clone(),
+                format!("the name `{text}` is taken: every mechanism has `{}`", jacobian(text)),
+            )
+            .help("choose another name for the output");
+        }
+    }
+    cx.is_empty()
 }
 
 impl Source {

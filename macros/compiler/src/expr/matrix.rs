@@ -1,6 +1,7 @@
 //! Vectors and matrices of three dimensions over expressions.
 
-use super::graph::{Expr, Graph};
+use super::diff::TINY;
+use super::graph::{Expr, Function, Graph};
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 /// Three components.
@@ -52,6 +53,17 @@ impl<'g> Vec3<'g> {
     /// Length.
     pub fn norm(self) -> Expr<'g> {
         self.dot(self).sqrt()
+    }
+
+    /// Length of a vector that moves and may pass zero: its derivatives are zero there, where the direction of the zero
+    /// vector is missing, not NaN. A [`TINY`] length is added for that, below the resolution of every other.
+    pub fn length(self) -> Expr<'g> {
+        let mut parts = self.0.into_iter().filter(|c| !c.is_zero());
+        match (parts.next(), parts.next(), self.values()) {
+            (Some(only), None, _) => only.call(Function::Abs),
+            (None, ..) | (.., Some(_)) => self.norm(),
+            _ => (self.dot(self) + self[0].num(TINY)).sqrt(),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Expressions → polynomials in normal form: products are multiplied out, sines and cosines of sums are written by
 //! those of their angles.
 
+use super::diff::TINY;
 use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
 
@@ -54,6 +55,8 @@ impl<'g> Normal<'g> {
     fn rule(&mut self, id: Id) -> Option<Polynomial> {
         let at = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
+            // What keeps the direction of a zero length from being NaN is no part of the equations.
+            Node::Const(c) if c == TINY => return Some(Polynomial::default()),
             Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
             Node::Neg(a) => return Some(at(a).scaled(-1.0)),
             Node::Add(a, b) => return self.ring.plus(at(a), at(b)),

@@ -31,7 +31,8 @@ fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, see
     // Root first: the first entry that fails is then the one that adds nothing to those before it; of several that
     // carry nothing at all, the innermost is named.
     let mut order: Vec<usize> = Vec::new();
-    for index in joints.iter().flat_map(|j| j.dofs.iter().map(|d| d.index)) {
+    // Coordinates that place nothing come last.
+    for index in joints.iter().flat_map(|j| j.dofs.iter().map(|d| d.index)).chain(0..n) {
         if !order.contains(&index) {
             order.push(index);
         }

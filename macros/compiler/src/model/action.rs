@@ -2,7 +2,7 @@
 
 use super::build::Builder;
 use super::tree::GROUND;
-use super::world::{Level, View};
+use super::world::{Level, Placed, PlacedKind, View};
 use super::{Coordinate, Dashpot, Direction, Input, Load, Spring};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
@@ -10,10 +10,10 @@ use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
 
 /// What an element acts on.
 enum Target<'g> {
-    /// A coordinate; true if it is an angle, nothing known of one that belongs to no joint.
+    /// A coordinate; true if it is an angle, nothing if it may be either.
     Coordinate(Coordinate, Option<bool>),
-    /// A point of a body (by index), in body axes.
-    Body(usize, Vec3<'g>),
+    /// A point of a body, a particle, a named point.
+    Point(Placed<'g>),
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -51,7 +51,7 @@ impl<'g> Builder<'_, 'g> {
                     }
                     (self.coordinate_stretch(&c), angle)
                 }
-                Some(Target::Body(..)) => {
+                Some(Target::Point(_)) => {
                     let what = kind_word(&action.kind);
                     cx.error(
                         e.place.clone(),
@@ -226,37 +226,26 @@ impl<'g> Builder<'_, 'g> {
                 .help("write the direction into the value: `value = magnitude * x`");
             return;
         }
-        let ground = Some((None, super::Pose::identity(self.scope.graph)));
-        // A named point can be pushed as well.
-        let point = match &on.kind {
-            ExprKind::Name(name)
-                if self.joint_coordinates(name).is_none() && self.held_index(name).is_none() =>
-            {
-                self.placeable.contains(name)
-            }
-            _ => false,
-        };
-        let target = match point {
-            true => None,
-            false => match self.target(on, cx) {
-                Some(target) => Some(target),
-                None => return,
-            },
-        };
-        if let Some(Target::Coordinate(c, angle)) = &target {
-            if let Some(angle) = angle.filter(|angle| *angle != torque) {
-                wrong_kind(on, angle, cx);
+        let place = match self.target(on, cx) {
+            Some(Target::Point(place)) => place,
+            Some(Target::Coordinate(c, angle)) => {
+                if let Some(angle) = angle.filter(|angle| *angle != torque) {
+                    wrong_kind(on, angle, cx);
+                    return;
+                }
+                let ground = Some((None, super::Pose::identity(self.scope.graph)));
+                let view = View::new(Level::Motion, ground);
+                if let Some(force) = self.scope.with_view(view, |scope| scope.scalar(value, cx)) {
+                    let rate = self.coordinate_stretch(&c).rate;
+                    self.model.loads.push(Load { rate, force, dissipative: false });
+                }
                 return;
             }
-            let force =
-                self.scope.with_view(View::new(Level::Motion, ground), |scope| scope.scalar(value, cx));
-            if let Some(force) = force {
-                let rate = self.coordinate_stretch(c).rate;
-                self.model.loads.push(Load { rate, force, dissipative: false });
-            }
+            None => return,
+        };
+        if torque && !turns(on, &place, cx) {
             return;
         }
-        let Some(place) = self.scope.place(on, cx) else { return };
         let Some(link) = place.link else {
             cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
             return;
@@ -294,18 +283,10 @@ impl<'g> Builder<'_, 'g> {
                 }
                 Input::Coordinate(c)
             }
-            Target::Body(body, at) => {
-                let Some(direction) = direction else {
-                    let key = if torque { "about" } else { "along" };
-                    cx.error(action.name.place.clone(), format!("missing `{key}`"))
-                        .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
-                    return;
-                };
-                match self.body_input(on, body, at, direction, torque, cx) {
-                    Some(input) => input,
-                    None => return,
-                }
-            }
+            Target::Point(place) => match self.point_input(action, on, &place, direction, torque, cx) {
+                Some(input) => input,
+                None => return,
+            },
         };
         self.set_input(&action.name.text, input);
     }
@@ -317,19 +298,27 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn body_input(
+    fn point_input(
         &self,
+        action: &Action,
         on: &Expr,
-        body: usize,
-        at: Vec3<'g>,
-        direction: &Expr,
+        place: &Placed<'g>,
+        direction: Option<&Expr>,
         torque: bool,
         cx: &mut Diagnostics,
     ) -> Option<Input<'g>> {
-        let (link, pose) = self.placed(body)?;
-        let view = View::new(Level::Constant, Some((link, pose.clone())));
+        let Some(direction) = direction else {
+            let key = if torque { "about" } else { "along" };
+            cx.error(action.name.place.clone(), format!("missing `{key}`"))
+                .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
+            return None;
+        };
+        if torque && !turns(on, place, cx) {
+            return None;
+        }
+        let view = View::new(Level::Constant, Some((place.link, place.pose.clone())));
         let terms = self.scope.with_view(view, |scope| scope.terms(direction, cx))?;
-        let Some(link) = link else {
+        let Some(link) = place.link else {
             cx.error(
                 on.place.clone(),
                 "this body is fixed to the ground: nothing that acts on it has an effect",
@@ -343,7 +332,7 @@ impl<'g> Builder<'_, 'g> {
         }
         Some(match torque {
             true => Input::Torque { link, about: sum },
-            false => Input::Force { link, point: pose.point(at), along: sum },
+            false => Input::Force { link, point: place.pose.translation, along: sum },
         })
     }
 
@@ -376,8 +365,14 @@ impl<'g> Builder<'_, 'g> {
                         }
                     };
                 }
-                let body = self.body(name, &on.place, cx)?;
-                Some(Target::Body(body, Vec3::zero(self.scope.graph)))
+                if let Some(c) = self.free_coordinate(name) {
+                    return Some(Target::Coordinate(c, None));
+                }
+                if !self.placeable.contains(name) {
+                    self.report_target(name, &on.place, cx);
+                    return None;
+                }
+                self.scope.place(on, cx).map(Target::Point)
             }
             ExprKind::Field(inner, member) => {
                 let ExprKind::Name(joint) = &inner.kind else {
@@ -412,8 +407,11 @@ impl<'g> Builder<'_, 'g> {
                     cx.error(on.place.clone(), "expected a body");
                     return None;
                 };
-                let at = self.scope.own_vector(&arguments[0], cx);
-                Some(Target::Body(self.body(name, &inner.place, cx)?, at?))
+                if !self.placeable.contains(name) {
+                    self.report_target(name, &inner.place, cx);
+                    return None;
+                }
+                self.scope.place(on, cx).map(Target::Point)
             }
             _ => {
                 cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
@@ -423,26 +421,43 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn body(&self, name: &str, place: &Place, cx: &mut Diagnostics) -> Option<usize> {
-        let found = self.held_index(name);
+    /// A coordinate of its own, by name.
+    fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
+        let free = self.description.coordinates.iter().any(|c| c.name.text == name);
+        let world = self.scope.world.borrow();
+        let known = world.coordinates.iter().find(|(known, ..)| free && known == name);
+        known.map(|(_, c, _)| *c)
+    }
+
+    /// Says why nothing can act on a name.
+    fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
             cx.error(place.clone(), "nothing that acts on the ground has an effect");
-        } else if found.is_none() && self.scope.what(name) == Some("a joint") {
+        } else if self.scope.what(name) == Some("a joint") {
             cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
                 .help(format!("write `on = {name}`, or name a point of a body"));
-        } else if found.is_none()
-            && let Some(what) = self.scope.what(name)
-        {
+        } else if let Some(what) = self.scope.what(name) {
             cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
                 .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
-        } else if found.is_none() {
+        } else {
             let mut known = self.joint_names();
-            known.extend(self.held_names());
+            known.extend(self.placeable.iter().cloned());
+            known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
             cx.error(place.clone(), format!("unknown joint or body `{name}`"))
                 .suggest(name, known.iter().map(String::as_str));
         }
-        found
     }
+}
+
+/// Reports a torque on a particle or a point, which has nothing to turn.
+fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+    let ExprKind::Name(name) = &on.kind else { return true };
+    if place.kind == PlacedKind::Point {
+        cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
+            .help("let it act on a body, or write a `Force`");
+        return false;
+    }
+    true
 }
 
 fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {

@@ -515,16 +515,6 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.held.iter().position(|h| h.name.text == name)
     }
 
-    /// Names of bodies and jointed particles.
-    pub fn held_names(&self) -> Vec<String> {
-        self.held.iter().map(|h| h.name.text.clone()).collect()
-    }
-
-    /// The placement of a body; `None` after a mistake.
-    pub fn placed(&self, body: usize) -> Option<(Option<LinkId>, Pose<'g>)> {
-        self.places[body].clone()
-    }
-
     /// The coordinates of a joint that force elements can act on; `None` if there is no such joint.
     pub fn joint_coordinates(&self, name: &str) -> Option<Vec<(String, Coordinate, bool)>> {
         let j = self.description.joints.iter().position(|j| j.name.text == name)?;

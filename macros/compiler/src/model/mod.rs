@@ -9,6 +9,7 @@ use crate::syntax::ScalarType;
 mod action;
 mod axis;
 mod build;
+mod carriers;
 mod inertia;
 mod joint;
 pub mod kinematics;

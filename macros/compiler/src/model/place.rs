@@ -2,6 +2,7 @@
 //! placed. What moves by coordinates or time other than a joint's becomes a link of its own.
 
 use super::build::Builder;
+use super::carriers::carries;
 use super::kinematics::{joint, symbols_in};
 use super::tree::{GROUND, Order};
 use super::world::{Level, Placed, PlacedKind, View};
@@ -25,6 +26,14 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
+        for (j, _, child) in &order.joints {
+            if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
+                let (name, joint) = (&body.name, &d.joints[*j].name);
+                cx.error(name.place.clone(), format!("`{}` is placed twice", name.text))
+                    .help("a body is placed by a joint, or by `at` and `frame`");
+                cx.error(joint.place.clone(), format!("`{}` places it as well", joint.text));
+            }
+        }
         let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
         waiting.extend((0..d.frames.len()).map(Item::Frame));
         waiting.extend((0..d.points.len()).map(Item::Point));
@@ -143,7 +152,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
-                let free = self.description.joints.iter().all(|j| j.parent.body.text != p.name.text);
+                let free = !carries(d, &p.name.text);
                 if let Some((link, pose)) = self.spot(at, free, cx) {
                     let (link, pose) = self.settle(link, pose);
                     self.remember(&p.name.text, link, pose, PlacedKind::Point);

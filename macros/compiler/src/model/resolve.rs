@@ -2,9 +2,10 @@
 
 use super::axis::check_rotation_matrix;
 use super::tree::GROUND;
-use super::world::{View, World};
+use super::world::{Level, View, World};
 use super::{LinkId, Quantity, Rotation};
 use crate::diag::Diagnostics;
+use crate::expr::diff::TINY;
 use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
 use std::cell::RefCell;
@@ -285,9 +286,17 @@ impl<'a, 'g> Scope<'a, 'g> {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
         } else {
-            let known = self.parameters.iter().map(|p| p.text.as_str());
+            let world = self.world.borrow();
+            let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();
+            if self.level() >= Level::Placement {
+                known.extend(world.coordinates.iter().map(|(name, ..)| name.as_str()));
+                known.extend(self.definitions.iter().map(|d| d.name.text.as_str()));
+            }
+            if self.level() >= Level::Motion {
+                known.extend(self.inputs.iter().map(|i| i.text.as_str()));
+            }
             cx.error(e.place.clone(), format!("unknown name `{name}`"))
-                .suggest(name, known.chain(["x", "y", "z", "pi"]));
+                .suggest(name, known.into_iter().chain(["x", "y", "z", "pi"]));
         }
         None
     }
@@ -422,7 +431,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 };
                 let (axes, v) = self.common_axes(&[a], cx)?;
                 if text == "norm" {
-                    return Some(Value::Scalar(v[0].norm()));
+                    return Some(Value::Scalar(v[0].length()));
                 }
                 if v[0].is_zero() {
                     cx.error(a.place.clone(), "the zero vector has no direction");
@@ -468,10 +477,8 @@ pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
     match v.values() {
         Some(_) => v.map(|c| c / v.norm()),
         None => {
-            let norm = v.norm() + v[0].num(TINY);
-            v.map(|c| c / norm)
+            let length = (v.dot(v) + v[0].num(TINY)).sqrt();
+            v.map(|c| c / length)
         }
     }
 }
-
-pub use crate::expr::diff::TINY;

@@ -3,7 +3,6 @@
 
 use super::build::Builder;
 use super::kinematics::symbols_in;
-use super::resolve::TINY;
 use super::world::{Level, Placed, View};
 use super::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity};
 use crate::diag::{Diagnostics, Place};
@@ -26,6 +25,8 @@ pub struct Stretch<'g> {
     pub value: Expr<'g>,
     /// Its rate, linear in the velocities.
     pub rate: Expr<'g>,
+    /// Its square.
+    pub square: Expr<'g>,
     /// The value has the sign of a direction that stays the same, and the length is its magnitude.
     pub signed: bool,
 }
@@ -34,15 +35,17 @@ impl<'g> Builder<'_, 'g> {
     /// The stretch of a coordinate.
     pub fn coordinate_stretch(&self, c: &Coordinate) -> Stretch<'g> {
         let g = self.scope.graph;
+        let value = super::kinematics::position_in(g, c);
         Stretch {
-            value: super::kinematics::position_in(g, c),
+            value,
+            square: value.square(),
             rate: Quantity::Velocity(c.v).expr(g) * g.num(c.ratio),
             signed: false,
         }
     }
 
     /// The distance between two points. Where they move along one line, it is the coordinate along that line, so that
-    /// nothing happens when they meet; elsewhere the direction of a zero distance is taken as zero.
+    /// nothing happens when they meet; elsewhere the direction of a zero distance is the zero vector.
     pub fn distance(&self, a: &syntax::Expr, b: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let (first, second) = (self.scope.place(a, cx), self.scope.place(b, cx));
         let (first, second) = (first?, second?);
@@ -56,16 +59,23 @@ impl<'g> Builder<'_, 'g> {
         let terms = world.between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = world.resolve(&terms, axes, zero);
+        if always_zero(r) {
+            cx.error(b.place.clone(), "these two points are always at the same place")
+                .help("let the element act between points that move apart");
+            return None;
+        }
         let mut v = world.velocity(&second);
         v.extend(world.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
         if let Some(line) = constant_direction(r) {
             let e = Vec3::numbers(self.scope.graph, line);
             let rate = e.dot(world.resolve(&v, axes, zero));
-            return Some(Stretch { value: r.dot(e), rate, signed: true });
+            let value = r.dot(e);
+            return Some(Stretch { value, square: value.square(), rate, signed: true });
         }
-        let length = r.norm();
-        let n = r.map(|c| c / (length + c.num(TINY)));
-        Some(Stretch { value: length, rate: n.dot(world.resolve(&v, axes, zero)), signed: false })
+        let length = r.length();
+        let n = r.map(|c| c / length);
+        let rate = n.dot(world.resolve(&v, axes, zero));
+        Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
     /// A spring with any law.
@@ -78,6 +88,8 @@ impl<'g> Builder<'_, 'g> {
         let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
         let view = View::new(Level::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
         let energy = match law {
+            // Smooth where the points meet.
+            Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
             Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
             Law::Energy(e) => self.scope.with_view(view, |scope| scope.scalar(e, cx)),
             Law::Force(e) => {
@@ -170,9 +182,10 @@ impl<'g> Builder<'_, 'g> {
         self.model.loads.push(Load { rate: v, force: -force, dissipative: true });
     }
 
-    /// Attraction `strength / distance²`: potential energy `−strength / distance`.
+    /// Attraction `strength / distance²`: potential energy `−strength / distance`. Not finite where the points meet,
+    /// as it has no limit there.
     pub fn add_attraction(&mut self, stretch: &Stretch<'g>, strength: Expr<'g>) {
-        let distance = if stretch.signed { stretch.value.call(Function::Abs) } else { stretch.value };
+        let distance = stretch.square.sqrt();
         self.model.potentials.push(-(strength / distance));
     }
 
@@ -291,6 +304,12 @@ impl<'g> Builder<'_, 'g> {
         self.model.time = time;
         self.model.velocity_inputs = by_velocity;
     }
+}
+
+/// True for a vector that is zero for all coordinates and parameters.
+fn always_zero(r: Vec3<'_>) -> bool {
+    r.is_zero()
+        || (0..4).all(|seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14))
 }
 
 /// The direction of a vector, if it is the same for all coordinates and parameters.

@@ -146,7 +146,8 @@ impl<'g> Scope<'_, 'g> {
         result
     }
 
-    fn level(&self) -> Level {
+    /// What expressions may depend on here.
+    pub fn level(&self) -> Level {
         self.view.borrow().level
     }
 
@@ -329,7 +330,7 @@ impl<'g> Scope<'_, 'g> {
         let normal = v[0].cross(v[1]);
         let sine = match v.get(2) {
             Some(n) => normal.dot(super::resolve::unit(*n)),
-            None => normal.norm(),
+            None => normal.length(),
         };
         Some(Value::Scalar(sine.atan2(v[0].dot(v[1]))))
     }

@@ -406,10 +406,15 @@ fn read_action(name: &Name, kind: &str, arguments: &mut Arguments, cx: &mut Diag
         "Force" => &["on", "along", "value"],
         _ => &["on", "about", "value"],
     };
+    let refused = arguments.place_of("between").is_some() && !keys.contains(&"between");
     let on = read_target(kind, arguments, keys, cx);
+    if refused {
+        return None;
+    }
     let action = match kind {
         "Spring" => read_spring(arguments, keys, cx),
         "Dashpot" => {
+            one_law(arguments, &["force", "damping"], cx);
             let force = arguments.take_expr("force", cx).map(Law::Force);
             let law =
                 force.or_else(|| arguments.need_expr("damping", "c", "acts", keys, cx).map(Law::Linear));
@@ -481,7 +486,21 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
     }
 }
 
+/// Reports a second law of one element; the first of the keys counts.
+fn one_law(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) {
+    let given: Vec<&&str> = keys.iter().filter(|key| arguments.place_of(key).is_some()).collect();
+    for key in given.iter().skip(1) {
+        if let Some(place) = arguments.place_of(key) {
+            let list: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+            cx.error(place, format!("a second law: `{}` is given already", given[0]))
+                .help(format!("give one of {}", crate::diag::one_of(&list)));
+            arguments.forget(key);
+        }
+    }
+}
+
 fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<ActionKind> {
+    one_law(arguments, &["force", "energy", "stiffness"], cx);
     let force = arguments.take_expr("force", cx).map(Law::Force);
     let energy = arguments.take_expr("energy", cx).map(Law::Energy);
     let law =
@@ -579,7 +598,8 @@ fn read_expression(
             format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
         );
     }
-    arguments.finish(&format!("{} {kind}", article(kind)), &["resolved_in"], cx);
+    let keys: &[&str] = if kind == "Vector" { &["resolved_in"] } else { &[] };
+    arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
     let Some(value) = value else {
         cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
             .help(format!("write `#[{word}(expression)]`"));

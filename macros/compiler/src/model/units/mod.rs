@@ -9,6 +9,7 @@ mod report;
 mod si;
 mod unify;
 mod value;
+mod walk;
 
 use super::{Chart, Coordinate, Model};
 use crate::diag::Diagnostics;

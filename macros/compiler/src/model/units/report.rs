@@ -14,8 +14,7 @@ pub fn report(inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
-        mismatch.origin.like.iter().for_each(|e| names_in(e, inference, &mut names));
-        names_in(mismatch.origin.at, inference, &mut names);
+        names_of(&mismatch.origin, inference, &mut names);
         if names.iter().any(|(v, _)| shown.contains(v)) {
             continue;
         }
@@ -27,12 +26,22 @@ pub fn report(inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     }
 }
 
+/// The names in what an equation is about, those first that it compares.
+fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
+    origin.like.iter().for_each(|e| names_in(e, inference, found));
+    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.at.kind, origin.reason) {
+        let before = match &left.kind {
+            ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, _, before, _) => before,
+            _ => left,
+        };
+        names_in(before, inference, found);
+        names_in(right, inference, found);
+    }
+    names_in(origin.at, inference, found);
+}
+
 /// The parameters and definitions in an expression, each once, where it first stands.
-fn names_in<'a>(
-    e: &'a Expr,
-    inference: &Inference<'_>,
-    found: &mut Vec<(Variable, &'a Expr)>,
-) {
+fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     let mut inner = |e: &'a Expr| names_in(e, inference, found);
     match &e.kind {
         ExprKind::Number(_) => {}
@@ -124,8 +133,7 @@ fn show(
     cx: &mut Diagnostics,
 ) {
     let mut names = Vec::new();
-    names_in(origin.at, inference, &mut names);
-    origin.like.iter().for_each(|e| names_in(e, inference, &mut names));
+    names_of(&origin, inference, &mut names);
     let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
         Some((_, e)) => cx.error(e.place.clone(), format!("`{name}` is {is} here")),

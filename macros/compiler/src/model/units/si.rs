@@ -2,7 +2,7 @@
 
 use super::ratio::Ratio;
 use super::unify::Dimension;
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, nearest};
 use crate::syntax::{BinaryOp, Expr, ExprKind};
 use std::fmt::Write;
 
@@ -183,15 +183,16 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
         return Some((dimension.power(power)?, format!("{unit}{}", exponent(power))));
     }
     let diagnostic = cx.error(e.place.clone(), format!("unknown unit `{name}`"));
+    let units: Vec<&str> = UNITS.iter().map(|(unit, _)| *unit).collect();
     match OTHERS.iter().find(|(other, _)| *other == name) {
         Some((_, si)) => {
             diagnostic.help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
         }
-        None => diagnostic.suggest(name, UNITS.iter().map(|(unit, _)| *unit)),
+        None if nearest(name, &units).is_some() => diagnostic.suggest(name, units),
+        None => diagnostic.help(
+            "the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as `m2`",
+        ),
     };
-    if known.is_none() && OTHERS.iter().all(|(other, _)| *other != name) {
-        diagnostic.help("the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as `m2`");
-    }
     None
 }
 

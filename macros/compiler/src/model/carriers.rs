@@ -1,0 +1,62 @@
+//! Which particles carry something, so that their axes matter: those from which a place, a direction or a joint starts.
+
+use crate::syntax::{ActionKind, Description, Expr, ExprKind, Law, Target};
+
+/// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what acts on it.
+pub fn carries(d: &Description, name: &str) -> bool {
+    let is_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(n) if n == name);
+    let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));
+    d.joints.iter().any(|joint| joint.parent.body.text == name)
+        || d.points.iter().filter_map(|p| p.on.as_ref()).any(is_name)
+        || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(is_name)
+        || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(is_name)
+        || d.actions.iter().any(|action| on(&action.on))
+        || expressions(d).into_iter().any(|e| names_axes(e, name, 0))
+}
+
+/// `name.at(…)` or `name.x` somewhere in an expression.
+fn names_axes(e: &Expr, name: &str, depth: usize) -> bool {
+    let is_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(n) if n == name);
+    let inner = |e: &Expr| names_axes(e, name, depth + 1);
+    depth < 500
+        && match &e.kind {
+            ExprKind::Number(_) | ExprKind::Name(_) => false,
+            ExprKind::Field(base, _) => is_name(base) || inner(base),
+            ExprKind::Neg(base) => inner(base),
+            ExprKind::Method(base, _, arguments) => {
+                is_name(base) || inner(base) || arguments.iter().any(inner)
+            }
+            ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
+                arguments.iter().any(inner)
+            }
+            ExprKind::Binary(_, a, b, ..) => inner(a) || inner(b),
+        }
+}
+
+/// The expressions in which places can be named.
+fn expressions(d: &Description) -> Vec<&Expr> {
+    let mut all: Vec<&Expr> = Vec::new();
+    all.extend(d.bodies.iter().filter_map(|b| b.at.as_ref()));
+    all.extend(d.particles.iter().filter_map(|p| p.at.as_ref()));
+    all.extend(d.points.iter().flat_map(|p| p.on.iter().chain(&p.at)));
+    all.extend(d.definitions.iter().chain(&d.outputs).map(|definition| &definition.value));
+    all.extend(d.energies.iter().chain(&d.dissipations).map(|(_, e)| e));
+    for action in &d.actions {
+        match &action.on {
+            Target::On(e) => all.push(e),
+            Target::Between(a, b) => all.extend([a, b]),
+        }
+        match &action.kind {
+            ActionKind::Spring { law, .. } | ActionKind::Dashpot { law } => {
+                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = law;
+                all.push(e);
+            }
+            ActionKind::Force { along: direction, value }
+            | ActionKind::Torque { about: direction, value } => {
+                all.extend(direction.iter().chain(value));
+            }
+            _ => {}
+        }
+    }
+    all
+}

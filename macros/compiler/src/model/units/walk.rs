@@ -1,0 +1,256 @@
+//! The walk over an expression: what its parts are, and what must be alike.
+
+use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
+use super::ratio::Ratio;
+use super::si::{ACCELERATION, LENGTH, PLAIN, RATE, RATE_OF_RATE, SPEED, TIME};
+use super::unify::Dimension;
+use super::value::{Value, product};
+use crate::expr::Function;
+use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
+
+impl<'a> Inference<'a> {
+    /// The dimension of an expression.
+    pub fn value(&mut self, e: &'a Expr) -> Value {
+        match &e.kind {
+            ExprKind::Number(n) => Value::number(*n),
+            ExprKind::Name(name) => self.name(name),
+            ExprKind::Field(inner, member) => self.member(inner, member),
+            ExprKind::Neg(inner) => self.value(inner).negated(),
+            ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.product(e),
+            ExprKind::Binary(..) => self.sum(e, None),
+            ExprKind::Call(function, arguments) => self.call(function, arguments),
+            ExprKind::Array(items) => self.all_alike(items, Reason::Components),
+            ExprKind::Method(..) | ExprKind::Tuple(_) => Value::Unknown,
+        }
+    }
+
+    fn name(&self, name: &str) -> Value {
+        if let Some(Meaning::Named(v, named)) = self.names.get(name)
+            && !self.locals.iter().any(|(local, _)| *local == name)
+        {
+            return Value::Quantity { dimension: Dimension::variable(*v), named: *named };
+        }
+        let moving = match name {
+            "x" | "y" | "z" => return Value::Direction,
+            "pi" => return Value::formula(std::f64::consts::PI),
+            _ => self.locals.iter().find(|(local, _)| *local == name).map(|(_, d)| d.clone()),
+        };
+        match (moving, name, self.names.get(name)) {
+            (Some(dimension), ..) => Value::quantity(dimension),
+            (None, "t", _) => Value::quantity(TIME),
+            (None, _, Some(Meaning::Moving(dimension))) => Value::quantity(dimension.clone()),
+            _ => Value::Unknown,
+        }
+    }
+
+    /// A coordinate of a joint, or the axis of a frame.
+    fn member(&self, inner: &Expr, member: &Name) -> Value {
+        let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
+        match self.names.get(&format!("{joint}.{}", member.text)) {
+            Some(Meaning::Moving(dimension)) => Value::quantity(dimension.clone()),
+            _ => Value::Direction,
+        }
+    }
+
+    /// Demands that two values are alike; returns what they are.
+    fn alike(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
+        let (Value::Quantity { dimension, named }, Value::Quantity { dimension: other, named: too }) =
+            (&a, &b)
+        else {
+            self.check_mixed(&[&a, &b]);
+            return a.or(b);
+        };
+        if !named && !too && self.differ(dimension, other) {
+            return self.mixed(Mismatch { origin, found: other.clone(), expected: dimension.clone() });
+        }
+        match self.equate(other, dimension, origin) {
+            true => Value::Quantity { dimension: dimension.clone(), named: *named || *too },
+            false => Value::Unknown,
+        }
+    }
+
+    /// The common dimension of several expressions.
+    fn all_alike(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
+        let mut first: Option<&Expr> = None;
+        let mut common = Value::number(0.0);
+        for item in items {
+            let value = self.value(item);
+            let is_quantity = matches!(value, Value::Quantity { .. });
+            common = self.alike(common, value, Origin { reason, at: item, like: first });
+            first = first.or(is_quantity.then_some(item));
+        }
+        match common {
+            Value::Number { .. } => Value::other_number(f64::NAN),
+            other => other,
+        }
+    }
+
+    /// A sum of any number of terms. Those whose dimension is open take the one that is expected, so that what does not
+    /// fit is not blamed on them.
+    pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
+        let mut written = Vec::new();
+        let mut at = e;
+        while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &at.kind {
+            written.push((Some((Reason::Sum(*op), at)), &**right));
+            at = left;
+        }
+        written.push((None, at));
+        let terms: Vec<_> =
+            written.into_iter().rev().map(|(sum, term)| (sum, term, self.value(term))).collect();
+        for (_, term, value) in &terms {
+            if let (Value::Quantity { dimension, .. }, Some(expected)) = (value, expected)
+                && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
+            {
+                self.equate(dimension, expected, Origin { reason: Reason::Place, at: term, like: None });
+            }
+        }
+        let mut terms = terms.into_iter();
+        let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
+        let total = terms.fold(first, |total, (sum, term, value)| {
+            let (reason, at) = sum.unwrap_or((Reason::Place, term));
+            self.alike(total, value, Origin { reason, at, like: None })
+        });
+        match total {
+            Value::Number { .. } => Value::other_number(f64::NAN),
+            other => other,
+        }
+    }
+
+    /// A product or quotient of any number of factors.
+    fn product(&mut self, e: &'a Expr) -> Value {
+        let mut written = Vec::new();
+        let mut at = e;
+        while let ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) = &at.kind {
+            written.push((*op == BinaryOp::Div, &**right));
+            at = left;
+        }
+        written.push((false, at));
+        let factors: Vec<(bool, Value)> =
+            written.into_iter().rev().map(|(below, factor)| (below, self.value(factor))).collect();
+        self.multiply(&factors)
+    }
+
+    /// The product of factors; those marked divide.
+    fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
+        self.check_mixed(&factors.iter().map(|(_, f)| f).collect::<Vec<_>>());
+        let (value, free) = product(factors);
+        let (Value::Quantity { dimension, named }, true) = (&value, free) else { return value };
+        let number = Dimension::variable(self.system.variable());
+        self.wish(number.clone());
+        match dimension.times(&number) {
+            Some(dimension) => Value::Quantity { dimension, named: *named },
+            None => Value::Unknown,
+        }
+    }
+
+    fn call(&mut self, function: &'a Name, arguments: &'a [Expr]) -> Value {
+        let text = function.text.as_str();
+        match (text, arguments) {
+            ("abs", [a]) => self.value(a),
+            ("signum", [a]) => {
+                self.value(a);
+                Value::quantity(PLAIN)
+            }
+            ("sqrt", [a]) => match self.value(a) {
+                Value::Number { value, .. } => Value::other_number(value.sqrt()),
+                other => other.power(Ratio::new(1, 2)),
+            },
+            ("pow", [a, n]) => self.power(a, n),
+            ("min" | "max", _) => self.all_alike(arguments, Reason::Alike(text)),
+            ("atan2", _) => match self.all_alike(arguments, Reason::Alike(text)) {
+                Value::Quantity { .. } => Value::quantity(PLAIN),
+                _ => Value::formula(f64::NAN),
+            },
+            ("dot" | "cross", _) => {
+                let factors: Vec<_> = arguments.iter().map(|a| (false, self.value(a))).collect();
+                self.multiply(&factors)
+            }
+            ("norm", [a]) => match self.value(a) {
+                Value::Direction => Value::quantity(PLAIN),
+                other => other,
+            },
+            ("project", [a, n]) => {
+                self.value(n);
+                self.value(a)
+            }
+            ("unit", [a]) => {
+                self.value(a);
+                Value::Direction
+            }
+            ("angle", _) => {
+                arguments.iter().for_each(|a| drop(self.value(a)));
+                Value::quantity(PLAIN)
+            }
+            ("rate", [a]) => match self.value(a) {
+                Value::Quantity { dimension, named } => match dimension.over(&TIME) {
+                    Some(dimension) => Value::Quantity { dimension, named },
+                    None => Value::Unknown,
+                },
+                other => other,
+            },
+            ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
+            (_, [a]) => self.elementary(text, a),
+            _ => Value::Unknown,
+        }
+    }
+
+    /// A function of a plain number.
+    fn elementary(&mut self, text: &str, a: &'a Expr) -> Value {
+        let Some((_, f)) = Function::ALL.iter().find(|(name, _)| *name == text) else {
+            return Value::Unknown;
+        };
+        let unit = if matches!(text, "sin" | "cos" | "tan") { "rad" } else { "1" };
+        match self.expect(a, &PLAIN, unit, Reason::Argument) {
+            Value::Number { value, .. } => Value::formula(f.apply(value)),
+            Value::Direction => Value::Unknown,
+            _ => Value::quantity(PLAIN),
+        }
+    }
+
+    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the end.
+    fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
+        let base = self.value(a);
+        let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
+        match (base, exponent) {
+            (Value::Number { value, .. }, Value::Number { value: n, .. }) => {
+                Value::other_number(value.powf(n))
+            }
+            (Value::Number { .. }, _) => Value::quantity(PLAIN),
+            (base, Value::Number { value, .. }) => base.power(Ratio::of(value)),
+            (Value::Mixed(k), _) => Value::Mixed(k),
+            (Value::Quantity { dimension, named }, _) => {
+                let power = Dimension::variable(self.system.variable());
+                self.wishes.push((dimension, Some(power.clone())));
+                Value::Quantity { dimension: power, named }
+            }
+            _ => Value::Unknown,
+        }
+    }
+
+    /// `r(y / x)` and its kin; the points in it may be placed by vectors.
+    fn slash(&mut self, text: &str, e: &'a Expr) -> Value {
+        let mut at = e;
+        while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+            self.point(right);
+            at = left;
+        }
+        self.point(at);
+        Value::quantity(match text {
+            "r" => LENGTH,
+            "v" => SPEED,
+            "a" => ACCELERATION,
+            "omega" => RATE,
+            _ => RATE_OF_RATE,
+        })
+    }
+
+    /// A place: `body.at(vector)`.
+    pub fn point(&mut self, e: &'a Expr) {
+        if let ExprKind::Method(base, _, arguments) = &e.kind {
+            self.point(base);
+            for argument in arguments {
+                self.expect(argument, &LENGTH, "m", Reason::Place);
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! An output cannot have the name of another function of the mechanism, and every such function is known.
+
+use linkwork_compiler::{check, expand};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+fn mechanism(name: &str) -> String {
+    format!(
+        "struct S {{
+            #[particle(mass = 1)] ball: Particle,
+            #[joint(ground -> ball, along = (x, y))] table: Stage,
+            #[acts(on = table.x)] drive: Force,
+            #[output(table.x)] {name}: Scalar,
+        }}"
+    )
+}
+
+/// Names of the functions in generated code.
+fn functions(code: &str) -> BTreeSet<String> {
+    let names = code.split("fn ").skip(1).map(|rest| {
+        rest.chars().skip_while(|c| *c == ' ').take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    });
+    names.filter(|name: &String| !name.is_empty() && !name.starts_with("__")).collect()
+}
+
+#[test]
+fn names_of_functions_are_taken() {
+    let empty = || "".parse().unwrap();
+    let item = |name: &str| mechanism(name).parse().unwrap();
+    assert_eq!(check(empty(), item("place"), Path::new("")), Vec::<String>::new());
+    let emitted = expand(empty(), item("place"), Path::new(""));
+    let code = format!("{}{}", emitted.tokens, emitted.text);
+    let names = functions(&code);
+    assert!(names.contains("mass_matrix") && names.contains("place_jacobian"), "{names:?}");
+    // Methods of the traits that carry frames and parameters are not the mechanism's own.
+    let of_others = ["place", "place_jacobian", "placement", "twist", "acceleration", "jacobian"];
+    for name in names.iter().filter(|name| !of_others.contains(&name.as_str())) {
+        let messages = check(empty(), item(name), Path::new(""));
+        assert!(messages.iter().any(|m| m.contains("is taken")), "{name}: {messages:?}");
+    }
+    // The Jacobian of such an output would be another one's function.
+    assert!(!check(empty(), item("frame"), Path::new("")).is_empty());
+}

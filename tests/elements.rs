@@ -1,0 +1,215 @@
+//! The elements that are no joints, on random mechanisms with all of them: the recursive algorithms and Lagrange's
+//! equations agree, energy goes where it should, and what is looked at moves as its velocities and accelerations say.
+
+mod random_world;
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::diff::Derivative;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::replace::replace;
+use linkwork_compiler::expr::{Expr, Graph, Symbol};
+use linkwork_compiler::mechanics::regularity::random_configuration;
+use linkwork_compiler::mechanics::{self, Joint, crba, energy, lagrange, ldl, momentum, rnea};
+use linkwork_compiler::model::kinematics::{time_derivative, velocity_gradient};
+use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::read;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use random_world::{OUTPUTS, World, worlds};
+use std::path::Path;
+
+/// Relative to the largest entry of the reference.
+const TOLERANCE: f64 = 1e-10;
+/// Differences.
+const DIFFERENCE: f64 = 1e-7;
+
+fn with_model(world: &World, check: impl FnOnce(&Model<'_>)) {
+    let (arguments, item) = world.source();
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
+    match model {
+        Some(model) => check(&model),
+        None => panic!("{}\n{item}", cx.messages().join("\n")),
+    }
+}
+
+/// Numbers for all symbols: a state, accelerations, inputs and time.
+struct State {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    seed: u64,
+}
+
+impl State {
+    fn new(model: &Model<'_>, seed: u64) -> State {
+        let v = (0..model.nv()).map(|k| 2.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0)).collect();
+        State { q: random_configuration(model, seed), v, seed }
+    }
+
+    fn values(&self, e: &[Expr<'_>]) -> Vec<f64> {
+        self.later(0.0, &[], e)
+    }
+
+    /// After a short time along the motion with the given rates of `q`, to first order.
+    fn later(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
+        let other = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
+        eval(e, &|s| match Quantity::of(s) {
+            Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
+            Quantity::Velocity(k) => self.v[k] + time * other(Quantity::Acceleration(k).symbol()),
+            Quantity::Time => other(s) + time,
+            _ => other(s),
+        })
+    }
+
+    /// Rate of expressions along the motion, by differences.
+    fn slope(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
+        let rates = self.values(&lagrange::configuration_rates(model));
+        let at = |s: f64| self.later(s, &rates, e);
+        let h = 1e-3;
+        let (near, far) = ((at(h), at(-h)), (at(2.0 * h), at(-2.0 * h)));
+        (0..e.len()).map(|k| (8.0 * (near.0[k] - near.1[k]) - (far.0[k] - far.1[k])) / (12.0 * h)).collect()
+    }
+}
+
+fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
+    assert_eq!(a.len(), b.len(), "{what}");
+    let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        assert!((a - b).abs() <= tolerance * scale, "{what}, entry {k}: {a} and {b}");
+    }
+}
+
+/// `M x + h`.
+fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
+}
+
+fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+    m.iter().flatten().copied().collect()
+}
+
+fn by<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
+    Derivative::with_respect_to(quantity.symbol(), model.graph).of(e)
+}
+
+fn check_dynamics(model: &Model<'_>, seed: u64) {
+    let state = State::new(model, seed);
+    let close = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
+        assert_close(what, &state.values(a), &state.values(b), TOLERANCE);
+    };
+    let joints = mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let reference = lagrange::derive(model, &joints);
+    let mass = crba::mass_matrix(model, &joints);
+    let bias = rnea::inverse_dynamics(model, &joints, &v, None);
+    let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
+    close("mass matrix", &flat(&mass), &flat(&reference.mass_matrix));
+    close("bias", &bias, &reference.bias);
+    close("inverse dynamics", &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
+    let kinetic = energy::kinetic_energy(model, &joints, &v);
+    let potential = energy::potential_energy(model, &joints);
+    close("energies", &[kinetic, potential], &[reference.kinetic, reference.potential]);
+    let p = momentum::generalized_momentum(model, &joints, &v);
+    let expected: Vec<_> =
+        (0..model.nv()).map(|k| by(model, Quantity::Velocity(k), reference.kinetic)).collect();
+    close("momentum", &p, &expected);
+    // ṗ = Ṗ(q, v, t) + M a and τ = M a + h.
+    let rate = momentum::momentum_rate(model, &joints, &v);
+    let expected: Vec<_> =
+        p.iter().zip(&bias).map(|(p, h)| time_derivative(model.space(), *p) - *h).collect();
+    close("momentum rate", &rate, &expected);
+    let r: Vec<_> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
+    close("factorisation", &ldl::solve(mass, r, &joints), &a);
+    check_energy(model, &joints, &tau, &state);
+}
+
+/// Jacobi's integral `p · v − T + U` gains the power of what acts and loses `∂L/∂t`.
+fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
+    let g = model.graph;
+    let v = mechanics::velocities(model);
+    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let kinetic = energy::kinetic_energy(model, joints, &v);
+    let potential = energy::potential_energy(model, joints);
+    let p = momentum::generalized_momentum(model, joints, &v);
+    let jacobi = dot(&p, &v) - kinetic + potential;
+    let along = |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
+    let mut power = dot(tau, &v);
+    for dashpot in &model.dashpots {
+        power -= dashpot.damping * mechanics::rate(model, &dashpot.on).square();
+    }
+    for function in &model.dissipations {
+        power -= along(*function);
+    }
+    for load in &model.loads {
+        let idle = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
+        power += replace(load.force, &idle) * along(load.rate);
+    }
+    let expected = power - by(model, Quantity::Time, kinetic - potential);
+    assert_close("energy", &state.slope(model, &[jacobi]), &state.values(&[expected]), DIFFERENCE);
+}
+
+/// The values of an output by name.
+fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
+    model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
+}
+
+/// Velocities are the rates of places, accelerations those of velocities, each in the axes in which it is taken.
+fn check_outputs(model: &Model<'_>, seed: u64) {
+    let state = State::new(model, seed);
+    let is_rate = |rate: &str, of: &str| {
+        let slope = state.slope(model, &output(model, of));
+        assert_close(rate, &state.values(&output(model, rate)), &slope, DIFFERENCE);
+    };
+    for k in 1..=3 {
+        is_rate(&format!("v{k}"), &format!("r{k}"));
+        is_rate(&format!("a{k}"), &format!("v{k}"));
+    }
+    for k in 4..=6 {
+        is_rate(&format!("d{k}"), &format!("w{k}"));
+    }
+    let three = |name: &str| <[f64; 3]>::try_from(state.values(&output(model, name))).expect("a vector");
+    let w = three("w4");
+    for axis in ["x4", "y4", "z4"] {
+        let e = three(axis);
+        let turning = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
+        assert_close(axis, &turning, &state.slope(model, &output(model, axis)), DIFFERENCE);
+    }
+    for name in OUTPUTS.map(|(name, ..)| name).into_iter().chain(["size"]) {
+        let values = output(model, name);
+        let whole = |e: &Expr<'_>| {
+            let moved = state.values(&[time_derivative(model.space(), *e)])[0];
+            velocity_gradient(*e).iter().fold(moved, |sum, (k, d)| {
+                sum + state.values(&[*d * Quantity::Acceleration(*k).expr(model.graph)])[0]
+            })
+        };
+        let rates: Vec<f64> = values.iter().map(whole).collect();
+        // Accelerations themselves are held.
+        assert_close(name, &rates, &state.slope(model, &values), DIFFERENCE);
+    }
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_261_121),
+        ..Default::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(config(32))]
+
+    #[test]
+    fn lagrange_and_the_recursions_agree(world in worlds(), seed in 0_u64..1000) {
+        with_model(&world, |model| check_dynamics(model, seed));
+    }
+
+    #[test]
+    fn places_move_as_their_velocities_say(world in worlds(), seed in 0_u64..1000) {
+        with_model(&world, |model| check_outputs(model, seed));
+    }
+}
