@@ -97,7 +97,10 @@ fn chains() {
                 assert!(found[k] < before[k] * 5 / 2, "{} grows linearly", MAIN[k]);
             }
             assert!(found[3] < before[3] * 4, "forward dynamics does not grow with the cube");
-            assert!(found[2] > before[2] * 3 && found[2] < before[2] * 5, "the mass matrix grows with the square");
+            assert!(
+                found[2] > before[2] * 3 && found[2] < before[2] * 5,
+                "the mass matrix grows with the square"
+            );
         }
         before = Some(found);
     }

@@ -47,7 +47,8 @@ fn check(fields: &str, expected: &[&str]) {
 /// The mistakes of a machine with the parameters `a`, `b`, `c`.
 #[track_caller]
 fn refuse(fields: &str, expected: &[&str]) {
-    let has = |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
+    let has =
+        |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
     let names: String = ["a", "b", "c"].iter().filter(has).map(|n| format!("{n}: f64, ")).collect();
     let names = if fields.contains("unit(") { String::new() } else { names };
     match of_machine(&format!("{names}{fields}")) {
@@ -61,63 +62,87 @@ fn refuse(fields: &str, expected: &[&str]) {
 
 #[test]
 fn every_place_gives_a_unit() {
-    check("#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,", &[
-        "kg", "m", "kg·m²",
-    ]);
-    check("#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, #[joint(arm -> k)] j: Ball,", &[
-        "kg", "m", "rad",
-    ]);
-    check("#[body(mass = 1, inertia = sphere(1, 1))] k: Body, #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,", &[
-        "m", "rad", "m/rad",
-    ]);
-    check("#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,", &[
-        "N/m", "m", "N·m/rad", "rad",
-    ]);
-    check("#[acts(on = rail, damping = a)] s: Dashpot, #[acts(on = hinge, damping = b)] t: Dashpot,", &[
-        "N·s/m",
-        "N·m·s/rad",
-    ]);
-    check("#[acts(on = rail, inertance = a)] s: Inerter, #[acts(on = hinge, inertance = b)] t: Inerter,", &[
-        "kg", "kg·m²",
-    ]);
+    check(
+        "#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,",
+        &["kg", "m", "kg·m²"],
+    );
+    check(
+        "#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, #[joint(arm -> k)] j: Ball,",
+        &["kg", "m", "rad"],
+    );
+    check(
+        "#[body(mass = 1, inertia = sphere(1, 1))] k: Body, #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,",
+        &["m", "rad", "m/rad"],
+    );
+    check(
+        "#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,",
+        &["N/m", "m", "N·m/rad", "rad"],
+    );
+    check(
+        "#[acts(on = rail, damping = a)] s: Dashpot, #[acts(on = hinge, damping = b)] t: Dashpot,",
+        &["N·s/m", "N·m·s/rad"],
+    );
+    check(
+        "#[acts(on = rail, inertance = a)] s: Inerter, #[acts(on = hinge, inertance = b)] t: Inerter,",
+        &["kg", "kg·m²"],
+    );
     check(
         "#[acts(on = rail, coulomb = a, stiction = b, stribeck_speed = c, viscous = d, speed = e)] s: Friction,",
         &["N", "N", "m/s", "N·s/m", "m/s"],
     );
-    check("#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, #[acts(between = (ground, p), mu = a)] s: Gravity, #[acts(between = (cart, p), constant = b)] t: Gravity, #[acts(between = (arm, p), strength = c)] u: Attraction,", &[
-        "m³/s²", "m³/(kg·s²)", "N·m²",
-    ]);
-    check("#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,", &[
-        "N/m", "kg/(m²·s²)", "N·m", "kg/m",
-    ]);
-    check("#[acts(on = rail, value = a * cos(b * t))] s: Force, #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,", &[
-        "N", "1/s", "N·m", "s",
-    ]);
-    check("#[energy(a / 2 * rail * rail)] s: Potential, #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,", &[
-        "N/m", "N·s/m", "J",
-    ]);
+    check(
+        "#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, #[acts(between = (ground, p), mu = a)] s: Gravity, #[acts(between = (cart, p), constant = b)] t: Gravity, #[acts(between = (arm, p), strength = c)] u: Attraction,",
+        &["m³/s²", "m³/(kg·s²)", "N·m²"],
+    );
+    check(
+        "#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,",
+        &["N/m", "kg/(m²·s²)", "N·m", "kg/m"],
+    );
+    check(
+        "#[acts(on = rail, value = a * cos(b * t))] s: Force, #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,",
+        &["N", "1/s", "N·m", "s"],
+    );
+    check(
+        "#[energy(a / 2 * rail * rail)] s: Potential, #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,",
+        &["N/m", "N·s/m", "J"],
+    );
 }
 
 #[test]
 fn expressions_carry_units() {
-    check("#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,", &["N", "N"]);
+    check(
+        "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
+        &["N", "N"],
+    );
     // The root of a product, with both found at other places.
-    check("#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "N/m", "kg", "1",
-    ]);
-    check("#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,", &["N·s/m"]);
-    check("#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, #[define(atan2(a, b))] alpha_: Scalar,", &["N·m·s", "N·m·s"].map(|_| "kg·m²/s"));
-    check("#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,", &[
-        "N", "N", "kg/(m·s²)", "m",
-    ]);
+    check(
+        "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["N/m", "kg", "1"],
+    );
+    check(
+        "#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,",
+        &["N·s/m"],
+    );
+    check(
+        "#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, #[define(atan2(a, b))] alpha_: Scalar,",
+        &["N·m·s", "N·m·s"].map(|_| "kg·m²/s"),
+    );
+    check(
+        "#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,",
+        &["N", "N", "kg/(m·s²)", "m"],
+    );
     check("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
     check("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
     // In ratios alone nothing is determined.
     check("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
-    check("#[acts(on = cart, value = [a, 0, b] - c * unit(r(arm.at(x) / ground)))] s: Force,", &["N", "N", "N"]);
-    check("#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,", &[
-        "rad", "1/s", "N", "N",
-    ]);
+    check(
+        "#[acts(on = cart, value = [a, 0, b] - c * unit(r(arm.at(x) / ground)))] s: Force,",
+        &["N", "N", "N"],
+    );
+    check(
+        "#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,",
+        &["rad", "1/s", "N", "N"],
+    );
 }
 
 #[test]
@@ -169,29 +194,35 @@ fn robots_of_files_have_units() {
 
 #[test]
 fn a_parameter_is_one_thing() {
-    refuse("#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,", &[
-        "`a` is a torque or an energy (N·m) here, but a stiffness (N/m) elsewhere",
-        "`a` is a stiffness (N/m) here",
-    ]);
-    refuse("#[body(mass = a, com = a / 2 * y)] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "`a` is a length (m) here, but a mass (kg) elsewhere",
-        "`a` is a mass (kg) here",
-    ]);
-    refuse("#[energy(a * rail)] e: Potential, #[body(mass = 2 * a)] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "`a` is a force (N) here, but a mass (kg) elsewhere",
-        "`a` is a mass (kg) here",
-    ]);
+    refuse(
+        "#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,",
+        &[
+            "`a` is a torque or an energy (N·m) here, but a stiffness (N/m) elsewhere",
+            "`a` is a stiffness (N/m) here",
+        ],
+    );
+    refuse(
+        "#[body(mass = a, com = a / 2 * y)] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+    );
+    refuse(
+        "#[energy(a * rail)] e: Potential, #[body(mass = 2 * a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["`a` is a force (N) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+    );
     // Shown once, however often it stands wrong.
-    refuse("#[body(mass = a, com = a * y, inertia = rod(a, a, y))] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "`a` is a length (m) here, but a mass (kg) elsewhere",
-        "`a` is a mass (kg) here",
-    ]);
+    refuse(
+        "#[body(mass = a, com = a * y, inertia = rod(a, a, y))] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+    );
     // By way of others: a b is a mass, and so is b.
-    refuse("#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,", &[
-        "expected a mass (kg), found a quantity in kg·m",
-        "`a` is a length (m) here",
-        "`b` is a mass (kg) here",
-    ]);
+    refuse(
+        "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
+        &[
+            "expected a mass (kg), found a quantity in kg·m",
+            "`a` is a length (m) here",
+            "`b` is a mass (kg) here",
+        ],
+    );
 }
 
 #[test]
@@ -199,23 +230,42 @@ fn like_is_added_to_like() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) here", "`b` is a length (m) here"];
     let both = |first: &'static str| [first, sites[0], sites[1]];
-    refuse(&format!("{known} #[energy(3.5 * (a + b))] e: Potential,"), &both("a length (m) cannot be added to a mass (kg)"));
+    refuse(
+        &format!("{known} #[energy(3.5 * (a + b))] e: Potential,"),
+        &both("a length (m) cannot be added to a mass (kg)"),
+    );
     refuse(
         &format!("{known} #[energy(3.5 * (a - b))] e: Potential,"),
         &both("a length (m) cannot be subtracted from a mass (kg)"),
     );
-    refuse(&format!("{known} #[energy(3.5 * max(a, b))] e: Potential,"), &both("`max` cannot compare a mass (kg) with a length (m)"));
+    refuse(
+        &format!("{known} #[energy(3.5 * max(a, b))] e: Potential,"),
+        &both("`max` cannot compare a mass (kg) with a length (m)"),
+    );
     refuse(
         &format!("{known} #[energy(3.5 * norm([a, 0, b]))] e: Potential,"),
         &both("this component is a length (m), but another is a mass (kg)"),
     );
-    refuse(&format!("{known} #[energy(3.5 * atan2(a, b))] e: Potential,"), &both("`atan2` cannot compare a mass (kg) with a length (m)"));
-    refuse("#[energy(a * rail + a * hinge)] e: Potential,", &["these terms cannot have one unit: they differ by 1/m"]);
-    refuse("#[energy(a * (rail + hinge))] e: Potential,", &["a plain number cannot be added to a length (m)"]);
-    refuse("#[energy(a * sin(b))] e: Potential, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "`b` is a plain number here, but a mass (kg) elsewhere",
-        "`b` is a mass (kg) here",
-    ]);
+    refuse(
+        &format!("{known} #[energy(3.5 * atan2(a, b))] e: Potential,"),
+        &both("`atan2` cannot compare a mass (kg) with a length (m)"),
+    );
+    refuse(
+        "#[energy(a * rail + a * hinge)] e: Potential,",
+        &["a force (N) cannot be added to a torque or an energy (N·m)", "`a` is a force (N) here"],
+    );
+    refuse(
+        "#[energy(3.5 * (a * rail + a * hinge))] e: Potential,",
+        &["these terms cannot have one unit: they differ by 1/m"],
+    );
+    refuse(
+        "#[energy(a * (rail + hinge))] e: Potential,",
+        &["a plain number cannot be added to a length (m)"],
+    );
+    refuse(
+        "#[energy(a * sin(b))] e: Potential, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["`b` is a plain number here, but a mass (kg) elsewhere", "`b` is a mass (kg) here"],
+    );
 }
 
 #[test]
@@ -236,18 +286,23 @@ fn attributes_pin_units_down() {
         assert_eq!(unit(written).as_deref(), Ok(shown));
     }
     let message = |written: &str| unit(written).unwrap_err().join("; ");
-    assert!(message("mm").contains("unknown unit `mm`\n\n= help: all quantities are in SI units, angles in radians: write `m`"));
+    assert!(message("mm").contains(
+        "unknown unit `mm`\n\n= help: all quantities are in SI units, angles in radians: write `m`"
+    ));
     assert!(message("deg").contains("write `rad`"));
     assert!(message("kq").contains("did you mean `kg`?"));
     assert!(message("m99").contains("unknown unit `m99`"));
     assert!(message("2 * kg").contains("expected a unit"));
     assert!(message("kg +").contains("nothing stands behind this operator"));
     assert!(message("").contains("this says no unit"));
-    refuse("#[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,", &[
-        "`a` is declared as a length (m), but used as a mass (kg)",
-        "`a` is a mass (kg) here",
-    ]);
-    refuse("#[unit(m)] #[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential,", &["a parameter has one `#[unit]`"]);
+    refuse(
+        "#[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        &["`a` is declared as a length (m), but used as a mass (kg)", "`a` is a mass (kg) here"],
+    );
+    refuse(
+        "#[unit(m)] #[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential,",
+        &["a parameter has one `#[unit]`"],
+    );
 }
 
 /// The struct keeps its fields without the attribute, and its documentation has all units.
@@ -277,7 +332,8 @@ fn large_structs_are_read_in_time() {
     let n = 800;
     let fields: String = (0..n).map(|k| format!("p{k}: f64, ")).collect();
     let window = |k: usize| (k..k + 120).map(|j| format!("p{}", j % n)).collect::<Vec<_>>().join(" * ");
-    let energies: String = (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", window(k))).collect();
+    let energies: String =
+        (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", window(k))).collect();
     let mut cx = Diagnostics::new();
     let source = read(
         "".parse().unwrap(),

@@ -9,9 +9,7 @@ use std::path::PathBuf;
 /// The struct's fields are parameters, which stay, and elements, which say what the mechanism is made of.
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
-    let folder = std::env::var_os("CARGO_MANIFEST_DIR")
-        .map(PathBuf::from)
-        .unwrap_or_default();
+    let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     let emitted = linkwork_compiler::expand(arguments.into(), item.into(), &folder);
     let mut tokens = TokenStream::from(emitted.tokens);
     match emitted.text.parse::<TokenStream>() {

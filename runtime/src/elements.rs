@@ -8,6 +8,11 @@
 //! `cart.x`. Endpoints of joints and force elements are bodies, `ground`, or points and orientations fixed in them:
 //! `body.at(l / 2 * y)`, `body.at(l * x).rotated(z(angle), x(tilt))`, the rotations in order about carried axes.
 //! Units are SI, angles in radians.
+//!
+//! Units are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes `l` a length, and a parameter that would have
+//! to be two things at once is a compile error. A number has any unit: `-9.81 * y` is an acceleration, `l + 0.1` a
+//! length; but ½, 2 or π beside a parameter are plain numbers, and an expression without parameters is held to nothing.
+//! `#[unit(N * m / rad)]` on a parameter says its unit where nothing else does. The struct's documentation lists all.
 
 /// A rigid body.
 ///

@@ -9,7 +9,7 @@ pub trait Real: RealField + Copy {}
 impl<T: RealField + Copy> Real for T {}
 
 /// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs, whose equations do not contain time
-/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`] instead, and is a
+/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`](crate::Rheonomic) instead, and is a
 /// `Mechanism` at every instant: `hoop.at(t)`.
 ///
 /// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball

@@ -22,7 +22,9 @@ impl Source {
     fn documented(&self) -> Vec<(String, String)> {
         let field = |f: &syn::Field| {
             let doc = f.attrs.iter().filter_map(|a| match &a.meta {
-                Meta::NameValue(doc) if a.path().is_ident("doc") => Some(doc.value.to_token_stream().to_string()),
+                Meta::NameValue(doc) if a.path().is_ident("doc") => {
+                    Some(doc.value.to_token_stream().to_string())
+                }
                 _ => None,
             });
             let doc = doc.collect::<Vec<_>>().join(" ");
@@ -54,7 +56,8 @@ impl Source {
         let mut item = self.item.clone();
         for (field, unit) in item.fields.iter_mut().zip(units) {
             if unit != "any" && field.ident.as_ref().is_some_and(|name| name != except) {
-                let unit: TokenStream = unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
+                let unit: TokenStream =
+                    unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
                 field.attrs.push(syn::parse_quote!(#[unit(#unit)]));
             }
         }
@@ -75,7 +78,8 @@ impl Source {
 
 fn is_unit(text: &str) -> bool {
     let words = text.split(['/', '·', '(', ')']).map(|w| w.trim_end_matches(['²', '³']));
-    !text.is_empty() && words.filter(|w| !w.is_empty()).all(|w| ["m", "kg", "s", "rad", "N", "J", "1"].contains(&w))
+    !text.is_empty()
+        && words.filter(|w| !w.is_empty()).all(|w| ["m", "kg", "s", "rad", "N", "J", "1"].contains(&w))
 }
 
 /// Replaces the occurrence of a parameter that the count comes to; keys and members are none.
@@ -148,7 +152,13 @@ fn dimension(unit: &str) -> [i32; 3] {
     let (mut sign, mut inside) = (1, 1);
     let mut word = String::new();
     let mut end = |word: &mut String, sign: i32| {
-        let power = if word.ends_with('²') { 2 } else if word.ends_with('³') { 3 } else { 1 };
+        let power = if word.ends_with('²') {
+            2
+        } else if word.ends_with('³') {
+            3
+        } else {
+            1
+        };
         let of = match word.trim_end_matches(['²', '³']) {
             "m" => [1, 0, 0],
             "kg" => [0, 1, 0],
@@ -183,7 +193,9 @@ fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
     for source in gallery() {
         let parameters = source.parameters();
         let units: Vec<String> = parameters.iter().map(|(_, unit)| unit.clone()).collect();
-        for (parameter, unit) in parameters.iter().filter(|(_, unit)| unit != "any" && dimension(unit) != [0; 3]) {
+        for (parameter, unit) in
+            parameters.iter().filter(|(_, unit)| unit != "any" && dimension(unit) != [0; 3])
+        {
             let pinned = source.pinned(&units, if itself { "" } else { parameter });
             assert_eq!(pinned.messages(), Vec::<String>::new(), "{}", source.item.ident);
             // What stands only once is what it is there.

@@ -50,7 +50,7 @@ pub struct Names {
     v1: Pin,
     #[joint(r#loop -> _1, along = x)]
     r#fn: Sleeve,
-    #[acts(on = r#fn, stiffness = q)]
+    #[acts(on = r#fn, stiffness = t0 * from)]
     r#struct: Spring,
     #[acts(on = v1)]
     self_: Torque,

@@ -92,7 +92,7 @@ pub enum Outcome {
 }
 
 /// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of it.
-const MOST_WORK: usize = 2_000_000;
+const MOST_WORK: usize = 1_000_000;
 
 /// The equations so far, solved: every solved unknown in terms of unsolved ones (reduced row echelon form).
 #[derive(Debug, Default)]
