@@ -29,7 +29,7 @@ pub struct Adorned {
     pub(crate) _serial: f64,
     /// A cart.
     #[doc(hidden)]
-    #[allow(dead_code)]
+    #[allow(dead_code, reason = "only its form counts")]
     #[body(mass = mass, inertia = 0, com = 0,)]
     pub cart: linkwork::elements::Body,
     /// A rail.

@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 
 #[mechanism(gravity = -q0 * r#type * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(non_snake_case)]
+#[allow(non_snake_case, reason = "a name of generated code")]
 pub struct Names {
     pub q: f64,
     pub v: f64,

@@ -167,101 +167,96 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
 /// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space.
 fn write_manifold(out: &mut String, charts: &[Chart], s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    let range = |first: usize, n: usize, name: &str| {
-        let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
-        format!("[{}]", list.join(", "))
+    let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
+        ManifoldFunction { name, about, signature, arguments, result }
     };
-    let bind = |name: &str, n: usize| match n {
-        0 => String::new(),
-        _ => format!("let [{}] = {name}.data.0;\n", range(0, n, name)),
-    };
-    let result = |name: &str, n: usize| {
-        format!(
-            "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))\n}}\n",
-            range(0, n, name)
-        )
-    };
-    let _ = writeln!(
-        out,
-        "/// `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.
-        #[inline]\n#[must_use]\npub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{"
-    );
-    out.push_str(&bind("q", s.nq));
-    out.push_str(&bind("dv", s.nv));
-    for chart in charts {
-        let _ = match *chart {
-            Chart::Plain(a, b) => writeln!(out, "let r{a} = q{a} + dv{b};"),
-            Chart::Ball(a, b) => writeln!(
-                out,
-                "let {} = ::linkwork::__private::ball_integrate({}, {});",
-                range(a, 4, "r"),
-                range(a, 4, "q"),
-                range(b, 3, "dv")
-            ),
-            Chart::Free(a, b) => writeln!(
-                out,
-                "let {} = ::linkwork::__private::free_integrate({}, {});",
-                range(a, 7, "r"),
-                range(a, 7, "q"),
-                range(b, 6, "dv")
-            ),
-        };
+    let functions = [
+        on_manifold(
+            "integrate",
+            "`q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.",
+            format!("q: &{q}, dv: &{v}) -> {q}"),
+            [("q", s.nq), ("dv", s.nv)],
+            s.nq,
+        ),
+        on_manifold(
+            "difference",
+            "`to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            format!("from: &{q}, to: &{q}) -> {v}"),
+            [("from", s.nq), ("to", s.nq)],
+            s.nv,
+        ),
+        on_manifold(
+            "tangent_rate",
+            "Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).",
+            format!("dv: &{v}, v: &{v}) -> {v}"),
+            [("dv", s.nv), ("v", s.nv)],
+            s.nv,
+        ),
+    ];
+    for function in &functions {
+        function.write(out, charts);
     }
-    out.push_str(&result("r", s.nq));
-    let _ = writeln!(
-        out,
-        "/// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.
-        #[inline]\n#[must_use]\npub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{"
-    );
-    out.push_str(&bind("from", s.nq));
-    out.push_str(&bind("to", s.nq));
-    for chart in charts {
-        let _ = match *chart {
-            Chart::Plain(a, b) => writeln!(out, "let r{b} = to{a} - from{a};"),
-            Chart::Ball(a, b) => writeln!(
-                out,
-                "let {} = ::linkwork::__private::ball_difference({}, {});",
-                range(b, 3, "r"),
-                range(a, 4, "from"),
-                range(a, 4, "to")
-            ),
-            Chart::Free(a, b) => writeln!(
-                out,
-                "let {} = ::linkwork::__private::free_difference({}, {});",
-                range(b, 6, "r"),
-                range(a, 7, "from"),
-                range(a, 7, "to")
-            ),
+}
+
+/// One of the functions of the configuration space.
+struct ManifoldFunction {
+    name: &'static str,
+    about: &'static str,
+    signature: String,
+    arguments: [(&'static str, usize); 2],
+    result: usize,
+}
+
+impl ManifoldFunction {
+    fn write(&self, out: &mut String, charts: &[Chart]) {
+        let range = |first: usize, n: usize, name: &str| {
+            let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
+            format!("[{}]", list.join(", "))
         };
-    }
-    out.push_str(&result("r", s.nv));
-    let _ = writeln!(
-        out,
-        "/// Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).
-        #[inline]\n#[must_use]\npub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{"
-    );
-    out.push_str(&bind("dv", s.nv));
-    out.push_str(&bind("v", s.nv));
-    for chart in charts {
-        let _ = match *chart {
-            Chart::Plain(_, b) => writeln!(out, "let r{b} = v{b};"),
-            Chart::Ball(_, b) => writeln!(
+        let _ = writeln!(
+            out,
+            "/// {}\n#[inline]\n#[must_use]\npub fn {}(&self, {} {{",
+            self.about, self.name, self.signature
+        );
+        for (name, n) in self.arguments.iter().filter(|(_, n)| *n > 0) {
+            let _ = writeln!(out, "let [{}] = {name}.data.0;", range(0, *n, name));
+        }
+        let [(first, _), (second, _)] = self.arguments;
+        for chart in charts {
+            let (kind, (q, nq), (v, nv)) = match *chart {
+                Chart::Plain(q, v) => {
+                    let _ = match self.name {
+                        "integrate" => writeln!(out, "let r{q} = q{q} + dv{v};"),
+                        "difference" => writeln!(out, "let r{v} = to{q} - from{q};"),
+                        _ => writeln!(out, "let r{v} = v{v};"),
+                    };
+                    continue;
+                }
+                Chart::Ball(q, v) => ("ball", (q, 4), (v, 3)),
+                Chart::Free(q, v) => ("free", (q, 7), (v, 6)),
+            };
+            // What the result and the two arguments are made of: configurations or velocities.
+            let (on_q, on_v) = ((q, nq), (v, nv));
+            let (r, a, b) = match self.name {
+                "integrate" => (on_q, on_q, on_v),
+                "difference" => (on_v, on_q, on_q),
+                _ => (on_v, on_v, on_v),
+            };
+            let _ = writeln!(
                 out,
-                "let {} = ::linkwork::__private::ball_tangent_rate({}, {});",
-                range(b, 3, "r"),
-                range(b, 3, "dv"),
-                range(b, 3, "v")
-            ),
-            Chart::Free(_, b) => writeln!(
-                out,
-                "let {} = ::linkwork::__private::free_tangent_rate({}, {});",
-                range(b, 6, "r"),
-                range(b, 6, "dv"),
-                range(b, 6, "v")
-            ),
-        };
+                "let {} = ::linkwork::__private::{kind}_{}({}, {});",
+                range(r.0, r.1, "r"),
+                self.name,
+                range(a.0, a.1, first),
+                range(b.0, b.1, second)
+            );
+        }
+        let _ = writeln!(
+            out,
+            "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))\n}}",
+            range(0, self.result, "r")
+        );
     }
-    out.push_str(&result("r", s.nv));
 }
 
 /// Access to one frame: `frame!(Robot, "tool")` names it, and the compiler checks the name.

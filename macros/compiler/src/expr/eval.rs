@@ -1,6 +1,7 @@
 //! Evaluation of expressions with numbers: the oracle of the tests and of the checks of a model.
 
-use super::graph::{Expr, Node, Symbol};
+use super::graph::Expr;
+use super::node::{Node, Symbol};
 
 /// The values of several expressions of one graph, given the value of every symbol.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {

@@ -1,7 +1,8 @@
 //! Vectors and matrices of three dimensions over expressions.
 
 use super::diff::TINY;
-use super::graph::{Expr, Function, Graph};
+use super::graph::{Expr, Graph};
+use super::node::Function;
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 /// Three components.

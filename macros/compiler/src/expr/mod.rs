@@ -6,6 +6,7 @@ pub mod eval;
 pub mod factor;
 pub mod graph;
 pub mod matrix;
+pub mod node;
 pub mod normal;
 pub mod polynomial;
 pub mod print;
@@ -13,6 +14,7 @@ pub mod replace;
 pub mod rotation;
 pub mod trigonometry;
 
-pub use graph::{Expr, Function, Graph, Id, Node, Symbol};
+pub use graph::{Expr, Graph};
 pub use matrix::{Mat3, Sym3, Vec3};
+pub use node::{Function, Id, Node, Symbol};
 pub use rotation::Rotation;

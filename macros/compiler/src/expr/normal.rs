@@ -2,7 +2,8 @@
 //! those of their angles.
 
 use super::diff::TINY;
-use super::graph::{Expr, Function, Graph, Id, Node, Symbol};
+use super::graph::{Expr, Graph};
+use super::node::{Function, Id, Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
 
 const UNKNOWN: u32 = u32::MAX;

@@ -3,7 +3,7 @@
 //! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
 //! whatever grows beyond the limits is given up with `None`.
 
-use super::graph::{Function, Symbol};
+use super::node::{Function, Symbol};
 
 mod monomial;
 #[cfg(test)]

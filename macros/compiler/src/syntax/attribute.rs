@@ -1,6 +1,7 @@
 //! The struct and its attributes: which fields are parameters, which are elements, and what their attributes say.
 
-use super::element::{self, Arguments};
+use super::arguments::Arguments;
+use super::element;
 use super::expression::name;
 use super::{Base, Description, Name, ScalarType, guard};
 use crate::diag::{Diagnostics, Place};

@@ -3,6 +3,8 @@
 
 use crate::diag::Place;
 
+pub mod action;
+pub mod arguments;
 pub mod attribute;
 pub mod element;
 pub mod expression;

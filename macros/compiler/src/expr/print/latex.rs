@@ -2,7 +2,7 @@
 
 use super::names::{Glyph, Name};
 use super::style::{Argument, Factor, Number, Style};
-use crate::expr::graph::Symbol;
+use crate::expr::node::Symbol;
 
 /// LaTeX, with names for symbols and how many dots stand above them: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
 pub struct Latex<'a> {

@@ -1,7 +1,7 @@
 //! How the parts of a polynomial look; and plain text.
 
 use crate::expr::factor::fraction;
-use crate::expr::graph::Symbol;
+use crate::expr::node::Symbol;
 use std::fmt;
 
 /// A text in all ways of writing; empty where there is nothing that could be read.

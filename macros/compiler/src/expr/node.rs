@@ -1,0 +1,152 @@
+//! Nodes of the graph: what they are, and the elementary functions.
+
+/// A node's index.
+pub type Id = u32;
+
+/// An input of an expression; what it stands for is known to whoever made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Symbol(pub u32);
+
+/// Elementary functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the names of the elementary functions say it all")]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Signum,
+}
+
+impl Function {
+    /// All of them, with the names they have in the language.
+    pub const ALL: [(&'static str, Function); 14] = [
+        ("sin", Function::Sin),
+        ("cos", Function::Cos),
+        ("tan", Function::Tan),
+        ("asin", Function::Asin),
+        ("acos", Function::Acos),
+        ("atan", Function::Atan),
+        ("sinh", Function::Sinh),
+        ("cosh", Function::Cosh),
+        ("tanh", Function::Tanh),
+        ("exp", Function::Exp),
+        ("ln", Function::Ln),
+        ("sqrt", Function::Sqrt),
+        ("abs", Function::Abs),
+        ("signum", Function::Signum),
+    ];
+
+    /// The name in the language and in generated code.
+    pub fn name(self) -> &'static str {
+        Function::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
+    }
+
+    /// The value at a number.
+    pub fn apply(self, x: f64) -> f64 {
+        match self {
+            Function::Sin => x.sin(),
+            Function::Cos => x.cos(),
+            Function::Tan => x.tan(),
+            Function::Asin => x.asin(),
+            Function::Acos => x.acos(),
+            Function::Atan => x.atan(),
+            Function::Sinh => x.sinh(),
+            Function::Cosh => x.cosh(),
+            Function::Tanh => x.tanh(),
+            Function::Exp => x.exp(),
+            Function::Ln => x.ln(),
+            Function::Sqrt => x.sqrt(),
+            Function::Abs => x.abs(),
+            Function::Signum => x.signum(),
+        }
+    }
+
+    pub(super) fn is_odd(self) -> bool {
+        use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
+        matches!(self, Sin | Tan | Asin | Atan | Sinh | Tanh)
+    }
+
+    pub(super) fn is_even(self) -> bool {
+        matches!(self, Function::Cos | Function::Cosh | Function::Abs)
+    }
+}
+
+/// A node of the graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Node {
+    /// A constant.
+    Const(f64),
+    /// An input.
+    Symbol(Symbol),
+    /// `-a`.
+    Neg(Id),
+    /// `a + b`.
+    Add(Id, Id),
+    /// `a - b`.
+    Sub(Id, Id),
+    /// `a * b`.
+    Mul(Id, Id),
+    /// `a / b`.
+    Div(Id, Id),
+    /// `f(a)`.
+    Call(Function, Id),
+    /// The angle of the point with ordinate `a` and abscissa `b`.
+    Atan2(Id, Id),
+    /// `a` to the power `b`.
+    Pow(Id, Id),
+}
+
+impl Node {
+    /// Calls `f` with every operand.
+    pub fn operands(self, mut f: impl FnMut(Id)) {
+        match self {
+            Node::Const(_) | Node::Symbol(_) => {}
+            Node::Neg(a) | Node::Call(_, a) => f(a),
+            Node::Add(a, b)
+            | Node::Sub(a, b)
+            | Node::Mul(a, b)
+            | Node::Div(a, b)
+            | Node::Atan2(a, b)
+            | Node::Pow(a, b) => {
+                f(a);
+                f(b);
+            }
+        }
+    }
+
+    pub(super) fn hash(self) -> u64 {
+        let (tag, a, b): (u64, u64, u64) = match self {
+            Node::Const(c) => (1, c.to_bits(), 0),
+            Node::Symbol(s) => (2, s.0.into(), 0),
+            Node::Neg(a) => (3, a.into(), 0),
+            Node::Add(a, b) => (4, a.into(), b.into()),
+            Node::Sub(a, b) => (5, a.into(), b.into()),
+            Node::Mul(a, b) => (6, a.into(), b.into()),
+            Node::Div(a, b) => (7, a.into(), b.into()),
+            Node::Atan2(a, b) => (8, a.into(), b.into()),
+            Node::Pow(a, b) => (9, a.into(), b.into()),
+            Node::Call(f, a) => (10 + f as u64, a.into(), 0),
+        };
+        let mut h = (a ^ tag.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
+        h = (h ^ (h >> 32) ^ b.wrapping_mul(0xC4CE_B9FE_1A85_EC53)).wrapping_mul(0x9FB2_1C65_1E98_DF25);
+        h ^ (h >> 29)
+    }
+
+    pub(super) fn same(self, other: Node) -> bool {
+        match (self, other) {
+            // Bits, so that a NaN is itself; the two zeros are one, see `constant`.
+            (Node::Const(a), Node::Const(b)) => a.to_bits() == b.to_bits(),
+            (a, b) => a == b,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Force elements: what they act on, and by which law.
+
+use super::arguments::Arguments;
+use super::{Action, ActionKind, Expr, ExprKind, Law, Name, Target};
+use crate::diag::Diagnostics;
+
+/// Reads a force element.
+pub fn read_action(
+    name: &Name,
+    kind: &str,
+    arguments: &mut Arguments,
+    cx: &mut Diagnostics,
+) -> Option<Action> {
+    let keys: &[&str] = match kind {
+        "Spring" => &["on", "between", "stiffness", "force", "energy", "free_length", "free_angle"],
+        "Dashpot" => &["on", "between", "damping", "force"],
+        "Inerter" => &["on", "between", "inertance"],
+        "Friction" => &["on", "coulomb", "stiction", "stribeck_speed", "viscous", "speed"],
+        "Gravity" => &["on", "between", "constant", "mu"],
+        "Attraction" => &["between", "strength"],
+        "Force" => &["on", "along", "value"],
+        _ => &["on", "about", "value"],
+    };
+    let refused = arguments.place_of("between").is_some() && !keys.contains(&"between");
+    let on = read_target(kind, arguments, keys, cx);
+    if refused {
+        return None;
+    }
+    let action = match kind {
+        "Spring" => read_spring(arguments, keys, cx),
+        "Dashpot" => {
+            one_law(arguments, &["force", "damping"], cx);
+            let force = arguments.take_expr("force", cx).map(Law::Force);
+            let law =
+                force.or_else(|| arguments.need_expr("damping", "c", "acts", keys, cx).map(Law::Linear));
+            law.map(|law| ActionKind::Dashpot { law })
+        }
+        "Inerter" => arguments
+            .need_expr("inertance", "b", "acts", keys, cx)
+            .map(|inertance| ActionKind::Inerter { inertance }),
+        "Friction" => {
+            arguments.need_expr("coulomb", "f", "acts", keys, cx).map(|coulomb| ActionKind::Friction {
+                coulomb,
+                stiction: arguments.take_expr("stiction", cx),
+                stribeck_speed: arguments.take_expr("stribeck_speed", cx),
+                viscous: arguments.take_expr("viscous", cx),
+                speed: arguments.take_expr("speed", cx),
+            })
+        }
+        "Gravity" => Some(ActionKind::Gravity {
+            constant: arguments.take_expr("constant", cx),
+            mu: arguments.take_expr("mu", cx),
+        }),
+        "Attraction" => arguments
+            .need_expr("strength", "k", "acts", keys, cx)
+            .map(|strength| ActionKind::Attraction { strength }),
+        "Force" => Some(ActionKind::Force {
+            along: arguments.take_expr("along", cx),
+            value: arguments.take_expr("value", cx),
+        }),
+        _ => Some(ActionKind::Torque {
+            about: arguments.take_expr("about", cx),
+            value: arguments.take_expr("value", cx),
+        }),
+    };
+    arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
+    Some(Action { name: name.clone(), kind: action?, on: on? })
+}
+
+/// The indefinite article of a word.
+pub fn article(word: &str) -> &'static str {
+    if word.starts_with(['A', 'I']) { "an" } else { "a" }
+}
+
+/// `on = …`, or `between = (…, …)` where the element can span two points.
+fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<Target> {
+    let Some(place) = arguments.place_of("between") else {
+        if !keys.contains(&"on") {
+            return arguments.need_expr("between", "(first, second)", "acts", keys, cx).and(None);
+        }
+        return arguments.need_expr("on", "joint", "acts", keys, cx).map(Target::On);
+    };
+    if !keys.contains(&"between") {
+        cx.error(place, format!("{} {kind} does not act between two points", article(kind)))
+            .help("say what it acts on: `on = …`");
+        arguments.forget_all();
+        return None;
+    }
+    if let Some(on) = arguments.place_of("on") {
+        cx.error(on, "an element has one of `on` and `between`");
+        arguments.forget("on");
+    }
+    match arguments.take_expr("between", cx)? {
+        Expr { kind: ExprKind::Tuple(mut ends), .. } if ends.len() == 2 => {
+            let second = ends.pop()?;
+            Some(Target::Between(ends.pop()?, second))
+        }
+        other => {
+            cx.error(other.place, "`between` names two points").help("write `between = (first, second)`");
+            None
+        }
+    }
+}
+
+/// Reports a second law of one element; the first of the keys counts.
+fn one_law(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) {
+    let given: Vec<&&str> = keys.iter().filter(|key| arguments.place_of(key).is_some()).collect();
+    for key in given.iter().skip(1) {
+        if let Some(place) = arguments.place_of(key) {
+            let list: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+            cx.error(place, format!("a second law: `{}` is given already", given[0]))
+                .help(format!("give one of {}", crate::diag::one_of(&list)));
+            arguments.forget(key);
+        }
+    }
+}
+
+fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<ActionKind> {
+    one_law(arguments, &["force", "energy", "stiffness"], cx);
+    let force = arguments.take_expr("force", cx).map(Law::Force);
+    let energy = arguments.take_expr("energy", cx).map(Law::Energy);
+    let law =
+        force.or(energy).or_else(|| arguments.need_expr("stiffness", "k", "acts", keys, cx).map(Law::Linear));
+    let place = arguments.place_of("free_angle");
+    let length = arguments.take_expr("free_length", cx);
+    let angle = arguments.take_expr("free_angle", cx);
+    if let (Some(_), Some(_), Some(place)) = (&length, &angle, place) {
+        cx.error(place, "a spring has one of `free_length` and `free_angle`")
+            .help("`free_length` goes with what slides, `free_angle` with what turns");
+    }
+    let is_angle = angle.is_some();
+    let free = length.or(angle).map(|free| (free, is_angle));
+    Some(ActionKind::Spring { law: law?, free })
+}
