@@ -1293,3 +1293,65 @@ fn words_for_vectors() {
         assert_close("Jacobian", slope.as_slice(), &[-angle.sin(), 0.0, -angle.sin()], EXACT);
     }
 }
+
+// ---- The power balance ---------------------------------------------------------------------------------------------
+
+/// Something of every class: conservative, dissipative, control, disturbance, inertial.
+#[mechanism(gravity = -9.81 * y)]
+struct Workbench {
+    wind: f64,
+    #[body(mass = 2, com = 0.2 * x, inertia = rod(2, 0.4, x))]
+    arm: Body,
+    #[particle(mass = 0.5, at = arm.at(0.4 * x))]
+    tip: Particle,
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> arm, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, stiffness = 3, free_angle = 0.2)]
+    coil: Spring,
+    #[acts(between = (ground.at(y), tip), energy = 5 * pow(stretch, 4), free_length = 0.3)]
+    band: Spring,
+    #[acts(on = rail, damping = 0.7)]
+    dashpot: Dashpot,
+    #[acts(between = (ground.at(y), tip), force = 0.3 * speed + 0.1 * pow(speed, 3))]
+    damper: Dashpot,
+    #[acts(on = hinge, coulomb = 0.2, stiction = 0.3, stribeck_speed = 0.5, viscous = 0.1, speed = 0.2)]
+    dry: Friction,
+    #[dissipation(0.05 * rate(hinge) * rate(hinge))]
+    oil: Rayleigh,
+    #[acts(between = (ground.at(-x), tip), inertance = 0.4)]
+    inerter: Inerter,
+    #[acts(on = tip, value = wind * ground.x)]
+    gust: Force,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = cart, along = x)]
+    push: Force,
+}
+
+/// `d(T + U)/dt = control + disturbance − dissipated`, the left side by central differences along the motion.
+#[test]
+fn power_balance() {
+    let m = Workbench { wind: 0.8 };
+    let mut random = Random::new(3);
+    for _ in 0..20 {
+        let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
+            (random.vector(1.0), random.vector(2.0), random.vector(3.0));
+        let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
+        let energy = |h: f64| {
+            let (q, v) = (q + v * h + a * (h * h / 2.0), v + a * h);
+            m.kinetic_energy(&q, &v) + m.potential_energy(&q)
+        };
+        let h = 1e-4;
+        // Fourth order.
+        let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
+        let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
+        assert_close("power", &[rate], &[power], 1e-8);
+        assert!(m.dissipated_power(&q, &v) > 0.0, "what dissipates takes energy out");
+        let gust = m.frame_velocity(frame!(Workbench, "tip"), &q, &v)[0] * 0.8;
+        assert_close("disturbance", &[m.disturbance_power(&q, &v)], &[gust], EXACT);
+    }
+}

@@ -196,6 +196,7 @@ impl Source {
             velocities,
             inputs,
             frames,
+            structure: d.joints.iter().map(structure_line).collect(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: model.map(|m| m.units.clone()).unwrap_or_default(),
             time: model.is_some_and(|m| m.time),
@@ -203,4 +204,11 @@ impl Source {
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }
+}
+
+/// What a joint joins, in a line of the documentation.
+fn structure_line(joint: &syntax::Joint) -> String {
+    let kind = syntax::element::kind_word(joint.kind);
+    let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);
+    format!("`{}`: {kind}, `{parent}` → `{child}`", joint.name.text)
 }

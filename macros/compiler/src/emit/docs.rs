@@ -22,6 +22,12 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
     units(&mut text, interface);
+    if output.equations.plain.is_empty() && !interface.structure.is_empty() {
+        let _ = writeln!(text, "\n# Structure\n\n`M(q) v̇ + h(q, v) = τ`, too long to be written out.\n");
+        for joint in &interface.structure {
+            let _ = writeln!(text, "- {joint}");
+        }
+    }
     if !output.equations.plain.is_empty() {
         let _ =
             writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());

@@ -27,6 +27,8 @@ pub struct Interface<'a> {
     pub inputs: Vec<String>,
     /// Names of the frames.
     pub frames: Vec<String>,
+    /// One line for each joint: what it joins.
+    pub structure: Vec<String>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
     /// Units of all of these and of the parameters.
