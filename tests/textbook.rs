@@ -1355,3 +1355,40 @@ fn power_balance() {
         assert_close("disturbance", &[m.disturbance_power(&q, &v)], &[gust], EXACT);
     }
 }
+
+// ---- Prescribed motion ---------------------------------------------------------------------------------------------
+
+/// A pendulum on a base that is shaken up and down, whatever the pendulum does, and tilted by a quaternion for good.
+#[mechanism(gravity = -g * y)]
+struct ShakenBase {
+    g: f64,
+    m: f64,
+    l: f64,
+    amplitude: f64,
+    speed: f64,
+    #[frame(ground, quaternion(0, 0, 0.6, 0.8))]
+    tilted: Frame,
+    #[body(massive, at = amplitude * cos(speed * t) * y, frame = tilted)]
+    base: Body,
+    #[body]
+    rod: Body,
+    #[particle(mass = m, at = rod.at(-l * y))]
+    bob: Particle,
+    #[joint(base -> rod, about = z)]
+    pin: Pin,
+}
+
+/// As gravity that changes with the base's acceleration (Landau and Lifshitz, *Mechanics*, § 5, problem 3 c).
+#[test]
+fn massive_base() {
+    let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.02, 30.0);
+    let base = ShakenBase { g, m, l, amplitude, speed };
+    let tilt = 2.0 * 0.6_f64.atan2(0.8);
+    for (t, angle) in [(0.0, 0.4), (0.013, -1.1), (0.2, 2.0)] {
+        let (q, v) = (Vector1::new(angle), Vector1::new(1.3));
+        let lift = -amplitude * speed * speed * (speed * t).cos();
+        let bias = m * l * (g + lift) * (angle + tilt).sin();
+        assert_close("mass", base.mass_matrix(t, &q).as_slice(), &[m * l * l], EXACT);
+        assert_close("bias", base.bias_forces(t, &q, &v).as_slice(), &[bias], EXACT);
+    }
+}
