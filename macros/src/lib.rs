@@ -4,9 +4,28 @@
 use proc_macro::TokenStream;
 use std::path::PathBuf;
 
-/// Compiles a mechanism.
+/// Compiles a mechanism: derives the equations of motion of the struct below and implements them for it.
 ///
-/// The struct's fields are parameters, which stay, and elements, which say what the mechanism is made of.
+/// The struct's fields are parameters (`f64`, `f32` or the struct's own type parameter), which stay, and elements
+/// (`linkwork::elements`), which say what the mechanism is made of and leave no trace in memory. The generated methods,
+/// their shapes, units and conventions are those of the trait `linkwork::Mechanism` (`linkwork::Rheonomic` if something
+/// depends on time) and stand in the rustdoc of the struct.
+///
+/// | argument | says |
+/// | --- | --- |
+/// | `gravity = -9.81 * y` | uniform gravity, a vector in ground axes, m/s²; none if not given, −9.81 z with a file |
+/// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
+/// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
+/// | `derivatives` | generates the first derivatives of the dynamics too |
+/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
+/// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
+/// | `passive = honour` or `ignore` | damping and friction of the file's joints |
+/// | `mimic = follow` or `independent` | joints with a `mimic` tag |
+/// | `inertia = check` or `trust` | whether an inertia that no body can have is an error |
+/// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input |
+/// | `lock = ["joint", …]` | joints frozen at zero |
+///
+/// Mistakes are compile errors at the token, all of them at once; those of a file carry its line and column.
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
