@@ -1064,6 +1064,38 @@ struct FreeSatellite {
     earth: Gravity,
 }
 
+/// The same body and a planet that is free too: each feels the other, and the planet is a sphere.
+#[mechanism]
+struct PlanetAndSatellite {
+    #[body(mass = 1.5, inertia = sphere(1.5, 0.3))]
+    planet: Body,
+    #[body(mass = 2, inertia = [[0.5, 0.02, -0.01], [0.02, 0.7, 0.03], [-0.01, 0.03, 0.9]])]
+    satellite: Body,
+    #[joint(ground -> planet, along = (x, y, z))]
+    drift: Stage,
+    #[joint(ground -> satellite)]
+    flight: Free,
+    #[acts(between = (planet, satellite), constant = 2)]
+    mutual: Gravity,
+}
+
+/// A sphere's inertia has no gradient, so the potential is that of the satellite near a centre with `mu = G M`.
+#[test]
+fn gravity_gradient_between_bodies() {
+    let (both, alone) = (PlanetAndSatellite {}, FreeSatellite {});
+    let mut random = Random::new(6);
+    let q = random.configuration(&both);
+    let mut seen = alone.neutral();
+    seen.copy_from(&q.fixed_rows::<7>(3));
+    for k in 0..3 {
+        seen[k] -= q[k];
+    }
+    assert_close("potential", &[both.potential_energy(&q)], &[alone.potential_energy(&seen)], EXACT);
+    let bias = both.bias_forces(&q, &SVector::zeros());
+    let expected = alone.bias_forces(&seen, &Vector6::zeros());
+    assert_close("forces", bias.fixed_rows::<6>(3).as_slice(), expected.as_slice(), EXACT);
+}
+
 #[test]
 fn gravity_gradient_of_a_free_body() {
     let body = FreeSatellite {};

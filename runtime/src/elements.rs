@@ -167,9 +167,10 @@ pub enum Friction {}
 /// Attraction of masses. Uniform gravity is `#[mechanism(gravity = …)]` instead.
 ///
 /// - `#[acts(between = (a, b), constant = G)]`: between two particles or bodies, with `G` in m³/(kg·s²).
-/// - `#[acts(between = (center, body), mu = mu)]`: towards a point, with the gravitational parameter in m³/s². A body with
-///   inertia also feels the gradient of gravity, to second order in its size over its distance (MacCullagh's formula).
+/// - `#[acts(between = (center, body), mu = mu)]`: towards a point, with the gravitational parameter in m³/s².
 ///
+/// A body with inertia also feels the gradient of gravity, to second order in its size over its distance (MacCullagh's
+/// formula).
 /// Bodies are attracted at their origins, which must be their centres of mass. Conservative. Infinite where they meet.
 pub enum Gravity {}
 

@@ -140,7 +140,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Central gravity: between two bodies with a gravitational constant, or towards a point with a gravitational
-    /// parameter, which also turns a body with inertia.
+    /// parameter. It also turns a body with inertia.
     fn add_gravity(
         &mut self,
         action: &Action,
@@ -162,6 +162,8 @@ impl<'g> Builder<'_, 'g> {
                 let (first, second) = (self.mass_of(a, cx), self.mass_of(b, cx));
                 if let (Some(g), Some(m1), Some(m2), Some(stretch)) = (constant, first, second, stretch) {
                     self.add_attraction(&stretch, g * m1 * m2);
+                    self.turn_by_gravity(a, b, g * m1, cx);
+                    self.turn_by_gravity(b, a, g * m2, cx);
                 }
             }
             (None, Some(mu)) => {

@@ -209,7 +209,9 @@ impl<'g> Builder<'_, 'g> {
         let n = r.map(|c| c / length);
         let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];
         let shape = trace - n.dot(tensor * n) * 3.0;
-        self.model.potentials.push(-(mu * shape * 0.5 / (length * length * length)));
+        if !shape.is_zero() {
+            self.model.potentials.push(-(mu * shape * 0.5 / (length * length * length)));
+        }
     }
 
     /// A force with a value, at a point: three loads, one for each component.
