@@ -26,8 +26,12 @@ pub fn derive_with<'g>(model: &Model<'g>, passes: Passes, cx: &mut Diagnostics) 
     let mass = crba::mass_matrix(model, &joints);
     if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
         let (name, place) = &model.velocities[k];
-        cx.error(place.clone(), format!("the coordinate `{name}` moves nothing that has inertia"))
-            .help("the mass matrix is singular: give mass or inertia to what the joint carries");
+        let diagnostic =
+            cx.error(place.clone(), format!("the coordinate `{name}` moves nothing that has inertia"));
+        diagnostic.help("the mass matrix is singular: give mass or inertia to what the joint carries");
+        if place.file.is_some() {
+            diagnostic.help(format!("or freeze the joint: `lock = [\"{name}\"]`"));
+        }
         return None;
     }
     let mut functions = signatures(model.nq(), model.nv(), model.time, model.velocity_inputs);

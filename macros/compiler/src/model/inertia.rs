@@ -23,6 +23,9 @@ pub const SOLIDS: [(&str, &[&str]); 14] = [
     ("diagonal", &["xx", "yy", "zz"]),
 ];
 
+/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
+const NOTHING: f64 = 1e-18;
+
 /// Relative tolerance of the checks: published figures are rounded.
 const TOLERANCE: f64 = 1e-6;
 
@@ -220,6 +223,9 @@ pub fn check_inertia(
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
     let list = moments.map(brief).join(", ");
+    if scale <= NOTHING {
+        return;
+    }
     let diagnostic = if moments[0] < -TOLERANCE * scale {
         cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
             .help(format!("its principal moments are {list}"))

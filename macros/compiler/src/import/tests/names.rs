@@ -69,10 +69,16 @@ fn names_are_given_once() {
          r.urdf:6:14: second joint with the name `j`
          = help: the first is at r.urdf:5:14",
     );
+    let links = [link("a"), link("ground")].join("\n");
     check_robot(
-        &link("ground"),
-        "r.urdf:2:13: a link cannot be called `ground`: the fixed frame has this name
+        &format!("{links}\n{}", joint("j", "fixed", "a", "ground", "")),
+        "r.urdf:3:13: a link cannot be called `ground`: the fixed frame has this name
          = help: give the link another name",
+    );
+    // A fixed root of this name is the ground.
+    check_robot(
+        &format!("{links}\n{}", joint("j", "fixed", "ground", "a", "")),
+        "body a\nWeld j: ground -> a",
     );
     check_robot(
         "<link name=' '/><link/><link nmae='a'/>",

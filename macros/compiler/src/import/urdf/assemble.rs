@@ -16,12 +16,13 @@ pub(super) fn assemble(
     options: &UrdfOptions,
     cx: &mut Cx<'_>,
 ) -> Imported {
+    let is_ground = options.base == Base::Fixed && robot.links[order.root].name.text == "ground";
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
     let mut given: Vec<Option<(FileJoint, Motion)>> =
         robot.joints.into_iter().zip(motions).map(Some).collect();
-    let mut bodies: Vec<Body> = links[order.root].take().into_iter().collect();
-    let mut joints = vec![root];
+    let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
+    let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
     for (joint, child) in &order.joints {
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));

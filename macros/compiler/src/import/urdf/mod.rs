@@ -33,7 +33,7 @@ pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Op
         return None;
     }
     let robot = read_robot(node, options, cx)?;
-    names::check_names(&robot, cx);
+    names::check_names(&robot, options.base, cx);
     names::check_ends(&robot, cx);
     names::check_locks(&robot.joints, &options.lock, cx);
     if cx.failed() {

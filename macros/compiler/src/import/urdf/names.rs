@@ -3,14 +3,17 @@
 use super::Robot;
 use super::joint::FileJoint;
 use crate::import::context::{Cx, position, quote};
-use crate::syntax::Name;
+use crate::syntax::{Base, Name};
 use std::collections::BTreeMap;
 
-/// Reports links and joints that share a name with another, or with the ground.
-pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
+/// Reports links and joints that share a name with another, or with the ground. A fixed root may be called `ground`: it
+/// is the ground.
+pub(super) fn check_names(robot: &Robot, base: Base, cx: &mut Cx<'_>) {
     check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
-    for link in robot.links.iter().filter(|link| link.name.text == "ground") {
+    let carried = robot.joints.iter().any(|joint| joint.child.text == "ground");
+    let is_ground = base == Base::Fixed && !carried;
+    for link in robot.links.iter().filter(|link| link.name.text == "ground" && !is_ground) {
         let message = "a link cannot be called `ground`: the fixed frame has this name";
         cx.error(&link.name.place, message, |d| d.help("give the link another name"));
     }
