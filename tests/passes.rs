@@ -203,3 +203,30 @@ proptest! {
         });
     }
 }
+
+/// Arms of next to no length between axes, as exporters leave them, must not take large masses and lose digits; nor may
+/// axes that are next to parallel send a frame far away.
+#[test]
+fn figures_next_to_zero_cost_no_digits() {
+    let mut fields = String::new();
+    for k in 0..6 {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };
+        let arm = ["[3e-13, 0, 0.2]", "[0, 2e-11, 0.1]", "[1e-9, 0.3, 0]"][k % 3];
+        let tilt = [0.0, 3.7e-6, 1e-9][k % 3];
+        fields += &format!(
+            "#[body(mass = 3, com = [0.1, 0.02, -0.05], inertia = cuboid(3, 0.3, 0.2, 0.1))] b{k}: Body,
+             #[joint({parent}.at({arm}).rotated(x({tilt:e})) -> b{k}, about = {})] j{k}: Pin,",
+            ["z", "z", "x"][k % 3]
+        );
+    }
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let item = format!("pub struct Robot {{ {fields} }}");
+    let source =
+        read(tokens("gravity = -9.81 * y"), tokens(&item), Path::new(""), &mut cx).expect("it is read");
+    let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
+    for passes in CHOICES {
+        let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");
+        check_programs("next to zero", &model, &new, &old, 1e-11);
+    }
+}

@@ -68,6 +68,8 @@ fn anchor(model: &mut Model<'_>, k: usize) {
         return;
     }
     let g = model.graph;
+    let masses = model.links.iter().map(|l| l.inertia.mass).chain([model.still.mass]);
+    let total: f64 = masses.filter_map(|m| m.value()).sum();
     for c in k + 1..model.links.len() {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
@@ -86,6 +88,10 @@ fn anchor(model: &mut Model<'_>, k: usize) {
             continue;
         }
         let mass = inertia.moment[i] / p[i];
+        // A short arm would take a large mass, and digits with it.
+        if mass.abs() > total {
+            continue;
+        }
         inertia = inertia.plus_point(-mass, p);
         inertia.moment[i] = 0.0;
         other.mass = mass;
