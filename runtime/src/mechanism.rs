@@ -59,17 +59,18 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Mass matrix `M(q)`, symmetric, both triangles.
+    /// Mass matrix `M(q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
     fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
 
-    /// Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction.
+    /// Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations,
+    /// N·m for rotations.
     fn bias_forces(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `τ = M(q) a + h(q, v)`.
+    /// `τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.
     fn inverse_dynamics(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -77,7 +78,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `v̇ = M(q)⁻¹ (τ − h(q, v))`. Not finite where `M(q)` is singular.
+    /// `v̇ = M(q)⁻¹ (τ − h(q, v))`, m/s² and rad/s²: the acceleration that the forces `tau` give. Not finite where `M(q)`
+    /// is singular.
     fn forward_dynamics(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -85,7 +87,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Generalized forces `τ` of the inputs `u`. Few mechanisms need `v` here: those whose inputs act by way of the
+    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. Few mechanisms need `v` here: those whose inputs act by way of the
     /// velocity, such as the control surfaces of an aircraft.
     fn generalized_forces(
         &self,
@@ -100,14 +102,14 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J.
     fn potential_energy(&self, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar;
 
-    /// Generalized momentum `p = M(q) v`.
+    /// Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.
     fn generalized_momentum(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of the generalized momentum without inputs: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second equation,
+    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second equation,
     /// in body components for ball and free joints: the Euler–Poincaré equation).
     fn momentum_rate(
         &self,

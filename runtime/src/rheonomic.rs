@@ -6,7 +6,6 @@ use nalgebra::{SMatrix, SVector};
 
 /// A mechanism whose functions may depend on time `t`, s. Shapes, units and conventions are those of [`Mechanism`]; with
 /// driven motion the kinetic energy is no longer `½ vᵀ M v`, nor the momentum `M v`.
-#[allow(missing_docs, reason = "each function is that of `Mechanism` at time `t`")]
 pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// The scalar type.
     type Scalar: Real;
@@ -18,28 +17,35 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
 
+    /// The configuration with all coordinates zero and unit quaternions ([`Mechanism::neutral`]).
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
+    /// `q ⊕ dv`: the configuration reached from `q` with the velocity `dv` in one unit of time ([`Mechanism::integrate`]).
     fn integrate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         dv: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NQ>;
 
+    /// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time
+    /// ([`Mechanism::difference`]).
     fn difference(
         &self,
         from: &SVector<Self::Scalar, NQ>,
         to: &SVector<Self::Scalar, NQ>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v` ([`Mechanism::tangent_rate`]).
     fn tangent_rate(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// Mass matrix `M(t, q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
     fn mass_matrix(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
 
+    /// Bias forces `h(t, q, v)`, N and N·m: those of [`Mechanism::bias_forces`], and the inertia of the driven motion.
     fn bias_forces(
         &self,
         t: Self::Scalar,
@@ -47,6 +53,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// `τ = M(t, q) a + h(t, q, v)`, N and N·m.
     fn inverse_dynamics(
         &self,
         t: Self::Scalar,
@@ -55,6 +62,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// `v̇ = M(t, q)⁻¹ (τ − h(t, q, v))`, m/s² and rad/s². Not finite where `M` is singular.
     fn forward_dynamics(
         &self,
         t: Self::Scalar,
@@ -63,6 +71,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work ([`Mechanism::generalized_forces`]).
     fn generalized_forces(
         &self,
         t: Self::Scalar,
@@ -71,6 +80,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// Kinetic energy `T(t, q, v)`, J: quadratic in `v`, and linear and constant terms where motion is driven (Goldstein,
+    /// Poole and Safko, *Classical Mechanics*, 2002, § 1.6).
     fn kinetic_energy(
         &self,
         t: Self::Scalar,
@@ -78,8 +89,10 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Self::Scalar;
 
+    /// Potential energy `U(t, q)` of gravity (zero at the ground's origin) and springs, J.
     fn potential_energy(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar;
 
+    /// Generalized momentum `p = ∂T/∂v`, kg·m/s and kg·m²/s.
     fn generalized_momentum(
         &self,
         t: Self::Scalar,
@@ -87,6 +100,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(t, q, v) + τ` (Hamilton's second
+    /// equation).
     fn momentum_rate(
         &self,
         t: Self::Scalar,
