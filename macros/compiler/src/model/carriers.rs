@@ -4,37 +4,26 @@ use crate::syntax::{ActionKind, Description, Expr, ExprKind, Law, Target};
 
 /// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what acts on it.
 pub fn carries(d: &Description, name: &str) -> bool {
-    let is_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(n) if n == name);
+    let is_name = |e: &Expr| e.name() == Some(name);
     let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));
     d.joints.iter().any(|joint| joint.parent.body.text == name)
         || d.points.iter().filter_map(|p| p.on.as_ref()).any(is_name)
         || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(is_name)
         || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(is_name)
         || d.actions.iter().any(|action| on(&action.on))
-        || expressions(d).into_iter().any(|e| names_axes(e, name, 0))
+        || expressions(d).into_iter().any(|e| names_axes(e, name))
 }
 
 /// `name.at(…)` or `name.x` somewhere in an expression.
-fn names_axes(e: &Expr, name: &str, depth: usize) -> bool {
-    let is_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(n) if n == name);
-    let inner = |e: &Expr| names_axes(e, name, depth + 1);
-    depth < 500
-        && match &e.kind {
-            ExprKind::Number(_) | ExprKind::Name(_) => false,
-            ExprKind::Field(base, _) => is_name(base) || inner(base),
-            ExprKind::Neg(base) => inner(base),
-            ExprKind::Method(base, _, arguments) => {
-                is_name(base) || inner(base) || arguments.iter().any(inner)
-            }
-            ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
-                arguments.iter().any(inner)
-            }
-            ExprKind::Binary(_, a, b, ..) => inner(a) || inner(b),
-        }
+fn names_axes(e: &Expr, name: &str) -> bool {
+    e.parts().into_iter().any(|part| match &part.kind {
+        ExprKind::Field(base, _) | ExprKind::Method(base, ..) => base.name() == Some(name),
+        _ => false,
+    })
 }
 
 /// The expressions in which places can be named.
-fn expressions(d: &Description) -> Vec<&Expr> {
+pub fn expressions(d: &Description) -> Vec<&Expr> {
     let mut all: Vec<&Expr> = Vec::new();
     all.extend(d.bodies.iter().filter_map(|b| b.at.as_ref()));
     all.extend(d.particles.iter().filter_map(|p| p.at.as_ref()));

@@ -62,13 +62,13 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn needs(&self, item: Item, order: &Order) -> Vec<String> {
         let d = self.description;
         let mut names = Vec::new();
-        let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names, 0));
+        let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
         match item {
             Item::Joint(k) => names.push(d.joints[order.joints[k].0].parent.body.text.clone()),
             Item::Frame(k) => {
                 let f = &d.frames[k];
-                collect_names(&f.start, &mut names, 0);
-                f.rotations.iter().for_each(|e| collect_names(e, &mut names, 0));
+                collect_names(&f.start, &mut names);
+                f.rotations.iter().for_each(|e| collect_names(e, &mut names));
             }
             Item::Point(k) => {
                 expression(&d.points[k].on);
@@ -342,25 +342,6 @@ impl<'a, 'g> Builder<'a, 'g> {
 }
 
 /// Every name in an expression, with the bases of members and methods.
-fn collect_names(e: &Expr, names: &mut Vec<String>, depth: usize) {
-    if depth > 500 {
-        return;
-    }
-    let mut inner = |e: &Expr| collect_names(e, names, depth + 1);
-    match &e.kind {
-        ExprKind::Number(_) => {}
-        ExprKind::Name(name) => names.push(name.clone()),
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => inner(base),
-        ExprKind::Method(base, _, arguments) => {
-            inner(base);
-            arguments.iter().for_each(inner);
-        }
-        ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
-            arguments.iter().for_each(inner);
-        }
-        ExprKind::Binary(_, a, b, _) => {
-            inner(a);
-            inner(b);
-        }
-    }
+fn collect_names(e: &Expr, names: &mut Vec<String>) {
+    names.extend(e.parts().into_iter().filter_map(Expr::name).map(str::to_string));
 }

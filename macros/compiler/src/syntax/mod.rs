@@ -67,6 +67,33 @@ pub enum BinaryOp {
 }
 
 impl Expr {
+    /// This expression and everything inside it, from the outside in.
+    pub fn parts(&self) -> Vec<&Expr> {
+        let mut parts = vec![self];
+        let mut at = 0;
+        while let Some(part) = parts.get(at) {
+            at += 1;
+            match &part.kind {
+                ExprKind::Number(_) | ExprKind::Name(_) => {}
+                ExprKind::Field(base, _) | ExprKind::Neg(base) => parts.push(base),
+                ExprKind::Method(base, _, items) => parts.extend([&**base].into_iter().chain(items)),
+                ExprKind::Call(_, items) | ExprKind::Tuple(items) | ExprKind::Array(items) => {
+                    parts.extend(items);
+                }
+                ExprKind::Binary(_, a, b, _) => parts.extend([&**a, b]),
+            }
+        }
+        parts
+    }
+
+    /// The name that it is, if it is one.
+    pub fn name(&self) -> Option<&str> {
+        match &self.kind {
+            ExprKind::Name(name) => Some(name),
+            _ => None,
+        }
+    }
+
     /// A number at a place.
     pub fn number(value: f64, place: &Place) -> Expr {
         Expr { kind: ExprKind::Number(value), place: place.clone() }

@@ -111,16 +111,7 @@ fn name_everything(d: &Description, coordinates: &Coordinates, inference: &mut I
 
 /// True if an expression names one of these.
 fn mentions(e: &Expr, names: &BTreeSet<&str>) -> bool {
-    match &e.kind {
-        ExprKind::Number(_) => false,
-        ExprKind::Name(name) => names.contains(name.as_str()),
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => mentions(base, names),
-        ExprKind::Method(base, _, items) => mentions(base, names) || items.iter().any(|e| mentions(e, names)),
-        ExprKind::Call(_, items) | ExprKind::Tuple(items) | ExprKind::Array(items) => {
-            items.iter().any(|e| mentions(e, names))
-        }
-        ExprKind::Binary(_, a, b, _) => mentions(a, names) || mentions(b, names),
-    }
+    e.parts().into_iter().filter_map(Expr::name).any(|name| names.contains(name))
 }
 
 /// Walks all places; those first that say the dimension of one thing, so that the others are measured by them.
