@@ -10,9 +10,10 @@ use linkwork_compiler::expr::replace::replace;
 use linkwork_compiler::expr::{Expr, Graph, Symbol};
 use linkwork_compiler::mechanics::regularity::random_configuration;
 use linkwork_compiler::mechanics::{self, Joint, crba, energy, lagrange, ldl, momentum, rnea};
-use linkwork_compiler::model::kinematics::{time_derivative, velocity_gradient};
-use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::model::kinematics::{symbols_in, time_derivative, velocity_gradient};
+use linkwork_compiler::model::{Model, Quantity, build_model, outline, sample};
 use linkwork_compiler::read;
+use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use random_world::{OUTPUTS, World, worlds};
@@ -23,16 +24,17 @@ const TOLERANCE: f64 = 1e-10;
 /// Differences.
 const DIFFERENCE: f64 = 1e-7;
 
-fn with_model(world: &World, check: impl FnOnce(&Model<'_>)) {
+fn with_model(world: &World, check: impl FnOnce(&Description, &Model<'_>)) {
     let (arguments, item) = world.source();
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
     let graph = Graph::new();
-    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
-    match model {
-        Some(model) => check(&model),
-        None => panic!("{}\n{item}", cx.messages().join("\n")),
+    let description = source.map(|source| source.mechanism.description);
+    let model = description.as_ref().and_then(|d| build_model(d, &graph, &mut cx));
+    match (&description, &model) {
+        (Some(description), Some(model)) => check(description, model),
+        _ => panic!("{}\n{item}", cx.messages().join("\n")),
     }
 }
 
@@ -80,6 +82,31 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
     for (k, (a, b)) in a.iter().zip(b).enumerate() {
         assert!((a - b).abs() <= tolerance * scale, "{what}, entry {k}: {a} and {b}");
     }
+}
+
+/// What is generated for a mechanism with a mistake has the signatures of the mechanism without it.
+fn check_outline(description: &Description, model: &Model<'_>) {
+    let outline = outline(description);
+    assert_eq!(outline.configuration, model.configuration);
+    assert_eq!(outline.velocities, model.velocities.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
+    assert_eq!(outline.inputs, model.inputs.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
+    assert_eq!(outline.frames, model.frames.iter().map(|frame| frame.name.clone()).collect::<Vec<_>>());
+    assert_eq!((outline.time, outline.velocity_inputs), (model.time, model.velocity_inputs));
+    for (guess, output) in outline.outputs.iter().zip(&model.outputs) {
+        let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
+        let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+        assert_eq!((&guess.name, guess.size), (&output.name, output.values.len()));
+        assert_eq!(
+            guess.uses.accelerations,
+            has(|q| matches!(q, Quantity::Acceleration(_))),
+            "{}",
+            guess.name
+        );
+        let velocities = guess.uses.velocities || guess.uses.accelerations;
+        assert_eq!(velocities, has(|q| matches!(q, Quantity::Velocity(_))), "{}", guess.name);
+        assert_eq!(guess.uses.inputs, has(|q| matches!(q, Quantity::Input(_))), "{}", guess.name);
+    }
+    assert_eq!(outline.outputs.len(), model.outputs.len());
 }
 
 /// `M x + h`.
@@ -205,11 +232,16 @@ proptest! {
 
     #[test]
     fn lagrange_and_the_recursions_agree(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world, |model| check_dynamics(model, seed));
+        with_model(&world, |_, model| check_dynamics(model, seed));
     }
 
     #[test]
     fn places_move_as_their_velocities_say(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world, |model| check_outputs(model, seed));
+        with_model(&world, |_, model| check_outputs(model, seed));
+    }
+
+    #[test]
+    fn a_mistake_leaves_the_signatures(world in worlds()) {
+        with_model(&world, check_outline);
     }
 }

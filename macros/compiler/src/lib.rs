@@ -12,6 +12,7 @@ pub mod syntax;
 
 mod derive;
 
+use derive::signatures::{self, Sizes};
 use diag::Diagnostics;
 use emit::{Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
@@ -30,16 +31,10 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     };
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
-    let interface = source.interface(output.as_ref().map(|(model, _)| model));
-    if let Some((_, output)) = &output {
-        return emit_mechanism(&interface, output);
+    if let Some((model, output)) = &output {
+        return emit_mechanism(&source.interface(model), output);
     }
-    let (nq, nv) = (interface.configuration.len(), interface.velocities.len());
-    let mut functions = derive::signatures(nq, nv, false, false);
-    if source.mechanism.derivatives {
-        functions.extend(derive::derivatives::signatures(nv, interface.inputs.len(), false));
-    }
-    let mut emitted = emit_failed(&interface, &functions);
+    let mut emitted = source.emit_failed();
     emitted.tokens.extend(cx.into_tokens());
     emitted
 }
@@ -177,32 +172,71 @@ fn check_outputs(description: &Description, functions: &[emit::Function], cx: &m
 }
 
 impl Source {
-    /// What the outside sees of the mechanism; the best guess if it failed to compile.
-    fn interface(&self, model: Option<&model::Model<'_>>) -> Interface<'_> {
+    /// What the outside sees of the mechanism.
+    fn interface(&self, m: &model::Model<'_>) -> Interface<'_> {
+        Interface {
+            configuration: m.configuration.clone(),
+            velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
+            inputs: m.inputs.iter().map(|(name, _)| name.clone()).collect(),
+            frames: m.frames.iter().map(|f| f.name.clone()).collect(),
+            units: m.units.clone(),
+            time: m.time,
+            velocity_inputs: m.velocity_inputs,
+            ..self.bare_interface()
+        }
+    }
+
+    /// The part of it that needs no model.
+    fn bare_interface(&self) -> Interface<'_> {
         let d = &self.mechanism.description;
-        let (configuration, velocities, inputs, frames) = match model {
-            Some(m) => (
-                m.configuration.clone(),
-                m.velocities.iter().map(|(name, _)| name.clone()).collect(),
-                m.inputs.iter().map(|(name, _)| name.clone()).collect(),
-                m.frames.iter().map(|f| f.name.clone()).collect(),
-            ),
-            None => model::outline(d),
-        };
         Interface {
             shell: &self.mechanism.shell,
             scalar: d.scalar.clone(),
-            configuration,
-            velocities,
-            inputs,
-            frames,
+            configuration: Vec::new(),
+            velocities: Vec::new(),
+            inputs: Vec::new(),
+            frames: Vec::new(),
             structure: d.joints.iter().map(structure_line).collect(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
-            units: model.map(|m| m.units.clone()).unwrap_or_default(),
-            time: model.is_some_and(|m| m.time),
-            velocity_inputs: model.is_some_and(|m| m.velocity_inputs),
+            units: model::units::Units::default(),
+            time: false,
+            velocity_inputs: false,
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
+    }
+
+    /// The interface of a mechanism that failed to compile, as far as it can be guessed.
+    fn emit_failed(&self) -> Emitted {
+        let outline = model::outline(&self.mechanism.description);
+        let sizes = Sizes {
+            nq: outline.configuration.len(),
+            nv: outline.velocities.len(),
+            nu: outline.inputs.len(),
+            time: outline.time,
+            velocity_inputs: outline.velocity_inputs,
+        };
+        let mut functions = signatures::always(&sizes);
+        if self.mechanism.derivatives {
+            functions.extend(signatures::derivatives(&sizes));
+        }
+        for output in &outline.outputs {
+            for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
+                // An output may have the wrong name.
+                if !WRITTEN.contains(&f.name.as_str()) && functions.iter().all(|known| known.name != f.name) {
+                    functions.push(f);
+                }
+            }
+        }
+        let interface = Interface {
+            configuration: outline.configuration,
+            velocities: outline.velocities,
+            inputs: outline.inputs,
+            frames: outline.frames,
+            time: outline.time,
+            velocity_inputs: outline.velocity_inputs,
+            ..self.bare_interface()
+        };
+        emit_failed(&interface, &functions)
     }
 }
 

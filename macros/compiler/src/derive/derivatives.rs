@@ -1,7 +1,8 @@
 //! The functions of the option `derivatives`.
 
 use super::done;
-use crate::emit::{Argument, Function, Shape};
+use super::signatures::{self, Sizes};
+use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::Program;
 use crate::mechanics::derivatives::{self, ForceDerivatives, Linearized, Method, analytic, symbolic};
@@ -35,7 +36,7 @@ pub fn functions(model: &Model<'_>, passes: Passes) -> Vec<Function> {
         }
     }
     let tau = forces::generalized_forces(model, &mechanics::joints(model));
-    let mut functions = signatures(model.nv(), model.nu(), model.time);
+    let mut functions = signatures::derivatives(&Sizes::of(model));
     for f in &mut functions {
         f.shape = match f.shape {
             Shape::Forward(n) if n > SMALL => Shape::CalledForward(n),
@@ -161,69 +162,4 @@ fn commutators<'g>(model: &Model<'g>) -> crba::Matrix<'g> {
         }
     }
     m
-}
-
-/// The functions without their programs.
-pub fn signatures(nv: usize, nu: usize, time: bool) -> Vec<Function> {
-    use Argument::{A, Q, Tau, U, V};
-    let function = |name: &str, arguments: &[Argument], shape, docs: [&str; 3]| Function {
-        name: name.to_string(),
-        docs: docs.into_iter().flat_map(|text| [text, ""]).map(ToString::to_string).collect(),
-        arguments: time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect(),
-        shape,
-        program: Program::default(),
-    };
-    const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
-    vec![
-        function(
-            "mass_matrix_inverse",
-            &[Q],
-            Shape::Square(nv),
-            [
-                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
-                "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
-                "",
-            ],
-        ),
-        function(
-            "coriolis_matrix",
-            &[Q, V],
-            Shape::Square(nv),
-            [
-                "A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.",
-                "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols* (2021).",
-                "",
-            ],
-        ),
-        function(
-            "inverse_dynamics_derivatives",
-            &[Q, V, A],
-            Shape::Pair(nv),
-            [
-                "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
-                TANGENT,
-                "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022).",
-            ],
-        ),
-        function(
-            "forward_dynamics_derivatives",
-            &[Q, V, Tau],
-            Shape::Forward(nv),
-            [
-                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
-                TANGENT,
-                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a mechanism with more than ten velocities it calls the other functions. The operations counted are those without calls and products.",
-            ],
-        ),
-        function(
-            "linearize",
-            &[Q, V, U],
-            Shape::Linear(nv, nu),
-            [
-                "`(A, B)` of `ẋ = A x + B δu`: the motion to first order about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
-                TANGENT,
-                "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
-            ],
-        ),
-    ]
 }

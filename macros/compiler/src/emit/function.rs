@@ -166,8 +166,8 @@ pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: b
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");
     }
-    for paragraph in &f.docs {
-        let _ = writeln!(out, "#[doc = {:?}]", format!(" {paragraph}"));
+    if !f.docs.is_empty() {
+        let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
     let _ = writeln!(
         out,

@@ -136,16 +136,17 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
+    let t = if s.time { format!("t: {scalar}, ") } else { String::new() };
     let _ = writeln!(
         methods,
         "pub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ loop {{}} }}
         pub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{ loop {{}} }}
         pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}
-        pub fn frame_placements(&self, q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
-        pub fn frame_placement<F>(&self, frame: F, q: &{q}) -> {placement} {{ loop {{}} }}
-        pub fn frame_velocity<F>(&self, frame: F, q: &{q}, v: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
-        pub fn frame_acceleration<F>(&self, frame: F, q: &{q}, v: &{v}, a: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
-        pub fn frame_jacobian<F>(&self, frame: F, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
+        pub fn frame_placements(&self, {t}q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
+        pub fn frame_placement<F>(&self, frame: F, {t}q: &{q}) -> {placement} {{ loop {{}} }}
+        pub fn frame_velocity<F>(&self, frame: F, {t}q: &{q}, v: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_acceleration<F>(&self, frame: F, {t}q: &{q}, v: &{v}, a: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
     assemble(interface, &s, &methods, &[], "")

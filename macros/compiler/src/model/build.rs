@@ -562,30 +562,3 @@ fn needs_motion(action: &Action) -> bool {
         _ => matches!(action.on, Target::Between(..)),
     }
 }
-
-/// Names of the entries of `q`, `v` and `u` and of the frames of a description that may be wrong: enough for the
-/// signatures of what would have been generated.
-pub fn outline(description: &Description) -> (Vec<String>, Vec<String>, Vec<String>, Vec<String>) {
-    let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
-    for (j, joint) in description.joints.iter().enumerate() {
-        let free =
-            description.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
-        let free: Vec<String> = free.collect();
-        q.extend(free.iter().cloned());
-        v.extend(free);
-        if joint.mimic.is_some() {
-            continue;
-        }
-        let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
-        q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
-        v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
-        u.extend(joint.driven.then(|| joint.name.text.clone()));
-    }
-    let last = description.coordinates.iter().filter(|c| c.joints_before == description.joints.len());
-    for free in last {
-        q.push(free.name.text.clone());
-        v.push(free.name.text.clone());
-    }
-    u.extend(description.inputs.iter().map(|i| i.text.clone()));
-    (q, v, u, description.bodies.iter().map(|b| b.name.text.clone()).collect())
-}

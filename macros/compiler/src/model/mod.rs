@@ -13,6 +13,7 @@ mod carriers;
 mod inertia;
 mod joint;
 pub mod kinematics;
+mod outline;
 mod place;
 mod resolve;
 mod terms;
@@ -21,7 +22,8 @@ pub mod units;
 mod world;
 
 pub use axis::sample;
-pub use build::{build_model, outline};
+pub use build::build_model;
+pub use outline::{Outline, Uses, outline};
 
 /// What a symbol of the expressions stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

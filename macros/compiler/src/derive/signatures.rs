@@ -1,0 +1,261 @@
+//! The public functions without their programs: names, arguments, results, documentation. A mechanism with a mistake
+//! has these alone.
+
+use crate::emit::Argument::{A, Q, T, Tau, U, V};
+use crate::emit::{Argument, Function, Shape};
+use crate::lower::Program;
+use crate::model::{Model, Uses};
+
+/// What signatures depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    /// `NQ`.
+    pub nq: usize,
+    /// `NV`.
+    pub nv: usize,
+    /// `NU`.
+    pub nu: usize,
+    /// Functions take time first.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
+}
+
+impl Sizes {
+    /// Those of a model.
+    pub fn of(model: &Model<'_>) -> Sizes {
+        Sizes {
+            nq: model.nq(),
+            nv: model.nv(),
+            nu: model.nu(),
+            time: model.time,
+            velocity_inputs: model.velocity_inputs,
+        }
+    }
+
+    /// A function of the motion.
+    fn function(&self, name: &str, arguments: &[Argument], shape: Shape, docs: &[&str]) -> Function {
+        Function {
+            arguments: self.time.then_some(T).into_iter().chain(arguments.iter().copied()).collect(),
+            ..constant(name, shape, docs)
+        }
+    }
+}
+
+/// A function of the parameters alone.
+fn constant(name: &str, shape: Shape, docs: &[&str]) -> Function {
+    Function {
+        name: name.to_string(),
+        docs: docs.iter().map(ToString::to_string).collect(),
+        arguments: Vec::new(),
+        shape,
+        program: Program::default(),
+    }
+}
+
+/// The functions of every mechanism.
+pub fn always(sizes: &Sizes) -> Vec<Function> {
+    [dynamics(sizes), energies(sizes), whole(sizes)].into_iter().flatten().collect()
+}
+
+/// Equations of motion.
+fn dynamics(sizes: &Sizes) -> Vec<Function> {
+    let vector = Shape::Vector(sizes.nv);
+    vec![
+        constant(
+            "neutral",
+            Shape::Vector(sizes.nq),
+            &["The configuration with all coordinates zero and unit quaternions."],
+        ),
+        sizes.function(
+            "mass_matrix",
+            &[Q],
+            Shape::Square(sizes.nv),
+            &[
+                "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
+                "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
+            ],
+        ),
+        sizes.function(
+            "bias_forces",
+            &[Q, V],
+            vector,
+            &[
+                "Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations, N·m for rotations.",
+                "Recursive Newton–Euler algorithm without accelerations.",
+            ],
+        ),
+        sizes.function(
+            "inverse_dynamics",
+            &[Q, V, A],
+            vector,
+            &[
+                "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+                "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
+            ],
+        ),
+        sizes.function(
+            "forward_dynamics",
+            &[Q, V, Tau],
+            vector,
+            &[
+                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
+                "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
+            ],
+        ),
+        sizes.function(
+            "generalized_forces",
+            if sizes.velocity_inputs { &[Q, V, U] } else { &[Q, U] },
+            vector,
+            &["What the inputs `u` contribute to `τ`, by virtual work."],
+        ),
+    ]
+}
+
+/// Energies, Hamilton's quantities and powers.
+fn energies(sizes: &Sizes) -> Vec<Function> {
+    let vector = Shape::Vector(sizes.nv);
+    vec![
+        sizes.function(
+            "kinetic_energy",
+            &[Q, V],
+            Shape::Scalar,
+            &["Kinetic energy `T = ½ vᵀ M(q) v`, J."],
+        ),
+        sizes.function(
+            "potential_energy",
+            &[Q],
+            Shape::Scalar,
+            &["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
+        ),
+        sizes.function(
+            "generalized_momentum",
+            &[Q, V],
+            vector,
+            &["Generalized momentum `p = M(q) v`."],
+        ),
+        sizes.function(
+            "momentum_rate",
+            &[Q, V],
+            vector,
+            &[
+                "Rate of the generalized momentum without inputs: `ṗ = momentum_rate(q, v) + τ`.",
+                "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
+            ],
+        ),
+        sizes.function(
+            "dissipated_power",
+            &[Q, V],
+            Shape::Scalar,
+            &[
+                "Power that dashpots, friction and dissipation functions take out, W.",
+                "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − dissipated_power`.",
+            ],
+        ),
+        sizes.function("control_power", &[Q, V, U], Shape::Scalar, &["Power of the inputs `u`, W."]),
+        sizes.function(
+            "disturbance_power",
+            &[Q, V],
+            Shape::Scalar,
+            &["Power of applied forces that are neither conservative nor dissipative nor inputs, W."],
+        ),
+    ]
+}
+
+/// The mechanism as one body.
+fn whole(sizes: &Sizes) -> Vec<Function> {
+    vec![
+        constant("total_mass", Shape::Scalar, &["Mass of everything that moves, kg."]),
+        sizes.function(
+            "center_of_mass",
+            &[Q],
+            Shape::Vector(3),
+            &["Centre of mass of everything that moves, m, from the ground's origin in ground axes."],
+        ),
+        sizes.function(
+            "momentum",
+            &[Q, V],
+            Shape::Vector(6),
+            &["Momentum in ground axes: linear (kg·m/s), then angular about the centre of mass (kg·m²/s)."],
+        ),
+    ]
+}
+
+/// The functions of the option `derivatives`.
+pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
+    const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
+    let Sizes { nv, nu, .. } = *sizes;
+    vec![
+        sizes.function(
+            "mass_matrix_inverse",
+            &[Q],
+            Shape::Square(nv),
+            &[
+                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
+                "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
+            ],
+        ),
+        sizes.function(
+            "coriolis_matrix",
+            &[Q, V],
+            Shape::Square(nv),
+            &[
+                "A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.",
+                "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols* (2021).",
+            ],
+        ),
+        sizes.function(
+            "inverse_dynamics_derivatives",
+            &[Q, V, A],
+            Shape::Pair(nv),
+            &[
+                "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
+                TANGENT,
+                "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022).",
+            ],
+        ),
+        sizes.function(
+            "forward_dynamics_derivatives",
+            &[Q, V, Tau],
+            Shape::Forward(nv),
+            &[
+                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
+                TANGENT,
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a mechanism with more than ten velocities it calls the other functions. The operations counted are those without calls and products.",
+            ],
+        ),
+        sizes.function(
+            "linearize",
+            &[Q, V, U],
+            Shape::Linear(nv, nu),
+            &[
+                "`(A, B)` of `ẋ = A x + B δu`: the motion to first order about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
+                TANGENT,
+                "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
+            ],
+        ),
+    ]
+}
+
+/// The function of an output, and its Jacobian unless it depends on accelerations.
+pub fn output(name: &str, size: usize, uses: Uses, sizes: &Sizes) -> Vec<Function> {
+    let mut arguments = vec![Q];
+    arguments.extend((uses.velocities || uses.accelerations).then_some(V));
+    arguments.extend(uses.accelerations.then_some(A));
+    arguments.extend(uses.inputs.then_some(U));
+    let shape = if size == 1 { Shape::Scalar } else { Shape::Vector(size) };
+    let mut functions = vec![sizes.function(name, &arguments, shape, &[&format!("The output `{name}`.")])];
+    if !uses.accelerations {
+        let what = match uses.velocities {
+            true => "it changes with the velocities",
+            false => "its rate is this times `v`",
+        };
+        functions.push(sizes.function(
+            &format!("{name}_jacobian"),
+            &arguments,
+            Shape::Matrix(size, sizes.nv),
+            &[&format!("Jacobian of the output `{name}`: {what}.")],
+        ));
+    }
+    functions
+}
