@@ -5,6 +5,7 @@
 //! - [`prelude`]: everything that a program with a mechanism needs, in one import.
 //! - [`elements`]: the words in which a mechanism is declared.
 //! - [`Mechanism`]: what every compiled mechanism offers.
+//! - [`lanes`]: numbers of several states side by side, for evaluating a mechanism many times.
 //! - [`simulate()`]: its motion over time; [`integrate`] holds the methods.
 //!
 //! Nothing here allocates or panics, and nothing needs the standard library if the feature `libm` is chosen instead of
@@ -19,6 +20,7 @@ extern crate self as linkwork;
 extern crate std;
 
 pub use frame::{FrameIndex, NamedFrame};
+pub use lanes::Lanes;
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
@@ -28,6 +30,7 @@ pub use simulate::simulate;
 pub mod elements;
 mod frame;
 pub mod integrate;
+pub mod lanes;
 mod lie;
 mod mechanism;
 mod private;

@@ -1,10 +1,11 @@
 //! Sines and cosines of all angles of a mechanism at once: branch-free over arrays, so that the compiler turns them into
 //! vector instructions. Within one unit in the last place for |x| ≤ 10⁵; larger angles, infinities and NaN take the
-//! functions of the standard library (or of `libm`).
+//! functions of the standard library (or of `libm`), each for itself: a result never depends on the other angles.
 
 use crate::Real;
 use crate::private::{mul_add, neg_mul_add};
 use core::any::Any;
+use nalgebra::ComplexField;
 
 /// Largest angle that the three-part reduction is exact for.
 const LARGEST: f64 = 1e5;
@@ -56,7 +57,20 @@ fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
         small &= x.abs() <= LARGEST;
         (*s, *c) = kernel(*x);
     }
-    if small { (s, c) } else { one_by_one(x) }
+    if small { (s, c) } else { with_large(x, s, c) }
+}
+
+/// Puts the library's values where angles are large, so that each result depends on its own angle alone.
+#[cold]
+#[inline(never)]
+fn with_large<const N: usize>(x: &[f64; N], mut s: [f64; N], mut c: [f64; N]) -> ([f64; N], [f64; N]) {
+    for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
+        let exact = x.abs() <= LARGEST;
+        if !exact {
+            (*s, *c) = ComplexField::sin_cos(*x);
+        }
+    }
+    (s, c)
 }
 
 /// Cody and Waite's reduction by quarter turns, with the rounding of the reduced angle carried along; Taylor-like
@@ -136,8 +150,8 @@ mod tests {
 
     fn check(x: f64) {
         let (s, c) = sin_cos(x);
-        assert!(ulps(s, nalgebra::ComplexField::sin(x)) <= 1, "sin {x:e}: {s:e}");
-        assert!(ulps(c, nalgebra::ComplexField::cos(x)) <= 1, "cos {x:e}: {c:e}");
+        assert!(ulps(s, ComplexField::sin(x)) <= 1, "sin {x:e}: {s:e}");
+        assert!(ulps(c, ComplexField::cos(x)) <= 1, "cos {x:e}: {c:e}");
     }
 
     #[test]
@@ -172,10 +186,10 @@ mod tests {
         let x = [0.1, -2.0, 7.0, 3e5];
         let (s, c) = sin_cos_all(x);
         for k in 0..4 {
-            assert!(ulps(s[k], nalgebra::ComplexField::sin(x[k])) <= 1);
-            assert!(ulps(c[k], nalgebra::ComplexField::cos(x[k])) <= 1);
+            assert!(ulps(s[k], ComplexField::sin(x[k])) <= 1);
+            assert!(ulps(c[k], ComplexField::cos(x[k])) <= 1);
             let single = sin_cos(x[k] as f32);
-            let exact = nalgebra::ComplexField::sin_cos(f64::from(x[k] as f32));
+            let exact = ComplexField::sin_cos(f64::from(x[k] as f32));
             assert_eq!(single, (exact.0 as f32, exact.1 as f32));
         }
     }

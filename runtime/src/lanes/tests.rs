@@ -1,0 +1,165 @@
+use super::*;
+use crate::private::{atan2, constant, mul_add, mul_sub, neg_mul_add, powf};
+use core::cmp::Ordering;
+use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
+use std::format;
+
+/// Numbers in (0.05, 0.95), and their negatives where the lane is odd.
+fn numbers<const N: usize>(seed: u64) -> Lanes<f64, N> {
+    let mut state = seed;
+    Lanes::from_fn(|k| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let unit = 0.05 + 0.9 * (state >> 11) as f64 / (1_u64 << 53) as f64;
+        if k % 2 == 0 { unit } else { -unit }
+    })
+}
+
+/// The bits of every lane are those of the function of the lane.
+fn check<const N: usize>(
+    wide: impl Fn(Lanes<f64, N>, Lanes<f64, N>, Lanes<f64, N>) -> Lanes<f64, N>,
+    narrow: impl Fn(f64, f64, f64) -> f64,
+) {
+    for seed in 0..100 {
+        let (a, b, c) = (numbers(seed), numbers(seed + 100), numbers(seed + 200));
+        let found = wide(a, b, c);
+        for k in 0..N {
+            let expected = narrow(a[k], b[k], c[k]);
+            assert_eq!(found[k].to_bits(), expected.to_bits(), "lane {k} of {a}, {b}, {c}");
+        }
+    }
+}
+
+fn arithmetic<const N: usize>() {
+    check::<N>(|a, b, _| a + b, |a, b, _| a + b);
+    check::<N>(|a, b, _| a - b, |a, b, _| a - b);
+    check::<N>(|a, b, _| a * b, |a, b, _| a * b);
+    check::<N>(|a, b, _| a / b, |a, b, _| a / b);
+    check::<N>(|a, b, _| a % b, |a, b, _| a % b);
+    check::<N>(|a, _, _| -a, |a, _, _| -a);
+    check::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
+    check::<N>(mul_add, mul_add);
+    check::<N>(mul_sub, mul_sub);
+    check::<N>(neg_mul_add, neg_mul_add);
+    check::<N>(|a, b, c| a.mul_add(b, c), mul_add);
+    check::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
+    check::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
+    check::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
+    check::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
+    check::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
+    let assign = |mut a: Lanes<f64, N>, b: Lanes<f64, N>, c| {
+        a += b;
+        a -= c;
+        a *= b;
+        a /= c;
+        a
+    };
+    check::<N>(assign, |a, b, c| (a + b - c) * b / c);
+}
+
+#[test]
+fn arithmetic_is_that_of_every_lane() {
+    arithmetic::<1>();
+    arithmetic::<2>();
+    arithmetic::<3>();
+    arithmetic::<4>();
+    arithmetic::<8>();
+    arithmetic::<16>();
+}
+
+#[test]
+fn functions_are_those_of_every_lane() {
+    type Twice = (fn(f64x8) -> f64x8, fn(f64) -> f64);
+    let functions: [Twice; 16] = [
+        (|a| ComplexField::sqrt(a * a), |a| ComplexField::sqrt(a * a)),
+        (ComplexField::tan, ComplexField::tan),
+        (ComplexField::sin, ComplexField::sin),
+        (ComplexField::cos, ComplexField::cos),
+        (ComplexField::asin, ComplexField::asin),
+        (ComplexField::acos, ComplexField::acos),
+        (ComplexField::atan, ComplexField::atan),
+        (ComplexField::sinh, ComplexField::sinh),
+        (ComplexField::cosh, ComplexField::cosh),
+        (ComplexField::tanh, ComplexField::tanh),
+        (ComplexField::exp, ComplexField::exp),
+        (|a| ComplexField::ln(a * a), |a| ComplexField::ln(a * a)),
+        (|a| a.powi(3), |a| ComplexField::powi(a, 3)),
+        (ComplexField::floor, ComplexField::floor),
+        (ComplexField::round, ComplexField::round),
+        (ComplexField::recip, ComplexField::recip),
+    ];
+    for (wide, narrow) in functions {
+        check(|a, _, _| wide(a), |a, _, _| narrow(a));
+    }
+    check::<8>(|a, b, _| atan2(a, b), |a, b, _| atan2(a, b));
+    check::<8>(|a, b, _| powf(a * a, b), |a, b, _| powf(a * a, b));
+    check::<8>(|a, _, _| a.sin_cos().0, |a, _, _| trigonometry::sin_cos(a).0);
+    check::<8>(|a, _, _| a.sin_cos().1, |a, _, _| trigonometry::sin_cos(a).1);
+}
+
+#[test]
+fn a_large_angle_does_not_disturb_its_neighbours() {
+    let x = Lanes([0.3, 1e9, -2.0, f64::INFINITY, 1e5, -1e6, f64::NAN, 0.0]);
+    let (s, c) = x.sin_cos();
+    for k in 0..8 {
+        let (sine, cosine) = trigonometry::sin_cos(x[k]);
+        assert_eq!((s[k].to_bits(), c[k].to_bits()), (sine.to_bits(), cosine.to_bits()), "lane {k}");
+    }
+}
+
+#[test]
+fn sums_have_a_fixed_order() {
+    let tiny = f64::EPSILON / 4.0;
+    // (1 + tiny) + (tiny + tiny) and so on: what is added first decides.
+    assert_eq!(Lanes([1.0, 0.1, tiny, 0.2]).sum(), (1.0 + tiny) + (0.1 + 0.2));
+    assert_eq!(Lanes([0.1, 0.2, 0.3]).sum(), (0.1 + 0.3) + 0.2);
+    let x: f64x8 = numbers(5);
+    let halves: Lanes<f64, 4> = Lanes::from_fn(|k| x[k] + x[k + 4]);
+    assert_eq!(x.sum(), (halves[0] + halves[2]) + (halves[1] + halves[3]));
+    assert_eq!((Lanes([3.0_f64]).sum(), Lanes::<f64, 0>([]).sum()), (3.0, 0.0));
+}
+
+#[test]
+fn comparisons_ask_for_all_lanes() {
+    let [low, high, mixed] = [Lanes([1.0, 2.0]), Lanes([3.0, 4.0]), Lanes([0.0, 9.0])];
+    assert_eq!(low.partial_cmp(&high), Some(Ordering::Less));
+    assert_eq!(high.partial_cmp(&low), Some(Ordering::Greater));
+    assert_eq!(low.partial_cmp(&low), Some(Ordering::Equal));
+    assert_eq!(low.partial_cmp(&mixed), None);
+    assert_eq!(low.partial_cmp(&Lanes([1.0, 3.0])), None);
+    assert_eq!(Lanes::select([true, false], low, high), Lanes([1.0, 4.0]));
+    assert_eq!(RealField::clamp(mixed, low, high), Lanes([1.0, 4.0]));
+    assert_eq!(format!("{low:.1}"), "[1.0, 2.0]");
+}
+
+#[test]
+fn lanes_hold_one_number_or_many() {
+    assert_eq!(constant::<f64x4>(0.5), Lanes([0.5; 4]));
+    assert_eq!(constant::<f32x8>(0.1), Lanes([0.1_f32; 8]));
+    assert_eq!(nalgebra::try_convert::<f64x4, f64>(Lanes([2.0; 4])), Some(2.0));
+    assert_eq!(nalgebra::try_convert::<f64x4, f64>(Lanes([2.0, 2.0, 3.0, 2.0])), None);
+}
+
+#[test]
+fn nalgebra_computes_with_lanes() {
+    let matrices = [Matrix3::new(4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0), Matrix3::identity() * 2.0];
+    let vectors = [Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.5, 0.25, -1.0)];
+    let matrix = Matrix3::from_fn(|i, j| Lanes([matrices[0][(i, j)], matrices[1][(i, j)]]));
+    let vector = SVector::<_, 3>::from_fn(|i, _| Lanes([vectors[0][i], vectors[1][i]]));
+    let (product, norm) = (matrix * vector, vector.norm());
+    let solution = matrix.cholesky().map(|c| c.solve(&vector));
+    for k in 0..2 {
+        assert_eq!(product.map(|x| x[k]), matrices[k] * vectors[k]);
+        assert_eq!(norm[k], vectors[k].norm());
+        let expected = matrices[k].cholesky().map(|c| c.solve(&vectors[k]));
+        assert_eq!(solution.map(|s| s.map(|x| x[k])), expected);
+    }
+}
+
+#[test]
+fn lanes_of_lanes() {
+    let x = Lanes([numbers::<4>(1), numbers::<4>(2)]);
+    let y = mul_add(x, x, constant(1.0));
+    assert_eq!(y[1][2], mul_add(x[1][2], x[1][2], 1.0));
+    assert_eq!(x.sum(), x[0] + x[1]);
+    assert_eq!(ComplexField::sin_cos(x).0[0][3], trigonometry::sin_cos(x[0][3]).0);
+}
