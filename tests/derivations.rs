@@ -13,9 +13,9 @@ use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, lagra
 use linkwork_compiler::model::{Direction, Input, LinkId, Model, Quantity, build_model, sample};
 use linkwork_compiler::{lower, read};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use random_tree::{Tree, trees};
 use std::path::Path;
+use support::random::config;
 
 /// Relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
@@ -190,15 +190,6 @@ fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
     let rate = Mat3::from_fn(|i, j| along(model, r.0[i][j]));
     let w = rate * r.transpose();
     Vec3([w.0[2][1], w.0[0][2], w.0[1][0]])
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(20_261_120),
-        ..Default::default()
-    }
 }
 
 proptest! {

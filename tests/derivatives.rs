@@ -14,10 +14,10 @@ use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
 use linkwork_compiler::model::{Model, Quantity, build_model, sample};
 use linkwork_compiler::{compile, read};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use random_tree::{Tree, trees};
 use std::path::Path;
 use support::compare::assert_similar;
+use support::random::config;
 use support::table::Record;
 
 /// Relative to the largest entry of a reference.
@@ -143,12 +143,7 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 80,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(20_261_121),
-        ..Default::default()
-    })]
+    #![proptest_config(config(80))]
 
     #[test]
     fn recursion_and_differentiation_agree(tree in trees(4), seed in 0_u64..1000) {

@@ -15,9 +15,9 @@ use linkwork_compiler::model::{Model, Quantity, build_model, outline, sample};
 use linkwork_compiler::read;
 use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use random_world::{OUTPUTS, World, worlds};
 use std::path::Path;
+use support::random::config;
 
 /// Relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
@@ -215,15 +215,6 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
         let rates: Vec<f64> = values.iter().map(whole).collect();
         // Accelerations themselves are held.
         assert_close(name, &rates, &state.slope(model, &values), DIFFERENCE);
-    }
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(20_261_121),
-        ..Default::default()
     }
 }
 

@@ -13,9 +13,9 @@ use linkwork_compiler::model::{Model, Quantity, build_model, sample};
 use linkwork_compiler::passes::{Passes, forms};
 use linkwork_compiler::{compile_with, derive_with, read};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use random_tree::{Tree, trees};
 use std::path::Path;
+use support::random::config;
 
 /// Relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
@@ -173,15 +173,6 @@ fn robots_move_as_without_passes() {
         ("simple_humanoid", ", base = free, inertia = trust"),
     ] {
         check_robot(name, options);
-    }
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(20_261_121),
-        ..Default::default()
     }
 }
 

@@ -1,10 +1,12 @@
 //! Problems of the textbooks in the words that they are stated in: the mechanisms of the language's own page, and
-//! others with free coordinates, moving frames, laws, potentials and outputs, each against its closed form.
+//! others with free coordinates, moving frames, laws, potentials and outputs, each against its closed form. Those that the
+//! gallery of ready-made mechanisms has are taken from there.
 
 #![allow(missing_docs, reason = "the mechanisms stand here as they stand on the page")]
 
 use linkwork::nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, SVector, Vector1, Vector2, Vector3, Vector6};
 use linkwork::{Mechanism, at, frame, mechanism, simulate};
+use linkwork_models::{BeadOnSpinningHoop, DoublePendulum, KapitzaPendulum, TwoBodies};
 use std::f64::consts::{FRAC_PI_2, PI};
 use support::compare::{assert_close, assert_same_dynamics};
 use support::random::Random;
@@ -18,24 +20,6 @@ const EXACT: f64 = 1e-13;
 const MOTION: f64 = 1e-10;
 
 // ---- The mechanisms of the language's page -----------------------------------------------------------------------
-
-#[mechanism(gravity = -g * y)]
-pub struct DoublePendulum {
-    pub g: f64,
-    pub m1: f64,
-    pub m2: f64,
-    pub l1: f64,
-    pub l2: f64,
-
-    #[body(mass = m1, com = -l1 / 2 * y, inertia = rod(m1, l1, y))]
-    upper: Body,
-    #[body(mass = m2, com = -l2 / 2 * y, inertia = rod(m2, l2, y))]
-    lower: Body,
-    #[joint(ground -> upper, about = z)]
-    shoulder: Pin,
-    #[joint(upper.at(-l1 * y) -> lower, about = z)]
-    elbow: Pin,
-}
 
 #[test]
 fn double_pendulum() {
@@ -60,25 +44,11 @@ fn double_pendulum() {
     assert_close("bias", pendulum.bias_forces(&q, &v).as_slice(), &bias, EXACT);
 }
 
-#[mechanism(gravity = -g * z)]
-pub struct BeadOnSpinningHoop {
-    pub g: f64,
-    pub m: f64,
-    pub radius: f64,
-    pub spin: f64,
-
-    theta: Coordinate,
-    #[frame(ground, z(spin * t))]
-    hoop: Frame,
-    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
-    bead: Particle,
-}
-
 /// Goldstein, *Classical Mechanics*, ch. 2: beyond `g / (R Ω²)` the bead leaves the bottom.
 #[test]
 fn bead_on_spinning_hoop() {
     let (g, m, radius, spin) = (9.81, 2.0, 0.5, 6.0);
-    let hoop = BeadOnSpinningHoop { g, m, radius, spin };
+    let hoop = BeadOnSpinningHoop { g, mass: m, radius, spin };
     for t in [0.0, 0.3] {
         let (q, v) = (Vector1::new(0.4_f64), Vector1::new(0.7));
         let (sin, cos) = q[0].sin_cos();
@@ -460,29 +430,12 @@ fn double_pendulum_in_absolute_and_relative_angles() {
 
 // ---- Driven in time ----------------------------------------------------------------------------------------------
 
-#[mechanism(gravity = -g * y)]
-struct KapitzaPendulum {
-    g: f64,
-    m: f64,
-    l: f64,
-    amplitude: f64,
-    speed: f64,
-    #[point(at = amplitude * cos(speed * t) * y)]
-    pivot: Point,
-    #[body]
-    rod: Body,
-    #[particle(mass = m, at = rod.at(-l * y))]
-    bob: Particle,
-    #[joint(pivot -> rod, about = z)]
-    pin: Pin,
-}
-
 /// Landau and Lifshitz, *Mechanics*, §§ 5 and 30: `m l² θ̈ + m l (g + ÿ) sin θ = 0`; the upper equilibrium is stable if
 /// `a² γ² > 2 g l`.
 #[test]
 fn kapitza_pendulum() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.04, 160.0);
-    let pendulum = KapitzaPendulum { g, m, l, amplitude, speed };
+    let pendulum = KapitzaPendulum { g, mass: m, length: l, amplitude, frequency: speed };
     let (q, v) = (Vector1::new(0.9_f64), Vector1::new(2.0));
     for t in [0.0, 0.013, 0.05] {
         let pivot = -amplitude * speed * speed * (speed * t).cos();
@@ -936,23 +889,6 @@ fn kepler_orbit() {
         let polar = [q[0] * cos, q[0] * sin, v[0] * cos - q[0] * v[1] * sin, v[0] * sin + q[0] * v[1] * cos];
         assert_close(format!("polar at {t}"), &polar, &[*x1, *y1, *vx1, *vy1], 1e-9);
     }
-}
-
-#[mechanism]
-struct TwoBodies {
-    constant: f64,
-    m1: f64,
-    m2: f64,
-    #[particle(mass = m1)]
-    first: Particle,
-    #[particle(mass = m2)]
-    second: Particle,
-    #[joint(ground -> first, along = (x, y, z))]
-    one: Stage,
-    #[joint(ground -> second, along = (x, y, z))]
-    other: Stage,
-    #[acts(between = (first, second), constant = constant)]
-    gravity: Gravity,
 }
 
 /// Period `2 π √(a³ / (G (m₁ + m₂)))` of the relative motion, whatever the centre of mass does.

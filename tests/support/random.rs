@@ -1,7 +1,13 @@
-//! Random states, the same in every run.
+//! Random states and property tests, the same in every run.
 
 use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
+use proptest::test_runner::{Config, RngSeed};
+
+/// Settings of a property test: how many cases, always the same ones, and no file of those that failed.
+pub fn config(cases: u32) -> Config {
+    Config { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(20_261_121), ..Default::default() }
+}
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).
 pub struct Random(u64);
