@@ -11,7 +11,8 @@ use linkwork_compiler::mechanics::regularity::random_configuration;
 use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::model::{Model, Quantity, build_model, sample};
 use linkwork_compiler::passes::{Passes, forms};
-use linkwork_compiler::{compile_with, derive_with, read};
+use linkwork_compiler::syntax::Requests;
+use linkwork_compiler::{compile_with, derive, derive_with, read};
 use proptest::prelude::*;
 use random_tree::{Tree, trees};
 use std::path::Path;
@@ -189,7 +190,7 @@ proptest! {
         let _ = seed;
         with_model(&tree, |model| {
             let mut cx = Diagnostics::new();
-            let (new, old) = (derive_with(model, Passes::default(), &mut cx), derive_with(model, OFF, &mut cx));
+            let (new, old) = (derive(model, &mut cx), derive_with(model, Requests::default(), OFF, &mut cx));
             check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
         });
     }

@@ -11,6 +11,7 @@ use crate::mechanics::{self, Joint, crba, energy, forces, frames, power};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
+use crate::syntax::Requests;
 
 pub mod derivatives;
 mod dynamics;
@@ -20,11 +21,16 @@ use signatures::Sizes;
 
 /// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
-    derive_with(model, Passes::default(), cx)
+    derive_with(model, Requests::default(), Passes::default(), cx)
 }
 
-/// The same with a choice of passes.
-pub fn derive_with<'g>(model: &Model<'g>, passes: Passes, cx: &mut Diagnostics) -> Option<Output> {
+/// The same with what is generated on request, and a choice of passes.
+pub fn derive_with<'g>(
+    model: &Model<'g>,
+    requests: Requests,
+    passes: Passes,
+    cx: &mut Diagnostics,
+) -> Option<Output> {
     let joints = mechanics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
@@ -37,7 +43,11 @@ pub fn derive_with<'g>(model: &Model<'g>, passes: Passes, cx: &mut Diagnostics) 
         }
         return None;
     }
-    let mut functions = signatures::always(&Sizes::of(model));
+    let sizes = Sizes::of(model);
+    let mut functions = signatures::always(&sizes);
+    if requests.centroidal {
+        functions.extend(signatures::centroidal(&sizes));
+    }
     let dynamics = dynamics::Dynamics::new(model, passes);
     for f in &mut functions {
         f.program = match f.name.as_str() {
@@ -56,6 +66,9 @@ pub fn derive_with<'g>(model: &Model<'g>, passes: Passes, cx: &mut Diagnostics) 
         return None;
     }
     functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output)));
+    if requests.derivatives {
+        functions.extend(derivatives::functions(model, passes));
+    }
     Some(Output {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),

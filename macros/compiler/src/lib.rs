@@ -119,10 +119,7 @@ pub fn compile_with<'g>(
         return None;
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
-    let mut output = derive_with(&model, passes, cx)?;
-    if source.mechanism.derivatives {
-        output.functions.extend(derive::derivatives::functions(&model, passes));
-    }
+    let output = derive_with(&model, source.mechanism.requests, passes, cx)?;
     check_outputs(&source.mechanism.description, &output.functions, cx).then_some((model, output))
 }
 
@@ -216,9 +213,7 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
         };
         let mut functions = signatures::always(&sizes);
-        if self.mechanism.derivatives {
-            functions.extend(signatures::derivatives(&sizes));
-        }
+        functions.extend(signatures::requested(&sizes, self.mechanism.requests));
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
                 // An output may have the wrong name.

@@ -1,4 +1,4 @@
-//! The functions of the option `derivatives`.
+//! The functions of the word `derivatives`.
 
 use super::done;
 use super::signatures::{self, Sizes};

@@ -53,6 +53,8 @@ impl<'g> Dynamics<'g> {
             "momentum_rate" => |m, j, v| momentum::momentum_rate(m, j, v),
             "center_of_mass" => |m, j, _| energy::center_of_mass(m, j).0.to_vec(),
             "momentum" => |m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)),
+            "centroidal_momentum_matrix" => |m, j, _| momentum::centroidal_momentum_matrix(m, j),
+            "centroidal_momentum_bias" => |m, j, v| frames::flat(&momentum::centroidal_bias(m, j, v)),
             _ => return None,
         };
         let joints = &self.forms.joints;

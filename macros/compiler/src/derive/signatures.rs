@@ -5,6 +5,7 @@ use crate::emit::Argument::{A, Q, T, Tau, U, V};
 use crate::emit::{Argument, Function, Shape};
 use crate::lower::Program;
 use crate::model::{Model, Uses};
+use crate::syntax::Requests;
 
 /// What signatures depend on.
 #[derive(Clone, Copy, Debug)]
@@ -181,7 +182,40 @@ fn whole(sizes: &Sizes) -> Vec<Function> {
     ]
 }
 
-/// The functions of the option `derivatives`.
+/// What is generated on request.
+pub fn requested(sizes: &Sizes, requests: Requests) -> Vec<Function> {
+    let mut functions = Vec::new();
+    if requests.centroidal {
+        functions.extend(centroidal(sizes));
+    }
+    if requests.derivatives {
+        functions.extend(derivatives(sizes));
+    }
+    functions
+}
+
+/// The functions of the word `centroidal`.
+pub fn centroidal(sizes: &Sizes) -> Vec<Function> {
+    vec![
+        sizes.function(
+            "centroidal_momentum_matrix",
+            &[Q],
+            Shape::Matrix(6, sizes.nv),
+            &[
+                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part first, then angular about the centre of mass, in ground axes. Of a mechanism that is driven in time, the part that the velocities contribute.",
+                "kg and kg·m for translations, kg·m and kg·m² for rotations (Orin, Goswami and Lee, *Centroidal dynamics of a humanoid robot*, 2013).",
+            ],
+        ),
+        sizes.function(
+            "centroidal_momentum_bias",
+            &[Q, V],
+            Shape::Vector(6),
+            &["`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) where all accelerations are zero, so that it is `A v̇ + Ȧ v` in every motion."],
+        ),
+    ]
+}
+
+/// The functions of the word `derivatives`.
 pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
     const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
     let Sizes { nv, nu, .. } = *sizes;

@@ -6,7 +6,7 @@
 
 use super::Spatial;
 use super::kinematics::Joint;
-use crate::expr::{Expr, Mat3, Vec3};
+use crate::expr::{Expr, Graph, Mat3, Vec3};
 use crate::model::{Model, NamedFrame, Pose, Quantity};
 
 /// Placement of a frame in the ground: rotation matrix and position.
@@ -24,7 +24,13 @@ impl<'g> Placement<'g> {
         self.rotation.0.iter().flatten().chain(&self.position.0).copied().collect()
     }
 
-    fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
+    /// That of the ground.
+    pub fn ground(graph: &'g Graph) -> Placement<'g> {
+        Placement { rotation: Mat3::identity(graph), position: Vec3::zero(graph) }
+    }
+
+    /// The placement of a frame that is placed in this one.
+    pub fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
         // R_parent R: rows are turned, so that the steps of the child's rotation apply to them one by one.
         let rows: [Vec3<'g>; 3] = std::array::from_fn(|i| pose.rotation.to_child(self.rotation.row(i)));
         Placement {
@@ -45,10 +51,6 @@ fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
     }
 }
 
-fn ground<'g>(model: &Model<'g>) -> Placement<'g> {
-    Placement { rotation: Mat3::identity(model.graph), position: Vec3::zero(model.graph) }
-}
-
 fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
     Spatial { linear: given(model, first), angular: given(model, first + 3) }
 }
@@ -60,13 +62,13 @@ pub fn flat<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
 
 /// Placement of a link from its parent's (12 given numbers, none for a root).
 pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
-    let parent = if joint.parent.is_some() { given_placement(model) } else { ground(model) };
+    let parent = if joint.parent.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
     parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation })
 }
 
 /// Placement of a named frame from its link's (12 given numbers, none if it is fixed to the ground).
 pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
-    let link = if frame.link.is_some() { given_placement(model) } else { ground(model) };
+    let link = if frame.link.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
     link.then(&frame.pose)
 }
 

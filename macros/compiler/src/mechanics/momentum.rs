@@ -1,11 +1,13 @@
 //! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the momentum of the whole.
 
-use super::crba::momentum;
+use super::crba::{composites, momentum};
 use super::energy::center_of_mass;
+use super::frames::{Placement, flat};
 use super::kinematics::{Joint, resistance, twists};
+use super::rnea::wrenches;
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Vec3};
-use crate::model::Model;
+use crate::model::{Model, Pose};
 
 /// Momentum of each link with everything that it carries, about its origin in its axes.
 fn composite_momenta<'g>(
@@ -92,11 +94,44 @@ fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
 
 /// Momentum of the whole in ground axes: linear, and angular about the centre of mass.
 pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
-    let momenta = composite_momenta(model, joints, &twists(model, joints, v));
+    about_center(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
+}
+
+/// The sum of what the roots have summed up, in ground axes about the centre of mass.
+fn about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>]) -> Spatial<'g> {
     let mut sum = Spatial::zero(model);
-    for (joint, wrench) in joints.iter().zip(&momenta).filter(|(joint, _)| joint.parent.is_none()) {
+    for (joint, wrench) in joints.iter().zip(sums).filter(|(joint, _)| joint.parent.is_none()) {
         sum = sum.plus(&joint.wrench_to_parent(wrench));
     }
     let center = center_of_mass(model, joints);
     Spatial { linear: sum.linear, angular: sum.angular - center.cross(sum.linear) }
+}
+
+/// The matrix `A` of `A v`, the momentum of the whole, column by column: a column is the momentum of what a degree of
+/// freedom carries, moving with it alone (Orin, Goswami and Lee 2013).
+pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let composites = composites(model, joints);
+    let center = center_of_mass(model, joints);
+    let mut places: Vec<Placement<'g>> = Vec::with_capacity(joints.len());
+    let mut columns = vec![Spatial::zero(model); model.nv()];
+    for (joint, composite) in joints.iter().zip(&composites) {
+        let parent = joint.parent.map_or(Placement::ground(g), |p| places[p.0]);
+        let place = parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation });
+        for dof in &joint.dofs {
+            let own = momentum(composite, &dof.subspace.times(g.num(dof.ratio)));
+            let linear = place.rotation * own.linear;
+            let angular = place.rotation * own.angular + (place.position - center).cross(linear);
+            columns[dof.index] = columns[dof.index].plus(&Spatial { linear, angular });
+        }
+        places.push(place);
+    }
+    columns.iter().flat_map(flat).collect()
+}
+
+/// Rate of the momentum of the whole where all accelerations are zero.
+pub fn centroidal_bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
+    let weightless = Model { gravity: Vec3::zero(model.graph), ..model.clone() };
+    let wrenches = wrenches(&weightless, joints, v, None);
+    about_center(model, joints, &accumulate(joints, wrenches))
 }

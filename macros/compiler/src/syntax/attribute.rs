@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
 use super::{Base, Description, Name, ScalarType, guard};
-use crate::diag::{Diagnostics, Place};
+use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use syn::spanned::Spanned;
@@ -18,8 +18,17 @@ pub struct Mechanism {
     pub shell: Shell,
     /// The file to read, if one is named.
     pub urdf: Option<UrdfOptions>,
-    /// Derivatives are generated as well.
+    /// What is generated on request.
+    pub requests: Requests,
+}
+
+/// What is generated beside the functions of every mechanism, by words among the attribute's arguments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Requests {
+    /// First derivatives of the dynamics.
     pub derivatives: bool,
+    /// The matrix of the momentum, and its bias.
+    pub centroidal: bool,
 }
 
 /// The struct without its elements.
@@ -57,19 +66,12 @@ pub struct UrdfOptions {
     pub lock: Vec<Name>,
 }
 
-const OPTIONS: [&str; 11] = [
-    "gravity",
-    "friction_speed",
-    "scalar",
-    "urdf",
-    "base",
-    "passive",
-    "mimic",
-    "inertia",
-    "inputs",
-    "lock",
-    "derivatives",
-];
+/// The words of [`Requests`].
+const REQUESTS: [&str; 2] = ["derivatives", "centroidal"];
+
+/// The options that have a value.
+const OPTIONS: [&str; 10] =
+    ["gravity", "friction_speed", "scalar", "urdf", "base", "passive", "mimic", "inertia", "inputs", "lock"];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
@@ -95,8 +97,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         }
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
     }
-    let mut derivatives = false;
-    let urdf = read_options(arguments, &mut description, &mut scalar, &mut derivatives, cx);
+    let mut requests = Requests::default();
+    let urdf = read_options(arguments, &mut description, &mut scalar, &mut requests, cx);
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
@@ -110,7 +112,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         );
     }
     check_duplicates(&description, cx);
-    Some(Mechanism { description, shell, urdf, derivatives })
+    Some(Mechanism { description, shell, urdf, requests })
 }
 
 fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
@@ -313,11 +315,11 @@ fn read_options(
     arguments: TokenStream,
     description: &mut Description,
     scalar: &mut Option<(ScalarType, Place)>,
-    derivatives: &mut bool,
+    requests: &mut Requests,
     cx: &mut Diagnostics,
 ) -> Option<UrdfOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    *derivatives = arguments.word_given("derivatives").is_some();
+    *requests = read_requests(&mut arguments, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
@@ -353,6 +355,25 @@ fn read_options(
         inputs: !no_inputs,
         lock,
     })
+}
+
+/// The words among the arguments.
+fn read_requests(arguments: &mut Arguments, cx: &mut Diagnostics) -> Requests {
+    let mut asked = |word| arguments.word_given(word).is_some();
+    let requests = Requests { derivatives: asked("derivatives"), centroidal: asked("centroidal") };
+    for e in arguments.take_plain() {
+        match e.name() {
+            None => cx.error(e.place.clone(), "expected `name = value`"),
+            Some(word) if REQUESTS.contains(&word) => {
+                cx.error(e.place.clone(), format!("`{word}` stands here twice"))
+            }
+            Some(word) if OPTIONS.contains(&word) => cx
+                .error(e.place.clone(), format!("`{word}` says nothing"))
+                .help(format!("write `{word} = …`")),
+            Some(word) => cx.error(e.place.clone(), format!("unknown word `{word}`")).suggest(word, REQUESTS),
+        };
+    }
+    requests
 }
 
 /// Fields of a struct have distinct names by Rust's own rules, but Rust says so later and less clearly.

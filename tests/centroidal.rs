@@ -1,0 +1,104 @@
+//! The matrix of the momentum and its bias: by the momentum itself, by its differences along motions, and by Newton's
+//! and Euler's laws for the whole.
+
+use linkwork::nalgebra::{SMatrix, SVector, Vector6};
+use linkwork::{Mechanism, mechanism};
+use support::compare::assert_similar;
+use support::random::Random;
+
+/// Between two derivations.
+const EXACT: f64 = 1e-11;
+/// Differences.
+const DIFFERENCE: f64 = 1e-7;
+
+/// A quadruped.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, centroidal)]
+struct Quadruped;
+
+/// A humanoid.
+#[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, centroidal)]
+struct Humanoid;
+
+/// An arm on the ground, a finger following another.
+#[mechanism(urdf = "../models/urdf/panda.urdf", centroidal)]
+struct Panda;
+
+/// Joints of all kinds, and a bead on a wire that a body carries.
+#[mechanism(gravity = [0.3, -9.7, 0.4], centroidal)]
+struct Workshop {
+    mass: f64,
+    length: f64,
+    #[body(mass = 2 * mass, com = length * x, inertia = cuboid(2 * mass, 0.2, 0.3, 0.4))]
+    hub: Body,
+    #[body(mass = mass, com = 0.1 * z - 0.05 * x, inertia = disk(mass, 0.2, z))]
+    mirror: Body,
+    #[body(mass = 0.3, com = 0.02 * y, inertia = rod(0.3, length, x))]
+    bolt: Body,
+    #[joint(ground.at([0.1, 0.2, -0.1]).rotated(x(0.3)) -> hub.at(0.1 * y), about = (x, y))]
+    gimbal: Universal,
+    #[joint(hub.at(length * x) -> mirror.at(0.02 * y))]
+    bearing: Ball,
+    #[joint(mirror.at(0.3 * y) -> bolt, about = z, pitch = 0.05)]
+    thread: Screw,
+    s: Coordinate,
+    #[particle(mass = mass / 2, at = mirror.at(s * x + s * s / 2 * y))]
+    bead: Particle,
+}
+
+/// `A v` is the momentum, and where there are no accelerations it changes by `Ȧ v`.
+macro_rules! check {
+    ($at:expr) => {{
+        let robot = $at;
+        let mut random = Random::new(11);
+        for _ in 0..8 {
+            let q = random.configuration(&robot);
+            let v = random.vector(1.5);
+            let matrix = robot.centroidal_momentum_matrix(&q);
+            let momentum = robot.momentum(&q, &v);
+            assert_similar("momentum", (matrix * v).as_slice(), momentum.as_slice(), EXACT);
+            let h = 1e-4;
+            let at = |s: f64| robot.momentum(&robot.integrate(&q, &(v * s)), &v);
+            let rate = ((at(h) - at(-h)) * 8.0 - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+            let bias = robot.centroidal_momentum_bias(&q, &v);
+            assert_similar("bias", bias.as_slice(), rate.as_slice(), DIFFERENCE);
+        }
+    }};
+}
+
+#[test]
+fn momentum_of_robots() {
+    check!(Quadruped);
+    check!(Humanoid);
+    check!(Panda);
+    check!(Workshop { mass: 0.7, length: 0.4 });
+}
+
+/// Whatever the motors do, what flies freely gains momentum by its weight alone.
+fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
+    robot: &M,
+    mass: f64,
+    matrix: impl Fn(&SVector<f64, NQ>) -> SMatrix<f64, 6, NV>,
+    bias: impl Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> Vector6<f64>,
+) where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(12);
+    for _ in 0..8 {
+        let (q, v) = (random.configuration(robot), random.vector(2.0));
+        let tau = robot.generalized_forces(&q, &v, &random.vector(20.0));
+        let a = robot.forward_dynamics(&q, &v, &tau);
+        let rate = matrix(&q) * a + bias(&q, &v);
+        let weight = [0.0, 0.0, -9.81 * mass, 0.0, 0.0, 0.0];
+        assert_similar("rate of momentum", rate.as_slice(), &weight, 1e-9);
+    }
+}
+
+#[test]
+fn weight_alone_changes_the_momentum_of_what_flies() {
+    let robot = Quadruped;
+    let bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
+    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), bias);
+    let robot = Humanoid;
+    let bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
+    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), bias);
+}
