@@ -370,7 +370,14 @@ fn read_requests(arguments: &mut Arguments, cx: &mut Diagnostics) -> Requests {
             Some(word) if OPTIONS.contains(&word) => cx
                 .error(e.place.clone(), format!("`{word}` says nothing"))
                 .help(format!("write `{word} = …`")),
-            Some(word) => cx.error(e.place.clone(), format!("unknown word `{word}`")).suggest(word, REQUESTS),
+            Some(word) => {
+                let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
+                let error = cx.error(e.place.clone(), format!("unknown word `{word}`"));
+                if nearest(word, &REQUESTS).is_some() {
+                    error.suggest(word, REQUESTS);
+                }
+                error.help(format!("a word asks for more: {}", one_of(&list)))
+            }
         };
     }
     requests
