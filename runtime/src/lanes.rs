@@ -4,8 +4,11 @@
 //! holds, bit for bit, what the same operations give for its numbers alone: nothing is reassociated, fused
 //! multiplication and addition are used where scalars use them, and nothing depends on the neighbours.
 
+#[cfg(feature = "std")]
+pub(crate) mod angles;
 mod field;
 mod numeric;
+mod vector;
 
 use crate::Real;
 use crate::private;
@@ -27,7 +30,8 @@ use core::ops::{
 ///
 /// The angles of [`sin_cos`](Self::sin_cos) may be of any size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(transparent)]
+// Two lanes or more in registers of 16 or 32 bytes never cross a line of the cache.
+#[repr(align(32))]
 pub struct Lanes<T, const N: usize>(
     /// The numbers, lane by lane.
     pub [T; N],
@@ -105,6 +109,10 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     #[inline(always)]
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
+        #[cfg(feature = "std")]
+        if let Some(([s], [c])) = angles::sin_cos_all([self]) {
+            return (s, c);
+        }
         let (s, c) = trigonometry::sin_cos_all(self.0);
         (Self(s), Self(c))
     }
@@ -113,7 +121,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     #[inline(always)]
     #[must_use]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
-        Self::from_fn(|k| private::mul_add(self.0[k], b.0[k], c.0[k]))
+        if private::FUSED { Self(vector::fused(&self.0, &b.0, &c.0)) } else { self * b + c }
     }
 }
 
@@ -173,7 +181,7 @@ macro_rules! operators {
 
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                Self::from_fn(|k| self.0[k] $symbol other.0[k])
+                Self(vector::$function(&self.0, &other.0))
             }
         }
 
@@ -216,7 +224,7 @@ impl<T: Real, const N: usize> Neg for Lanes<T, N> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|x| -x)
+        Self(vector::neg(&self.0))
     }
 }
 

@@ -61,7 +61,8 @@ elementary! {
 }
 
 /// True where one instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
-const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+pub(crate) const FUSED: bool =
+    cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
 
 /// `a b + c`, fused where the hardware can.
 #[inline(always)]

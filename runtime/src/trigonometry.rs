@@ -3,12 +3,12 @@
 //! functions of the standard library (or of `libm`), each for itself: a result never depends on the other angles.
 
 use crate::Real;
-use crate::private::{mul_add, neg_mul_add};
+use crate::private::{constant, mul_add, neg_mul_add};
 use core::any::Any;
 use nalgebra::ComplexField;
 
 /// Largest angle that the three-part reduction is exact for.
-const LARGEST: f64 = 1e5;
+pub(crate) const LARGEST: f64 = 1e5;
 
 /// Sine and cosine of an angle, rad.
 #[inline(always)]
@@ -32,12 +32,16 @@ pub fn sin_cos_all<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
     {
         return (*s, *c);
     }
+    #[cfg(feature = "std")]
+    if let Some(done) = crate::lanes::angles::sin_cos_all(x) {
+        return done;
+    }
     one_by_one(&x)
 }
 
 /// A reference as a type that it may have; decided at compile time.
 #[inline(always)]
-fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
+pub(crate) fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
     (a as &dyn Any).downcast_ref()
 }
 
@@ -55,29 +59,37 @@ fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let mut small = true;
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         small &= x.abs() <= LARGEST;
-        (*s, *c) = kernel(*x);
+        (*s, *c) = small_angle(*x);
     }
-    if small { (s, c) } else { with_large(x, s, c) }
+    if small { (s, c) } else { with_large(x) }
 }
 
-/// Puts the library's values where angles are large, so that each result depends on its own angle alone.
+/// Takes the library's values where angles are large: each result depends on its own angle alone.
 #[cold]
 #[inline(never)]
-fn with_large<const N: usize>(x: &[f64; N], mut s: [f64; N], mut c: [f64; N]) -> ([f64; N], [f64; N]) {
+pub(crate) fn with_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-        let exact = x.abs() <= LARGEST;
-        if !exact {
-            (*s, *c) = ComplexField::sin_cos(*x);
-        }
+        let small = x.abs() <= LARGEST;
+        (*s, *c) = if small { small_angle(*x) } else { ComplexField::sin_cos(*x) };
     }
     (s, c)
 }
 
+/// Within the range of the reduction.
+#[inline(always)]
+fn small_angle(x: f64) -> (f64, f64) {
+    let (s, c, shifted) = kernel(x);
+    turned(s, c, shifted)
+}
+
+/// Sine and cosine of the reduced angle, and the number whose last bits are the quadrant.
+///
 /// Cody and Waite's reduction by quarter turns, with the rounding of the reduced angle carried along; Taylor-like
 /// polynomials in double precision (coefficients of fdlibm's `__kernel_sin` and `__kernel_cos`, Sun Microsystems 1993).
 #[inline(always)]
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
-fn kernel(x: f64) -> (f64, f64) {
+pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
     // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     // π / 2 in parts of 33 bits: products with quadrants below 2²⁰ are exact.
@@ -87,18 +99,18 @@ fn kernel(x: f64) -> (f64, f64) {
         2.022_266_248_711_166_455_80e-21,
         8.478_427_660_368_899_569_97e-32,
     ];
-    let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUND);
-    let quarters = shifted - ROUND;
-    let quadrant = shifted.to_bits();
-    let first = neg_mul_add(quarters, PARTS[0], x);
-    let second = quarters * PARTS[1];
+    let part = |k: usize| constant::<T>(PARTS[k]);
+    let shifted = mul_add(x, T::frac_2_pi(), constant(ROUND));
+    let quarters = shifted - constant(ROUND);
+    let first = neg_mul_add(quarters, part(0), x);
+    let second = quarters * part(1);
     let near = first - second;
     let missing = (first - near) - second;
-    let missing = neg_mul_add(quarters, PARTS[3], neg_mul_add(quarters, PARTS[2], missing));
+    let missing = neg_mul_add(quarters, part(3), neg_mul_add(quarters, part(2), missing));
     let r = near + missing;
     let low = (near - r) + missing;
     let z = r * r;
-    let half = 0.5 * z;
+    let half = constant::<T>(0.5) * z;
     let sine = horner(
         z,
         [
@@ -122,9 +134,15 @@ fn kernel(x: f64) -> (f64, f64) {
         ],
     );
     let s = r + mul_add(r * z, sine, neg_mul_add(low, half, low));
-    let one = 1.0 - half;
-    let c = one + (((1.0 - one) - half) + mul_add(z * z, cosine, -(r * low)));
-    // An odd quadrant exchanges the two; bits of the quadrant are their signs.
+    let one = T::one() - half;
+    let c = one + (((T::one() - one) - half) + mul_add(z * z, cosine, -(r * low)));
+    (s, c, shifted)
+}
+
+/// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
+#[inline(always)]
+fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
+    let quadrant = shifted.to_bits();
     let odd = (quadrant & 1).wrapping_neg();
     let (s, c) = (s.to_bits(), c.to_bits());
     let exchange = (s ^ c) & odd;
@@ -134,7 +152,8 @@ fn kernel(x: f64) -> (f64, f64) {
 }
 
 #[inline(always)]
-fn horner(z: f64, [a, b, c, d, e, f]: [f64; 6]) -> f64 {
+fn horner<T: Real>(z: T, coefficients: [f64; 6]) -> T {
+    let [a, b, c, d, e, f] = coefficients.map(constant::<T>);
     mul_add(mul_add(mul_add(mul_add(mul_add(a, z, b), z, c), z, d), z, e), z, f)
 }
 

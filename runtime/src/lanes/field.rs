@@ -1,8 +1,7 @@
 //! Lanes as a real field of nalgebra: every function from lane to lane.
 
-use super::Lanes;
+use super::{Lanes, vector};
 use crate::Real;
-use crate::trigonometry::sin_cos_all;
 use nalgebra::{ComplexField, RealField};
 use num_traits::Zero;
 
@@ -94,7 +93,12 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        self.map(ComplexField::abs)
+        Self(vector::abs(&self.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(vector::sqrt(&self.0))
     }
 
     #[inline(always)]
@@ -114,12 +118,11 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = sin_cos_all(self.0);
-        (Self(s), Self(c))
+        Lanes::sin_cos(self)
     }
 
     lane_by_lane! {
-        floor ceil round trunc fract recip sqrt cbrt
+        floor ceil round trunc fract recip cbrt
         tan asin acos atan sinh cosh tanh asinh acosh atanh sinc sinhc cosc coshc
         exp exp2 exp_m1 ln ln_1p log2 log10
     }
