@@ -4,7 +4,7 @@
 mod random_tree;
 
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::emit::Output;
+use linkwork_compiler::emit::{Output, Prepared};
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanics::regularity::random_configuration;
@@ -12,7 +12,7 @@ use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frame
 use linkwork_compiler::model::{Model, Quantity, build_model, sample};
 use linkwork_compiler::passes::{Passes, forms};
 use linkwork_compiler::syntax::Requests;
-use linkwork_compiler::{compile_with, derive, derive_with, read};
+use linkwork_compiler::{compile_with, derive_with, read};
 use proptest::prelude::*;
 use random_tree::{Tree, trees};
 use std::path::Path;
@@ -21,10 +21,11 @@ use support::random::config;
 /// Relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
-const CHOICES: [Passes; 3] = [
-    Passes { frames: true, regroup: false },
-    Passes { frames: false, regroup: true },
-    Passes { frames: true, regroup: true },
+const CHOICES: [Passes; 4] = [
+    Passes { frames: true, regroup: false, free_parameters: false },
+    Passes { frames: false, regroup: true, free_parameters: false },
+    Passes { frames: true, regroup: true, free_parameters: false },
+    Passes { frames: true, regroup: true, free_parameters: true },
 ];
 
 fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
@@ -138,6 +139,9 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
             assert_near(&format!("{name}: {}", new.name), seed, tolerance, &a, &b);
         }
     }
+    if let Some(prepared) = &new.prepared {
+        check_prepared(name, model, prepared, old, tolerance);
+    }
     for (new, old) in new.functions.iter().zip(&old.functions) {
         if ["mass_matrix", "inverse_dynamics"].contains(&new.name.as_str()) {
             let (after, before) = (new.program.counts.total(), old.program.counts.total());
@@ -146,7 +150,24 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
     }
 }
 
-const OFF: Passes = Passes { frames: false, regroup: false };
+const OFF: Passes = Passes { frames: false, regroup: false, free_parameters: false };
+
+/// Functions of numbers that were computed from the parameters before compute the same.
+fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
+    for seed in 0..3 {
+        let at = symbols(model, seed);
+        let numbers = prepared.numbers.run(&at);
+        let of_state = |s| match Quantity::of(s) {
+            Quantity::Prepared(k) => numbers[k],
+            Quantity::Parameter(_) => f64::NAN,
+            _ => at(s),
+        };
+        for (new, old) in prepared.functions.iter().zip(&old.functions) {
+            let (a, b) = (new.program.run(&of_state), old.program.run(&at));
+            assert_near(&format!("{name}: {}, prepared", new.name), seed, tolerance, &a, &b);
+        }
+    }
+}
 
 fn check_robot(name: &str, options: &str) {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -190,7 +211,9 @@ proptest! {
         let _ = seed;
         with_model(&tree, |model| {
             let mut cx = Diagnostics::new();
-            let (new, old) = (derive(model, &mut cx), derive_with(model, Requests::default(), OFF, &mut cx));
+            let prepare = Requests { prepare: true, ..Requests::default() };
+            let new = derive_with(model, prepare, Passes::default(), &mut cx);
+            let old = derive_with(model, Requests::default(), OFF, &mut cx);
             check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
         });
     }

@@ -6,15 +6,16 @@ use crate::emit::{Function, Output, Shape};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
-use crate::lower::{Program, lower};
+use crate::lower::{Program, lower, lower_without};
 use crate::mechanics::{self, Joint, crba, energy, forces, frames, power};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
 use crate::syntax::Requests;
 
-pub mod derivatives;
+mod derivatives;
 mod dynamics;
+mod prepared;
 pub mod signatures;
 
 use signatures::Sizes;
@@ -43,39 +44,75 @@ pub fn derive_with<'g>(
         }
         return None;
     }
-    let sizes = Sizes::of(model);
-    let mut functions = signatures::always(&sizes);
-    if requests.centroidal {
-        functions.extend(signatures::centroidal(&sizes));
-    }
-    let dynamics = dynamics::Dynamics::new(model, passes);
-    for f in &mut functions {
-        f.program = match f.name.as_str() {
-            "neutral" => done(&neutral(model)),
-            "generalized_forces" => done(&forces::generalized_forces(model, &joints)),
-            "dissipated_power" => done(&[power::dissipated(model)]),
-            "control_power" => done(&[power::control(model, &joints)]),
-            "disturbance_power" => done(&[power::disturbance(model)]),
-            "total_mass" => done(&[energy::mass_and_moment(model, &joints).0]),
-            name => dynamics.program(name).unwrap_or_default(),
-        };
-    }
+    let functions = functions(model, requests, passes, &joints, Stage::Whole);
     if functions.iter().any(|f| !f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
             .help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
-    functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output)));
-    if requests.derivatives {
-        functions.extend(derivatives::functions(model, passes));
-    }
+    let prepared = requests.prepare.then(|| {
+        prepared::prepared(model.graph, self::functions(model, requests, passes, &joints, Stage::Prepared))
+    });
     Some(Output {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
         frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
         charts: model.charts.clone(),
         equations: written(model),
+        prepared,
     })
+}
+
+/// How the expressions of a function become its program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// The function computes everything.
+    Whole,
+    /// What depends on parameters alone is computed before.
+    Prepared,
+}
+
+impl Stage {
+    fn program(self, outputs: &[Expr<'_>]) -> Program {
+        let parameter = |s| matches!(Quantity::of(s), Quantity::Parameter(_));
+        match self {
+            Stage::Whole => done(outputs),
+            Stage::Prepared => lower_without(outputs, &parameter).fused(),
+        }
+    }
+}
+
+/// All functions with their programs.
+fn functions<'g>(
+    model: &Model<'g>,
+    requests: Requests,
+    passes: Passes,
+    joints: &[Joint<'g>],
+    stage: Stage,
+) -> Vec<Function> {
+    let sizes = Sizes::of(model);
+    let passes = Passes { free_parameters: stage == Stage::Prepared, ..passes };
+    let mut functions = signatures::always(&sizes);
+    if requests.centroidal {
+        functions.extend(signatures::centroidal(&sizes));
+    }
+    let dynamics = dynamics::Dynamics::new(model, passes, stage);
+    for f in &mut functions {
+        f.program = match f.name.as_str() {
+            "neutral" => stage.program(&neutral(model)),
+            "generalized_forces" => stage.program(&forces::generalized_forces(model, joints)),
+            "dissipated_power" => stage.program(&[power::dissipated(model)]),
+            "control_power" => stage.program(&[power::control(model, joints)]),
+            "disturbance_power" => stage.program(&[power::disturbance(model)]),
+            "total_mass" => stage.program(&[energy::mass_and_moment(model, joints).0]),
+            name => dynamics.program(name).unwrap_or_default(),
+        };
+    }
+    functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output, stage)));
+    if requests.derivatives {
+        functions.extend(derivatives::functions(model, passes, stage));
+    }
+    functions
 }
 
 /// The equations of motion in a line each; empty for mechanisms that are too large to be read.
@@ -104,7 +141,7 @@ fn done(outputs: &[Expr<'_>]) -> Program {
 
 /// The function of an output, and its Jacobian: how it changes with the velocities, or how its rate does if it depends
 /// on the configuration alone.
-fn output_functions(model: &Model<'_>, output: &OutputValue<'_>) -> Vec<Function> {
+fn output_functions(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Vec<Function> {
     let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
     let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
     let uses = Uses {
@@ -116,15 +153,16 @@ fn output_functions(model: &Model<'_>, output: &OutputValue<'_>) -> Vec<Function
     let mut functions = signatures::output(&output.name, output.values.len(), uses, &sizes);
     for f in &mut functions {
         f.program = match f.shape {
-            Shape::Matrix(..) => output_jacobian(model, output, uses),
-            _ => done(&output.values),
+            Shape::Matrix(..) => stage.program(&output_jacobian(model, output, uses)),
+            _ => stage.program(&output.values),
         };
     }
     functions
 }
 
-fn output_jacobian(model: &Model<'_>, output: &OutputValue<'_>, uses: Uses) -> Program {
-    let rates: Vec<Expr<'_>> = match uses.velocities {
+/// The Jacobian column by column.
+fn output_jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>, uses: Uses) -> Vec<Expr<'g>> {
+    let rates: Vec<Expr<'g>> = match uses.velocities {
         true => output.values.clone(),
         false => output.values.iter().map(|e| time_derivative(model.space(), *e)).collect(),
     };
@@ -133,7 +171,7 @@ fn output_jacobian(model: &Model<'_>, output: &OutputValue<'_>, uses: Uses) -> P
         let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
         entries.extend(rates.iter().map(|e| d.of(*e)));
     }
-    done(&entries)
+    entries
 }
 
 fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

@@ -231,7 +231,7 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
             ..self.bare_interface()
         };
-        emit_failed(&interface, &functions)
+        emit_failed(&interface, &functions, self.mechanism.requests.prepare)
     }
 }
 

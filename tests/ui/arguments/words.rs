@@ -24,4 +24,12 @@ struct Valueless {
     rail: Sleeve,
 }
 
+#[mechanism(prepare)]
+struct Numbers {
+    #[particle(mass = 1)]
+    ball: Particle,
+    #[joint(ground -> ball, along = x)]
+    rail: Sleeve,
+}
+
 fn main() {}

@@ -1,6 +1,6 @@
 use linkwork::prelude::*;
 
-#[mechanism(gravity = -g * z, derivatives)]
+#[mechanism(gravity = -g * z, derivatives, prepare)]
 struct BeadOnSpinningHoop {
     g: f64,
     m: f64,
@@ -40,5 +40,8 @@ fn main() {
     let _ = hoop.frame_placement(frame!(BeadOnSpinningHoop, "eye"), t, &q);
     let _ = hoop.frame_velocity(bead, t, &q, &v) - hoop.frame_jacobian(bead, t, &q) * v;
     let _ = hoop.frame_acceleration(bead, t, &q, &v, &a);
+    let prepared: PreparedBeadOnSpinningHoop = hoop.prepare();
+    let _ = prepared.mass_matrix(t, &q) * prepared.sliding(t, &q, &v).norm();
     let _ = simulate(&hoop).from(q, v);
+    let _ = simulate(&prepared).from(q, v);
 }

@@ -1,6 +1,6 @@
 //! The functions of the word `derivatives`.
 
-use super::done;
+use super::Stage;
 use super::signatures::{self, Sizes};
 use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
@@ -18,7 +18,7 @@ const SMALL: usize = 10;
 const DIFFERENTIATE: usize = 6;
 
 /// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
-pub fn functions(model: &Model<'_>, passes: Passes) -> Vec<Function> {
+pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
     if passes.frames && model.nv() <= SMALL {
         forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
@@ -27,10 +27,10 @@ pub fn functions(model: &Model<'_>, passes: Passes) -> Vec<Function> {
     if model.nv() > SMALL {
         forms.truncate(1);
     }
-    let parts = forms.iter().map(|form| Parts::new(&form.model));
+    let parts = forms.iter().map(|form| Parts::new(&form.model, stage));
     let Some(mut parts) = parts.min_by_key(Parts::cost) else { return Vec::new() };
     if model.nv() <= DIFFERENTIATE {
-        let other = Parts { method: Method::Differentiation, ..Parts::new(parts.model) };
+        let other = Parts { method: Method::Differentiation, ..Parts::new(parts.model, stage) };
         if other.cost() < parts.cost() {
             parts = other;
         }
@@ -54,13 +54,14 @@ struct Parts<'a, 'g> {
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
     method: Method,
+    stage: Stage,
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
-    fn new(model: &'a Model<'g>) -> Parts<'a, 'g> {
+    fn new(model: &'a Model<'g>, stage: Stage) -> Parts<'a, 'g> {
         let joints = mechanics::joints(model);
         let mass = crba::mass_matrix(model, &joints);
-        Parts { model, joints, mass, method: Method::Recursion }
+        Parts { model, joints, mass, method: Method::Recursion, stage }
     }
 
     fn cost(&self) -> usize {
@@ -69,13 +70,18 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn inverse_dynamics(&self) -> Program {
         let a = mechanics::accelerations(self.model);
-        done(&force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, self.method)))
+        self.stage.program(&force_columns(&derivatives::inverse_dynamics(
+            self.model,
+            &self.joints,
+            &a,
+            self.method,
+        )))
     }
 
     fn forward_dynamics(&self) -> Program {
         let g = self.model.graph;
         let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
-        done(&all_columns(&derivatives::forward_dynamics(
+        self.stage.program(&all_columns(&derivatives::forward_dynamics(
             self.model,
             &self.joints,
             &self.mass,
@@ -88,7 +94,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let linear = derivatives::linearized(self.model, &self.joints, &self.mass, tau, self.method);
         let mut outputs = all_columns(&linear);
         outputs.extend(columns(&commutators(self.model)));
-        done(&outputs)
+        self.stage.program(&outputs)
     }
 
     /// The forces `tau` of the inputs with their derivatives.
@@ -97,7 +103,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
         outputs.extend(columns(&symbolic::by_input(self.model, tau)));
         outputs.extend(columns(&commutators(self.model)));
-        done(&outputs)
+        self.stage.program(&outputs)
     }
 
     /// The program of a function, with `tau` the forces of the inputs.
@@ -109,11 +115,11 @@ impl<'a, 'g> Parts<'a, 'g> {
         }
         match f.name.as_str() {
             "mass_matrix_inverse" => {
-                done(&columns(&derivatives::Factor::of(&self.mass, &self.joints).inverse()))
+                self.stage.program(&columns(&derivatives::Factor::of(&self.mass, &self.joints).inverse()))
             }
             "coriolis_matrix" => {
                 let v = mechanics::velocities(self.model);
-                done(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+                self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
             }
             "inverse_dynamics_derivatives" => self.inverse_dynamics(),
             "forward_dynamics_derivatives" => self.forward_dynamics(),

@@ -1,7 +1,7 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::done;
+use super::Stage;
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::mechanics::{self, Joint, aba, crba, energy, frames, ldl, momentum, rnea};
@@ -21,12 +21,12 @@ pub(super) struct Dynamics<'g> {
 impl<'g> Dynamics<'g> {
     /// The forms that the passes give; of a small mechanism, in the frames as they are or in the moved ones, whichever
     /// cost less.
-    pub(super) fn new(model: &Model<'g>, passes: Passes) -> Dynamics<'g> {
-        let moved = Dynamics::of(Forms::new(model, passes));
+    pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
+        let moved = Dynamics::of(Forms::new(model, passes, stage));
         if !passes.frames || model.nv() > COMPARE {
             return moved;
         }
-        let still = Dynamics::of(Forms::new(model, Passes { frames: false, ..passes }));
+        let still = Dynamics::of(Forms::new(model, Passes { frames: false, ..passes }, stage));
         let total = |d: &Dynamics<'g>| d.mass_matrix.counts.total() + d.inverse_dynamics.counts.total();
         Dynamics {
             forms: if total(&still) < total(&moved) { still.forms } else { moved.forms },
@@ -60,7 +60,7 @@ impl<'g> Dynamics<'g> {
         let joints = &self.forms.joints;
         Some(cheapest(self.forms.plain().map(|model| {
             let v = mechanics::velocities(model);
-            done(&expressions(model, joints, &v))
+            self.forms.stage.program(&expressions(model, joints, &v))
         })))
     }
 }
@@ -69,13 +69,14 @@ impl<'g> Dynamics<'g> {
 struct Forms<'g> {
     all: Vec<Form<'g>>,
     joints: Vec<Joint<'g>>,
+    stage: Stage,
 }
 
 impl<'g> Forms<'g> {
-    fn new(model: &Model<'g>, passes: Passes) -> Forms<'g> {
+    fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Forms<'g> {
         let all = passes::forms(model, passes);
         let joints = all.first().map_or(Vec::new(), |form| mechanics::joints(&form.model));
-        Forms { all, joints }
+        Forms { all, joints, stage }
     }
 
     /// Forms that serve all functions.
@@ -84,7 +85,9 @@ impl<'g> Forms<'g> {
     }
 
     fn mass_matrix(&self) -> Program {
-        cheapest(self.plain().map(|model| done(&crba::mass_matrix(model, &self.joints).concat())))
+        cheapest(
+            self.plain().map(|model| self.stage.program(&crba::mass_matrix(model, &self.joints).concat())),
+        )
     }
 
     /// Inverse dynamics, or the bias alone.
@@ -95,7 +98,7 @@ impl<'g> Forms<'g> {
     fn recursion_of(&self, model: &Model<'g>, accelerations: bool) -> Program {
         let v = mechanics::velocities(model);
         let a = accelerations.then(|| mechanics::accelerations(model));
-        done(&rnea::inverse_dynamics(model, &self.joints, &v, a.as_deref()))
+        self.stage.program(&rnea::inverse_dynamics(model, &self.joints, &v, a.as_deref()))
     }
 
     /// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
@@ -109,7 +112,7 @@ impl<'g> Forms<'g> {
         let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
         let articulated = self.plain().filter_map(|model| {
             let a = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(done(&a))
+            Some(self.stage.program(&a))
         });
         let articulated = articulated.min_by_key(cost);
         if let Some(program) = &articulated
@@ -121,7 +124,7 @@ impl<'g> Forms<'g> {
         let r: Vec<Expr<'g>> = tau.iter().zip(h).map(|(tau, h)| *tau - h).collect();
         let factorised = cheapest(self.plain().map(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
-            done(&ldl::solve(mass, r.clone(), &self.joints))
+            self.stage.program(&ldl::solve(mass, r.clone(), &self.joints))
         }));
         match articulated {
             Some(program) if factorised.counts.total() * 20 > program.counts.total() * 21 => program,

@@ -222,8 +222,10 @@ impl Writer<'_> {
         if quantity == Quantity::Time {
             return "t".to_string();
         }
-        if let Quantity::Parameter(k) = quantity {
-            return format!("self.{}", self.scalar.parameter(k));
+        match quantity {
+            Quantity::Parameter(k) => return format!("self.{}", self.scalar.parameter(k)),
+            Quantity::Prepared(k) => return format!("c{k}"),
+            _ => {}
         }
         self.arguments
             .iter()
@@ -276,11 +278,34 @@ fn wrap(piece: &Piece, level: u8) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }
 
+/// The numbers that were computed before, as far as the program names them.
+fn write_prepared_numbers(out: &mut String, program: &Program, count: usize) {
+    let mut named = vec![false; count];
+    let mut name = |o: Operand| {
+        if let Operand::Symbol(s) = o
+            && let Quantity::Prepared(k) = Quantity::of(s)
+        {
+            named[k] = true;
+        }
+    };
+    program.instructions.iter().for_each(|op| op.operands(&mut name));
+    program.outputs.iter().for_each(|o| name(*o));
+    if named.contains(&true) {
+        let list: Vec<String> = named
+            .iter()
+            .enumerate()
+            .map(|(k, named)| if *named { format!("c{k}") } else { "_".into() })
+            .collect();
+        let _ = writeln!(out, "let [{}] = self.numbers;", list.join(", "));
+    }
+}
+
 /// Imports and the numbers of the arguments.
 fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'_>) {
     if !w.helpers.is_empty() {
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", w.helpers.join(", "));
     }
+    write_prepared_numbers(out, &f.program, s.prepared);
     for argument in &f.arguments {
         let (n, given) = match argument {
             Argument::T => continue,

@@ -4,8 +4,8 @@ use super::item::Interface;
 use crate::expr::print::Written;
 use std::fmt::Write;
 
-/// Sizes, names, equations.
-pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written) {
+/// Sizes and the names of what vectors hold.
+pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
     let numbers = [
         ("NQ", i.configuration.len(), "configuration numbers"),
         ("NV", i.velocities.len(), "velocities"),
@@ -18,15 +18,21 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written)
         ("CONFIGURATION", &i.configuration, "every entry of `q`"),
         ("VELOCITIES", &i.velocities, "every entry of `v`"),
         ("INPUTS", &i.inputs, "every entry of `u`"),
-        ("FRAMES", &i.frames, "every frame"),
     ];
     for (name, names, what) in lists {
-        let _ = writeln!(
-            out,
-            "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};",
-            names.len()
-        );
+        write_names(out, name, names, what);
     }
+}
+
+fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
+    let _ =
+        writeln!(out, "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};", names.len());
+}
+
+/// Sizes, names, equations.
+pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written) {
+    write_sizes(out, i);
+    write_names(out, "FRAMES", &i.frames, "every frame");
     let texts = [
         (
             "EQUATIONS",

@@ -1,5 +1,6 @@
 //! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
 
+use super::function::Function;
 use super::item::{Interface, Output};
 use std::fmt::Write;
 
@@ -32,8 +33,16 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         let _ =
             writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
     }
-    text.push_str("\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n");
-    for f in output.functions.iter().filter(|f| !f.docs.is_empty()) {
+    text.push_str(&operations(&output.functions));
+    text
+}
+
+/// A table of what the functions cost.
+pub fn operations(functions: &[Function]) -> String {
+    let mut text = String::from(
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n",
+    );
+    for f in functions.iter().filter(|f| !f.docs.is_empty()) {
         let c = f.program.counts;
         if c.total() + c.calls > 0 {
             let _ = writeln!(text, "| `{}` | {} | {} | {} | {} |", f.name, c.mul, c.add, c.div, c.calls);

@@ -4,6 +4,8 @@ use super::constants::write_constants;
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
+use super::manifold::write_manifold;
+use super::prepared::{Content, Prepared, write_prepared};
 use super::scalar::ScalarSpelling;
 use crate::expr::print::Written;
 use crate::model::Chart;
@@ -53,6 +55,8 @@ pub struct Output {
     pub charts: Vec<Chart>,
     /// The equations of motion for reading; empty for large mechanisms.
     pub equations: Written,
+    /// The functions of numbers that are computed before, if they were asked for.
+    pub prepared: Option<Prepared>,
 }
 
 /// Functions of the traits that depend on the state, with their arguments there.
@@ -68,7 +72,8 @@ const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
     ("momentum_rate", &[Argument::Q, Argument::V]),
 ];
 
-const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
+/// What stands before generated implementations.
+pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
 /// Emitted code: the struct as tokens, which keep their places in the user's source, and everything else as text, since
 /// the compiler's own lexer is much faster than tokens made one by one.
@@ -98,7 +103,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
-    write_manifold(&mut methods, &output.charts, &s);
+    write_manifold(&mut methods, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
         (0..interface.shell.parameters.len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
@@ -121,11 +126,16 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         write_frame_impl(&mut text, k, frame, &output.links, &s);
         frames.push(text);
     }
-    assemble(interface, &s, &methods, &frames, &struct_docs(interface, output))
+    let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
+    if let Some(prepared) = &output.prepared {
+        let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
+        write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
+    }
+    emitted
 }
 
 /// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
-pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted {
+pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], prepare: bool) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
@@ -133,23 +143,25 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function]) -> Emitted
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
+    write_manifold(&mut methods, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
     let t = if s.time { format!("t: {scalar}, ") } else { String::new() };
     let _ = writeln!(
         methods,
-        "pub fn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ loop {{}} }}
-        pub fn difference(&self, from: &{q}, to: &{q}) -> {v} {{ loop {{}} }}
-        pub fn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ loop {{}} }}
-        pub fn frame_placements(&self, {t}q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
+        "pub fn frame_placements(&self, {t}q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
         pub fn frame_placement<F>(&self, frame: F, {t}q: &{q}) -> {placement} {{ loop {{}} }}
         pub fn frame_velocity<F>(&self, frame: F, {t}q: &{q}, v: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
         pub fn frame_acceleration<F>(&self, frame: F, {t}q: &{q}, v: &{v}, a: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
         pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
-    assemble(interface, &s, &methods, &[], "")
+    let mut emitted = assemble(interface, &s, &methods, &[], "");
+    if prepare {
+        write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
+    }
+    emitted
 }
 
 fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
@@ -164,101 +176,7 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
         nv: interface.velocities.len(),
         nu: interface.inputs.len(),
         time: interface.time,
-    }
-}
-
-/// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space.
-fn write_manifold(out: &mut String, charts: &[Chart], s: &Signature<'_>) {
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
-        ManifoldFunction { name, about, signature, arguments, result }
-    };
-    let functions = [
-        on_manifold(
-            "integrate",
-            "`q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.",
-            format!("q: &{q}, dv: &{v}) -> {q}"),
-            [("q", s.nq), ("dv", s.nv)],
-            s.nq,
-        ),
-        on_manifold(
-            "difference",
-            "`to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
-            format!("from: &{q}, to: &{q}) -> {v}"),
-            [("from", s.nq), ("to", s.nq)],
-            s.nv,
-        ),
-        on_manifold(
-            "tangent_rate",
-            "Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).",
-            format!("dv: &{v}, v: &{v}) -> {v}"),
-            [("dv", s.nv), ("v", s.nv)],
-            s.nv,
-        ),
-    ];
-    for function in &functions {
-        function.write(out, charts);
-    }
-}
-
-/// One of the functions of the configuration space.
-struct ManifoldFunction {
-    name: &'static str,
-    about: &'static str,
-    signature: String,
-    arguments: [(&'static str, usize); 2],
-    result: usize,
-}
-
-impl ManifoldFunction {
-    fn write(&self, out: &mut String, charts: &[Chart]) {
-        let range = |first: usize, n: usize, name: &str| {
-            let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
-            format!("[{}]", list.join(", "))
-        };
-        let _ = writeln!(
-            out,
-            "/// {}\n#[inline]\n#[must_use]\npub fn {}(&self, {} {{",
-            self.about, self.name, self.signature
-        );
-        for (name, n) in self.arguments.iter().filter(|(_, n)| *n > 0) {
-            let _ = writeln!(out, "let [{}] = {name}.data.0;", range(0, *n, name));
-        }
-        let [(first, _), (second, _)] = self.arguments;
-        for chart in charts {
-            let (kind, (q, nq), (v, nv)) = match *chart {
-                Chart::Plain(q, v) => {
-                    let _ = match self.name {
-                        "integrate" => writeln!(out, "let r{q} = q{q} + dv{v};"),
-                        "difference" => writeln!(out, "let r{v} = to{q} - from{q};"),
-                        _ => writeln!(out, "let r{v} = v{v};"),
-                    };
-                    continue;
-                }
-                Chart::Ball(q, v) => ("ball", (q, 4), (v, 3)),
-                Chart::Free(q, v) => ("free", (q, 7), (v, 6)),
-            };
-            // What the result and the two arguments are made of: configurations or velocities.
-            let (on_q, on_v) = ((q, nq), (v, nv));
-            let (r, a, b) = match self.name {
-                "integrate" => (on_q, on_q, on_v),
-                "difference" => (on_v, on_q, on_q),
-                _ => (on_v, on_v, on_v),
-            };
-            let _ = writeln!(
-                out,
-                "let {} = ::linkwork::__private::{kind}_{}({}, {});",
-                range(r.0, r.1, "r"),
-                self.name,
-                range(a.0, a.1, first),
-                range(b.0, b.1, second)
-            );
-        }
-        let _ = writeln!(
-            out,
-            "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))\n}}",
-            range(0, self.result, "r")
-        );
+        prepared: 0,
     }
 }
 
@@ -332,11 +250,57 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
+/// Generics of the struct's implementations as text.
+pub struct Head {
+    /// `<T: …>`
+    pub generics: String,
+    /// `<T>`
+    pub arguments: String,
+    /// `where …`
+    pub bounds: String,
+}
+
+impl Head {
+    /// Those of the struct, with the scalar's own bound.
+    pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
+        let mut generics = i.shell.generics.clone();
+        if s.scalar.is_generic() {
+            let name = quote::format_ident!("{}", s.scalar.name());
+            generics.make_where_clause().predicates.push(syn::parse_quote!(#name: ::linkwork::Real));
+        }
+        let (impl_generics, ty_generics, where_clause) = generics.split_for_impl();
+        let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
+        Head { generics: spell(&impl_generics), arguments: spell(&ty_generics), bounds: spell(&where_clause) }
+    }
+
+    /// The inherent functions of a type of this name, and the trait's.
+    pub fn write_impls(
+        &self,
+        out: &mut String,
+        name: &str,
+        methods: &str,
+        i: &Interface<'_>,
+        s: &Signature<'_>,
+    ) {
+        let Head { generics, arguments, bounds } = self;
+        let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
+            if s.time { "Rheonomic" } else { "Mechanism" },
+            s.nq,
+            s.nv,
+            s.nu
+        );
+        write_trait(out, i, s);
+        out.push_str("}\n");
+    }
+}
+
 /// Puts struct and implementations together.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
-    let mut generics = i.shell.generics.clone();
-    let (_, ty_generics, struct_where) = i.shell.generics.split_for_impl();
+    let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
     let fields = if parameters.is_empty() {
@@ -364,31 +328,19 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
         #file
         #known
     };
-    if s.scalar.is_generic() {
-        let name = quote::format_ident!("{}", s.scalar.name());
-        generics.make_where_clause().predicates.push(syn::parse_quote!(#name: ::linkwork::Real));
-    }
-    let (impl_generics, _, where_clause) = generics.split_for_impl();
-    let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
-    let target = format!("{}{}", ident, spell(&ty_generics));
-    let (impl_generics, where_clause) = (spell(&impl_generics), spell(&where_clause));
-    let mut text = format!("{ALLOW}impl{impl_generics} {target} {where_clause} {{\n{methods}}}\n");
-    let _ = writeln!(
-        text,
-        "{ALLOW}impl{impl_generics} ::linkwork::{}<{}, {}, {}> for {target} {where_clause} {{",
-        if s.time { "Rheonomic" } else { "Mechanism" },
-        s.nq,
-        s.nv,
-        s.nu
-    );
-    write_trait(&mut text, i, s);
-    text.push_str("}\n");
+    let head = Head::new(i, s);
+    let mut text = String::new();
+    head.write_impls(&mut text, &i.shell.ident.to_string(), methods, i, s);
     for (k, body) in frames.iter().enumerate() {
         let _ = writeln!(
             text,
-            "{ALLOW}impl{impl_generics} ::linkwork::NamedFrame<{k}, {}, {}> for {target} {where_clause} {{\ntype Scalar = {};\n{body}}}",
+            "{ALLOW}impl{} ::linkwork::NamedFrame<{k}, {}, {}> for {}{} {} {{\ntype Scalar = {};\n{body}}}",
+            head.generics,
             s.nq,
             s.nv,
+            i.shell.ident,
+            head.arguments,
+            head.bounds,
             s.scalar.name()
         );
     }

@@ -7,8 +7,11 @@ mod docs;
 pub mod frames;
 mod function;
 mod item;
+mod manifold;
 mod matrices;
+mod prepared;
 mod scalar;
 
 pub use function::{Argument, Function, Shape};
 pub use item::{Emitted, Interface, Output, emit_failed, emit_mechanism};
+pub use prepared::Prepared;

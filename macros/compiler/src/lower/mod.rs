@@ -4,7 +4,10 @@
 use crate::expr::{Expr, Function, Id, Node, Symbol};
 
 mod fuse;
+mod hoist;
 mod signs;
+
+pub use hoist::{hoisted, place_hoisted};
 
 /// Where an operand comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +105,12 @@ impl Counts {
 
 /// Lowers the outputs.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
+    lower_without(outputs, &|_| false)
+}
+
+/// Lowers the outputs, where what depends on symbols that are `known` before alone is not computed but named: see
+/// [`hoisted`].
+pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let Some(first) = outputs.first() else {
         return Program::default();
     };
@@ -112,8 +121,9 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
     let order = needed(outputs, &mut places);
     let place = |id: Id| places[id as usize] as usize - 1;
     let nodes: Vec<Node> = order.iter().map(|id| graph.node(*id)).collect();
+    let before = hoist::known_before(&nodes, place, known);
     let mut uses = vec![0_u32; order.len()];
-    for node in &nodes {
+    for (node, _) in nodes.iter().zip(&before).filter(|(_, before)| !**before) {
         node.operands(|a| uses[place(a)] += 1);
     }
     for output in outputs {
@@ -121,8 +131,15 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
     }
     let mut program = Program::default();
     let mut values: Vec<Operand> = Vec::with_capacity(order.len());
-    for node in &nodes {
+    for (k, node) in nodes.iter().enumerate() {
         let at = |a: Id| values[place(a)];
+        if before[k] {
+            values.push(match *node {
+                Node::Neg(a) => hoist::negated(at(a)),
+                _ => hoist::operand(order[k]),
+            });
+            continue;
+        }
         let op = match *node {
             Node::Const(c) => {
                 values.push(Operand::Const(c));

@@ -5,6 +5,7 @@
 //! are free, those of all else follow; what leaves the program must be positive, and costs a negation if not. Starting
 //! from all free signs positive, single signs are changed as long as that saves negations.
 
+use super::hoist::{is_known as is_constant, negated};
 use super::{Op, Operand, Program};
 use crate::expr::Function;
 use std::collections::BTreeSet;
@@ -260,7 +261,7 @@ impl Rewrite<'_> {
             (false, true) => Op::Sub(x, y),
             (true, false) => Op::Sub(y, x),
             (true, true) => match (x, y) {
-                (Operand::Const(c), y) => Op::Sub(Operand::Const(-c), y),
+                (x, y) if is_constant(x) => Op::Sub(negated(x), y),
                 (x, y) => Op::Sub(negated(y), x),
             },
         };
@@ -275,17 +276,6 @@ impl Rewrite<'_> {
             (true, false) => (a, negated(b)),
         }
     }
-}
-
-fn negated(o: Operand) -> Operand {
-    match o {
-        Operand::Const(c) => Operand::Const(-c),
-        other => other,
-    }
-}
-
-fn is_constant(o: Operand) -> bool {
-    matches!(o, Operand::Const(_))
 }
 
 /// True for operations whose operands may be stored with either sign.

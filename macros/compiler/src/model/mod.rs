@@ -44,6 +44,8 @@ pub enum Quantity {
     Time,
     /// An entry of an intermediate result that is handed to a generated function.
     Given(usize),
+    /// A number that is computed from the parameters before.
+    Prepared(usize),
 }
 
 impl Quantity {
@@ -60,6 +62,7 @@ impl Quantity {
             Quantity::Input(k) => (5, k),
             Quantity::Time => (6, 0),
             Quantity::Given(k) => (7, k),
+            Quantity::Prepared(k) => (8, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -75,7 +78,8 @@ impl Quantity {
             4 => Quantity::Force(index),
             5 => Quantity::Input(index),
             6 => Quantity::Time,
-            _ => Quantity::Given(index),
+            7 => Quantity::Given(index),
+            _ => Quantity::Prepared(index),
         }
     }
 

@@ -40,8 +40,8 @@ pub struct Site {
 }
 
 impl Site {
-    /// The site of a link.
-    pub fn of(link: &Link<'_>) -> Site {
+    /// The site of a link; where parameters cost nothing (`free`), its mass properties need not be numbers.
+    pub fn of(link: &Link<'_>, free_parameters: bool) -> Site {
         let (place, mass) = (Place::of(&link.placement), Mass::of(&link.inertia));
         let free = match &link.motion {
             Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
@@ -49,7 +49,7 @@ impl Site {
             Motion::Slide { axis, .. } => axis.values().map(|along| Freedom::Slide { along }),
             Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
         };
-        let numeric = place.is_some() && mass.is_some();
+        let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
         Site {
             parent: link.parent.map(|p| p.0),

@@ -10,7 +10,7 @@ use super::candidates::{Freedom, Site, candidates};
 use super::cost;
 use super::number::{Place, clean};
 use crate::expr::Vec3;
-use crate::model::{Coordinate, Direction, Input, Model, Motion, Pose};
+use crate::model::{Coordinate, Direction, Inertia, Input, Model, Motion, Pose};
 
 /// A choice for one link.
 #[derive(Clone, Copy)]
@@ -24,8 +24,8 @@ struct Step {
 }
 
 /// Moves the frames.
-pub fn place_frames(model: &mut Model<'_>) {
-    let sites = sites(model);
+pub fn place_frames(model: &mut Model<'_>, free_parameters: bool) {
+    let sites = sites(model, free_parameters);
     let Some(frames) = choose(&sites) else { return };
     let steps: Vec<Option<Step>> = (0..sites.len())
         .map(|k| {
@@ -38,8 +38,8 @@ pub fn place_frames(model: &mut Model<'_>) {
 }
 
 /// What the choice depends on.
-fn sites(model: &Model<'_>) -> Vec<Site> {
-    let mut sites: Vec<Site> = model.links.iter().map(Site::of).collect();
+fn sites(model: &Model<'_>, free_parameters: bool) -> Vec<Site> {
+    let mut sites: Vec<Site> = model.links.iter().map(|link| Site::of(link, free_parameters)).collect();
     for k in 0..sites.len() {
         // A placement that is not made of numbers stays as it is, on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
@@ -94,9 +94,13 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
         if matches!(site.freedom, Freedom::None) {
             continue;
         }
-        if let Some(mass) = &site.mass {
-            link.inertia = mass.seen_from(&step.frame).inertia(g);
-        }
+        link.inertia = match &site.mass {
+            Some(mass) => mass.seen_from(&step.frame).inertia(g),
+            None => {
+                let back = step.frame.pose(g).inverse();
+                Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation)
+            }
+        };
         match &mut link.motion {
             Motion::Turn { axis, coordinate } => shift(coordinate, *axis, step.offset),
             Motion::Slide { axis, .. } => *axis = step.frame.pose(g).rotation.to_child(*axis),

@@ -19,11 +19,13 @@ pub struct Passes {
     pub frames: bool,
     /// Mass properties are moved towards the base.
     pub regroup: bool,
+    /// What depends on parameters alone costs nothing: it is computed before.
+    pub free_parameters: bool,
 }
 
 impl Default for Passes {
     fn default() -> Passes {
-        Passes { frames: true, regroup: true }
+        Passes { frames: true, regroup: true, free_parameters: false }
     }
 }
 
@@ -44,7 +46,7 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
         regroup(&mut start, Regroup::default());
     }
     if passes.frames {
-        place_frames(&mut start);
+        place_frames(&mut start, passes.free_parameters);
     }
     if !passes.regroup {
         return vec![Form { model: start, anchored: false }];

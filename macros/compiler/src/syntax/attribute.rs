@@ -29,6 +29,8 @@ pub struct Requests {
     pub derivatives: bool,
     /// The matrix of the momentum, and its bias.
     pub centroidal: bool,
+    /// A second struct that holds what depends on the parameters alone.
+    pub prepare: bool,
 }
 
 /// The struct without its elements.
@@ -67,7 +69,7 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 2] = ["derivatives", "centroidal"];
+const REQUESTS: [&str; 3] = ["derivatives", "centroidal", "prepare"];
 
 /// The options that have a value.
 const OPTIONS: [&str; 10] =
@@ -319,7 +321,7 @@ fn read_options(
     cx: &mut Diagnostics,
 ) -> Option<UrdfOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    *requests = read_requests(&mut arguments, cx);
+    *requests = read_requests(&mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
@@ -358,9 +360,18 @@ fn read_options(
 }
 
 /// The words among the arguments.
-fn read_requests(arguments: &mut Arguments, cx: &mut Diagnostics) -> Requests {
-    let mut asked = |word| arguments.word_given(word).is_some();
-    let requests = Requests { derivatives: asked("derivatives"), centroidal: asked("centroidal") };
+fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut Diagnostics) -> Requests {
+    let mut asked = |word| arguments.word_given(word);
+    let prepare = asked("prepare");
+    let requests = Requests {
+        derivatives: asked("derivatives").is_some(),
+        centroidal: asked("centroidal").is_some(),
+        prepare: prepare.is_some(),
+    };
+    if let Some(place) = prepare.filter(|_| description.parameters.is_empty()) {
+        cx.error(place, "there is nothing to prepare: this mechanism has no parameters")
+            .help("remove `prepare`: all its numbers are computed at compile time");
+    }
     for e in arguments.take_plain() {
         match e.name() {
             None => cx.error(e.place.clone(), "expected `name = value`"),

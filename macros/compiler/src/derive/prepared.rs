@@ -1,0 +1,27 @@
+//! Functions of the word `prepare`: their programs begin with numbers that depend on the parameters alone, which are
+//! computed once and shared by all of them.
+
+use crate::emit::{Function, Prepared};
+use crate::expr::{Expr, Graph, Id};
+use crate::lower::{lower, place_hoisted};
+use crate::model::Quantity;
+use std::collections::BTreeMap;
+
+/// Numbers the values that programs name, in the order of their first use.
+pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
+    let mut numbers: Vec<Expr<'_>> = Vec::new();
+    let mut known: BTreeMap<(Id, bool), usize> = BTreeMap::new();
+    let mut place = |id: Id, negative: bool| {
+        let next = numbers.len();
+        let k = *known.entry((id, negative)).or_insert(next);
+        if k == next {
+            let e = graph.expr(id);
+            numbers.push(if negative { -e } else { e });
+        }
+        Quantity::Prepared(k).symbol()
+    };
+    for f in &mut functions {
+        place_hoisted(&mut f.program, &mut place);
+    }
+    Prepared { numbers: lower(&numbers).fused(), functions }
+}

@@ -1,0 +1,109 @@
+//! The functions of the configuration space.
+
+use super::function::Signature;
+use crate::model::Chart;
+use std::fmt::Write;
+
+/// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space; without its parts, for a
+/// mechanism that failed to compile, their bodies never return.
+pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
+        ManifoldFunction { name, about, signature, arguments, result }
+    };
+    let functions = [
+        on_manifold(
+            "integrate",
+            "`q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.",
+            format!("q: &{q}, dv: &{v}) -> {q}"),
+            [("q", s.nq), ("dv", s.nv)],
+            s.nq,
+        ),
+        on_manifold(
+            "difference",
+            "`to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            format!("from: &{q}, to: &{q}) -> {v}"),
+            [("from", s.nq), ("to", s.nq)],
+            s.nv,
+        ),
+        on_manifold(
+            "tangent_rate",
+            "Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).",
+            format!("dv: &{v}, v: &{v}) -> {v}"),
+            [("dv", s.nv), ("v", s.nv)],
+            s.nv,
+        ),
+    ];
+    for function in &functions {
+        function.write(out, charts);
+    }
+}
+
+/// One of the functions of the configuration space.
+struct ManifoldFunction {
+    name: &'static str,
+    about: &'static str,
+    signature: String,
+    arguments: [(&'static str, usize); 2],
+    result: usize,
+}
+
+impl ManifoldFunction {
+    fn write(&self, out: &mut String, charts: Option<&[Chart]>) {
+        let _ = writeln!(
+            out,
+            "/// {}\n#[inline]\n#[must_use]\npub fn {}(&self, {} {{",
+            self.about, self.name, self.signature
+        );
+        match charts {
+            Some(charts) => self.write_body(out, charts),
+            None => out.push_str("loop {}\n"),
+        }
+        out.push_str("}\n");
+    }
+
+    fn write_body(&self, out: &mut String, charts: &[Chart]) {
+        let range = |first: usize, n: usize, name: &str| {
+            let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
+            format!("[{}]", list.join(", "))
+        };
+        for (name, n) in self.arguments.iter().filter(|(_, n)| *n > 0) {
+            let _ = writeln!(out, "let [{}] = {name}.data.0;", range(0, *n, name));
+        }
+        let [(first, _), (second, _)] = self.arguments;
+        for chart in charts {
+            let (kind, (q, nq), (v, nv)) = match *chart {
+                Chart::Plain(q, v) => {
+                    let _ = match self.name {
+                        "integrate" => writeln!(out, "let r{q} = q{q} + dv{v};"),
+                        "difference" => writeln!(out, "let r{v} = to{q} - from{q};"),
+                        _ => writeln!(out, "let r{v} = v{v};"),
+                    };
+                    continue;
+                }
+                Chart::Ball(q, v) => ("ball", (q, 4), (v, 3)),
+                Chart::Free(q, v) => ("free", (q, 7), (v, 6)),
+            };
+            // What the result and the two arguments are made of: configurations or velocities.
+            let (on_q, on_v) = ((q, nq), (v, nv));
+            let (r, a, b) = match self.name {
+                "integrate" => (on_q, on_q, on_v),
+                "difference" => (on_v, on_q, on_q),
+                _ => (on_v, on_v, on_v),
+            };
+            let _ = writeln!(
+                out,
+                "let {} = ::linkwork::__private::{kind}_{}({}, {});",
+                range(r.0, r.1, "r"),
+                self.name,
+                range(a.0, a.1, first),
+                range(b.0, b.1, second)
+            );
+        }
+        let _ = writeln!(
+            out,
+            "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))",
+            range(0, self.result, "r")
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! The second struct of the word `prepare`: it holds the numbers that depend on the parameters alone, and has the
+//! functions of the first, which do what is left.
+
+use super::constants::write_sizes;
+use super::docs::operations;
+use super::function::{Function, Shape, Signature, write_function};
+use super::item::{ALLOW, Head, Interface};
+use super::manifold::write_manifold;
+use crate::lower::Program;
+use crate::model::Chart;
+use quote::ToTokens;
+use std::fmt::Write;
+
+/// What was derived.
+pub struct Prepared {
+    /// The numbers, of the parameters.
+    pub numbers: Program,
+    /// Functions of the state and the numbers.
+    pub functions: Vec<Function>,
+}
+
+/// What the functions are written from; nothing for a mechanism that failed to compile.
+#[derive(Default)]
+pub struct Content<'a> {
+    /// The numbers.
+    pub numbers: Option<&'a Program>,
+    /// Parts of the configuration space.
+    pub charts: Option<&'a [Chart]>,
+}
+
+/// Writes the struct, its functions, and `prepare`.
+pub fn write_prepared(
+    out: &mut String,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+    functions: &[Function],
+    content: &Content<'_>,
+) {
+    let (ident, head) = (&i.shell.ident, Head::new(i, s));
+    let name = format!("Prepared{}", ident.to_string().trim_start_matches("r#"));
+    let count = content.numbers.map_or(0, |numbers| numbers.outputs.len());
+    write_struct(out, i, s, &name, count, functions);
+    let s = &Signature { prepared: count, ..*s };
+    let mut methods = String::new();
+    write_sizes(&mut methods, i);
+    for f in functions {
+        write_function(&mut methods, f, s, content.numbers.is_none());
+    }
+    write_manifold(&mut methods, content.charts, s);
+    head.write_impls(out, &name, &methods, i, s);
+
+    let Head { generics, arguments, bounds } = &head;
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} {ident}{arguments} {bounds} {{
+        /// This mechanism with all numbers computed that depend on its parameters alone. It has the same functions, and
+        /// does not notice if the parameters change afterwards.
+        #[must_use]
+        pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers() }} }}"
+    );
+    let numbers = Function {
+        name: "__prepared_numbers".to_string(),
+        docs: Vec::new(),
+        arguments: Vec::new(),
+        shape: Shape::Array(count),
+        program: content.numbers.cloned().unwrap_or_default(),
+    };
+    write_function(out, &numbers, &Signature { prepared: 0, ..*s }, content.numbers.is_none());
+    out.push_str("}\n");
+}
+
+fn write_struct(
+    out: &mut String,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+    name: &str,
+    count: usize,
+    functions: &[Function],
+) {
+    let (ident, generics) = (&i.shell.ident, &i.shell.generics);
+    let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
+    let docs = format!(
+        "[`{ident}`] with the numbers computed that depend on its parameters alone, made by [`prepare`]({ident}::prepare): \
+         its functions are the same and do only what depends on their arguments. Frames stay with the mechanism itself.\n{}",
+        operations(functions)
+    );
+    let parameters = match generics.params.is_empty() {
+        true => String::new(),
+        false => format!("<{}>", spell(&generics.params)),
+    };
+    let _ = writeln!(
+        out,
+        "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} {{ numbers: [{}; {count}] }}",
+        spell(&i.shell.visibility),
+        spell(&generics.where_clause),
+        s.scalar.name()
+    );
+}

@@ -1,0 +1,111 @@
+//! Values that are known before a program runs: a program names them by symbols of their own, with either sign, and
+//! treats them as constants. Equal values of one graph have one name in all programs.
+
+use super::{Operand, Program};
+use crate::expr::{Id, Node, Symbol};
+
+/// Marks a symbol that names a node of the graph.
+const HOISTED: u32 = 1 << 31;
+/// Marks the negative of one.
+const MINUS: u32 = 1 << 30;
+
+/// The node that a symbol names, and whether its negative is meant; `None` for a symbol of the graph itself.
+pub fn hoisted(symbol: Symbol) -> Option<(Id, bool)> {
+    (symbol.0 & HOISTED != 0).then_some((symbol.0 & !(HOISTED | MINUS), symbol.0 & MINUS != 0))
+}
+
+/// Replaces the names of nodes by other symbols.
+pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
+    let mut placed = |o: Operand| match o {
+        Operand::Symbol(s) => match hoisted(s) {
+            Some((id, negative)) => Operand::Symbol(place(id, negative)),
+            None => o,
+        },
+        _ => o,
+    };
+    for op in &mut program.instructions {
+        *op = op.mapped(&mut placed);
+    }
+    for output in &mut program.outputs {
+        *output = placed(*output);
+    }
+}
+
+/// The name of a node as an operand.
+pub(super) fn operand(id: Id) -> Operand {
+    Operand::Symbol(Symbol(HOISTED | id))
+}
+
+/// True for a number that is known before.
+pub(super) fn is_known(o: Operand) -> bool {
+    match o {
+        Operand::Const(_) => true,
+        Operand::Symbol(s) => hoisted(s).is_some(),
+        Operand::Value(_) => false,
+    }
+}
+
+/// The negative of such a number.
+pub(super) fn negated(o: Operand) -> Operand {
+    match o {
+        Operand::Const(c) => Operand::Const(-c),
+        Operand::Symbol(Symbol(s)) => Operand::Symbol(Symbol(s ^ MINUS)),
+        Operand::Value(_) => o,
+    }
+}
+
+/// Which of these nodes, operands first, depend on known symbols alone. Plain numbers are none of them.
+pub(super) fn known_before(
+    nodes: &[Node],
+    place: impl Fn(Id) -> usize,
+    known: &dyn Fn(Symbol) -> bool,
+) -> Vec<bool> {
+    let mut before: Vec<bool> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        before.push(match node {
+            Node::Const(_) => false,
+            Node::Symbol(s) => known(*s),
+            _ => {
+                let mut all = true;
+                node.operands(|a| all &= before[place(a)] || matches!(nodes[place(a)], Node::Const(_)));
+                all
+            }
+        });
+    }
+    before
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::eval::eval_one;
+    use crate::expr::{Graph, Symbol};
+    use crate::lower::{hoisted, lower_without};
+
+    /// Two parameters and two variables: what the parameters make alone is not computed, not even to be negated.
+    #[test]
+    fn what_is_known_before_is_not_computed() {
+        let g = Graph::new();
+        let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
+        let known = |s: Symbol| s.0 < 2;
+        let value = |s: Symbol| 0.7 + f64::from(s.0);
+        let ml = m * l;
+        for (outputs, operations) in [
+            (vec![ml * l.sin() * x], 1),
+            (vec![-(ml * x * y)], 2),
+            (vec![-(m + l) * x, m - x, -(x - m)], 2),
+            (vec![m / (l + g.num(2.0)), g.num(3.0)], 0),
+            (vec![x * y - ml, ml - x * y + y], 3),
+        ] {
+            let program = lower_without(&outputs, &known);
+            let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value)).collect();
+            let found = program.run(&|s| match hoisted(s) {
+                Some((id, negative)) => eval_one(g.expr(id), &value) * if negative { -1.0 } else { 1.0 },
+                None => value(s),
+            });
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-14, "{found} is not {expected}");
+            }
+            assert_eq!(program.counts.total() + program.counts.calls, operations, "{outputs:?}");
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! A prepared mechanism has the functions of the mechanism itself, and does no work that its parameters alone decide.
+
+use linkwork::integrate::Error;
+use linkwork::simulate::Sample;
+use linkwork::{Real, at, mechanism, simulate};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::{compile, read};
+use std::path::Path;
+use support::compare::{assert_close, assert_same_dynamics};
+use support::random::Random;
+
+const TOLERANCE: f64 = 1e-11;
+
+/// An arm with a tool, a spring and friction; geometry, masses and elements in parameters.
+#[mechanism(gravity = -g * z, prepare, derivatives, centroidal)]
+struct Arm<T> {
+    g: T,
+    m: T,
+    l: T,
+    tilt: T,
+    stiffness: T,
+    damping: T,
+    dry: T,
+    #[body(mass = m, com = l / 2 * x + l / 9 * y, inertia = rod(m, l, x))]
+    upper: Body,
+    #[body(mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt)))]
+    lower: Body,
+    #[body(mass = m / 3, com = l / 6 * z, inertia = disk(m / 3, l / 4, z))]
+    hand: Body,
+    #[particle(mass = m / 5, at = hand.at(l / 3 * x))]
+    tool: Particle,
+    #[joint(ground.rotated(x(tilt)) -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(l * x + l / 8 * y).rotated(y(tilt)) -> lower, along = x, about = y)]
+    elbow: Slot,
+    #[joint(lower.at(l / 2 * x) -> hand)]
+    wrist: Ball,
+    #[acts(on = shoulder, stiffness = stiffness, free_angle = tilt)]
+    spring: Spring,
+    #[acts(between = (ground, tool), stiffness = stiffness / (l * l), free_length = l / 2)]
+    rope: Spring,
+    #[acts(on = elbow.slide, damping = damping)]
+    dashpot: Dashpot,
+    #[acts(on = elbow.turn, coulomb = dry, viscous = damping * l * l)]
+    friction: Friction,
+    #[acts(on = elbow.turn)]
+    motor: Torque,
+    #[acts(on = hand.at(l * y), along = x)]
+    jet: Force,
+    #[output(v(tool / ground / upper), resolved_in = upper)]
+    speed: Vector,
+}
+
+fn arm<T: Real>() -> Arm<T> {
+    let number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
+    Arm {
+        g: number(9.7),
+        m: number(1.3),
+        l: number(0.6),
+        tilt: number(0.4),
+        stiffness: number(30.0),
+        damping: number(0.7),
+        dry: number(0.2),
+    }
+}
+
+#[test]
+fn a_prepared_mechanism_is_the_mechanism() {
+    let arm = arm::<f64>();
+    let prepared: PreparedArm<f64> = arm.prepare();
+    assert_same_dynamics(&prepared, &arm, 20, TOLERANCE);
+    assert_eq!(PreparedArm::<f64>::VELOCITIES, Arm::<f64>::VELOCITIES);
+    let mut random = Random::new(5);
+    for _ in 0..10 {
+        let q = random.configuration(&arm);
+        let [v, a] = [random.vector(2.0), random.vector(2.0)];
+        let u = random.vector(3.0);
+        macro_rules! same {
+            ($($function:ident($($argument:expr),*)$(.$part:tt)?;)*) => {$(
+                assert_close(
+                    stringify!($function),
+                    prepared.$function($($argument),*)$(.$part)?.as_slice(),
+                    arm.$function($($argument),*)$(.$part)?.as_slice(),
+                    TOLERANCE,
+                );
+            )*};
+        }
+        same! {
+            generalized_forces(&q, &u);
+            center_of_mass(&q);
+            momentum(&q, &v);
+            speed(&q, &v);
+            speed_jacobian(&q, &v);
+            mass_matrix_inverse(&q);
+            coriolis_matrix(&q, &v);
+            inverse_dynamics_derivatives(&q, &v, &a).0;
+            inverse_dynamics_derivatives(&q, &v, &a).1;
+            forward_dynamics_derivatives(&q, &v, &a).0;
+            linearize(&q, &v, &u).0;
+            linearize(&q, &v, &u).1;
+            centroidal_momentum_matrix(&q);
+            centroidal_momentum_bias(&q, &v);
+        }
+        let powers = |m: [f64; 4]| m;
+        assert_close(
+            "powers",
+            &powers([
+                prepared.dissipated_power(&q, &v),
+                prepared.control_power(&q, &v, &u),
+                prepared.disturbance_power(&q, &v),
+                prepared.total_mass(),
+            ]),
+            &powers([
+                arm.dissipated_power(&q, &v),
+                arm.control_power(&q, &v, &u),
+                arm.disturbance_power(&q, &v),
+                arm.total_mass(),
+            ]),
+            TOLERANCE,
+        );
+    }
+}
+
+#[test]
+fn in_single_precision() {
+    let (single, double) = (arm::<f32>().prepare(), arm::<f64>());
+    let q = double.neutral();
+    let mass = single.mass_matrix(&q.cast::<f32>()).cast::<f64>();
+    assert_close("mass matrix", mass.as_slice(), double.mass_matrix(&q).as_slice(), 1e-6);
+}
+
+/// Parameters on a robot from a file.
+#[mechanism(urdf = "../models/urdf/panda.urdf", prepare)]
+#[derive(Clone, Copy)]
+struct LoadedPanda {
+    load: f64,
+    stiffness: f64,
+    #[particle(mass = load, at = panda_hand.at(0.1 * z))]
+    held: Particle,
+    #[acts(on = panda_joint4, stiffness = stiffness)]
+    balancer: Spring,
+}
+
+#[test]
+fn robot_with_a_load() {
+    let arm = LoadedPanda { load: 1.7, stiffness: 12.0 };
+    assert_same_dynamics(&arm.prepare(), &arm, 20, TOLERANCE);
+    // What is prepared does not follow the parameters.
+    let heavier = LoadedPanda { load: 2.0, ..arm };
+    assert_ne!(heavier.prepare(), arm.prepare());
+    assert_same_dynamics(&heavier.prepare(), &heavier, 5, TOLERANCE);
+}
+
+/// A bead on a hoop that is driven about the vertical.
+#[mechanism(gravity = -g * z, prepare)]
+struct Hoop {
+    g: f64,
+    m: f64,
+    radius: f64,
+    spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t))]
+    hoop: Frame,
+    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
+    bead: Particle,
+}
+
+#[test]
+fn driven_in_time() {
+    let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
+    let prepared = hoop.prepare();
+    for t in [0.0, 0.4] {
+        assert_same_dynamics(&at(&prepared, t), &at(&hoop, t), 5, TOLERANCE);
+    }
+    let end = |run: Result<Sample<f64, 1, 1, 0>, Error>| run.expect("it arrives").q[0];
+    let one = simulate(&prepared).from([0.5], [0.0]).duration(1.0).finish();
+    let other = simulate(&hoop).from([0.5], [0.0]).duration(1.0).finish();
+    assert!((end(one) - end(other)).abs() < 1e-9);
+}
+
+// ---- What is left to do ------------------------------------------------------------------------------------------
+
+const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
+
+/// Operations of the main functions, and of the prepared ones.
+fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
+        panic!("{}", cx.messages().join("\n"));
+    };
+    let main = |functions: &[linkwork_compiler::emit::Function]| {
+        MAIN.map(|name| functions.iter().find(|f| f.name == name).map_or(0, |f| f.program.counts.total()))
+    };
+    (main(&output.functions), output.prepared.map(|prepared| main(&prepared.functions)))
+}
+
+/// A 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986), and bodies without any symmetry;
+/// their mass properties are numbers or parameters.
+fn puma(parameters: bool) -> String {
+    let places = [
+        "ground",
+        "b0.rotated(x(-pi / 2))",
+        "b1.at(0.4318 * x + 0.15005 * z)",
+        "b2.at(0.0203 * x - 0.4318 * y).rotated(x(-pi / 2))",
+        "b3.rotated(x(pi / 2))",
+        "b4.rotated(x(-pi / 2))",
+    ];
+    let mut fields = String::new();
+    for (k, place) in places.iter().enumerate() {
+        let names = ["m", "cx", "cy", "cz", "xx", "yy", "zz", "xy", "xz", "yz"];
+        let numbers = [3.1, 0.11, -0.07, 0.05, 0.31, 0.37, 0.29, 0.011, -0.013, 0.017];
+        let [m, x, y, z, xx, yy, zz, xy, xz, yz] = std::array::from_fn(|i| match parameters {
+            true => format!("{}{k}", names[i]),
+            false => format!("{}", numbers[i] * (1.0 + 0.03 * (k * (i + 2) % 7) as f64)),
+        });
+        if parameters {
+            names.iter().for_each(|name| fields += &format!("{name}{k}: f64, "));
+        }
+        fields += &format!(
+            "#[body(mass = {m}, com = [{x}, {y}, {z}],
+                inertia = [[{xx}, {xy}, {xz}], [{xy}, {yy}, {yz}], [{xz}, {yz}, {zz}]])] b{k}: Body,
+             #[joint({place} -> b{k}, about = z)] j{k}: Pin,"
+        );
+    }
+    format!("pub struct Puma {{ {fields} }}")
+}
+
+/// Chains of rods about alternating axes; lengths and masses are numbers or parameters.
+fn chain(n: usize, parameters: bool) -> String {
+    let mut fields = String::new();
+    for k in 0..n {
+        let number = |name: &str, x: f64| if parameters { format!("{name}{k}") } else { format!("{x}") };
+        let (m, l) = (number("m", 2.0 + 0.1 * k as f64), number("l", 0.5 - 0.01 * k as f64));
+        let before = match parameters {
+            true => format!("l{}", k.max(1) - 1),
+            false => format!("{}", 0.5 - 0.01 * (k as f64 - 1.0)),
+        };
+        if parameters {
+            fields += &format!("m{k}: f64, l{k}: f64, ");
+        }
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at({before} * x)", k - 1) };
+        fields += &format!(
+            "#[body(mass = {m}, com = {l} / 2 * x, inertia = cylinder({m}, 0.05, {l}, x))] b{k}: Body,
+             #[joint({parent} -> b{k}, about = {})] j{k}: Pin,",
+            ["z", "y"][k % 2]
+        );
+    }
+    format!("pub struct Chain {{ {fields} }}")
+}
+
+/// Within ten per cent of the same mechanism in numbers, and exactly.
+#[test]
+fn parameters_cost_next_to_nothing() {
+    for (name, numbers, parameters, expected) in [
+        ("puma", puma(false), puma(true), [497, 467, 264, 893]),
+        ("chain of 4", chain(4, false), chain(4, true), [177, 158, 70, 278]),
+        ("chain of 8", chain(8, false), chain(8, true), [473, 450, 422, 1184]),
+    ] {
+        let (numbers, _) = operations("gravity = -9.81 * z", &numbers);
+        let (whole, prepared) = operations("gravity = -9.81 * z, prepare", &parameters);
+        let prepared = prepared.expect("it was asked for");
+        for k in 0..4 {
+            let (with, without) = (prepared[k] as f64, numbers[k] as f64);
+            assert!(with <= 1.1 * without, "{name}: {}: {with} operations, {without} with numbers", MAIN[k]);
+            assert!(prepared[k] < whole[k], "{name}: {}", MAIN[k]);
+        }
+        assert_eq!(prepared, expected, "{name}: {MAIN:?}");
+    }
+}
