@@ -209,13 +209,25 @@ pub enum Potential {}
 /// derivatives by the velocities resist the motion. A quadratic one dissipates `2 R`.
 pub enum Rayleigh {}
 
-/// An expression of the configuration that stays zero, `#[constraint(…)]`. Not yet supported.
+/// A constraint on configurations: an expression of coordinates and time that stays zero, `#[constraint(expression)]`, or
+/// two that stay equal, `#[constraint(norm(r(tip / base)) = length)]`. Scalars or vectors: rods, gears
+/// (`#[constraint(small = -ratio * large)]`), points on curves and surfaces.
+///
+/// A joint whose child has its place already closes a loop and needs no constraint of this kind.
 pub enum Holonomic {}
 
-/// An expression, linear in the velocities, that stays zero, `#[constraint(…)]`. Not yet supported.
+/// A constraint on velocities: an expression, linear in them, that stays zero, or two that stay equal:
+/// `#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]`. Terms of coordinates and time alone may be added.
 pub enum Nonholonomic {}
 
-/// A pair of surfaces that roll on each other without slip, `#[constraint(rolls(…, …))]`. Not yet supported.
+/// A pair of surfaces that touch and roll on each other without slip:
+/// `#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]`.
+///
+/// A surface belongs to a body or to one of its points, `body.at(vector).plane(normal)`, which is its centre or a point of
+/// it. What rolls is a `circle(radius, axis)` (the sharp rim of a disk), a `torus(radius, tube_radius, axis)` (`radius` is
+/// that of the tube's centre line), a `sphere(radius)` or an `ellipsoid(a, b, c)` (semi-axes along the body's axes); on a
+/// `plane(normal)`, whose normal points to what rolls on it. A sphere also rolls on a `sphere(radius)` and a
+/// `cylinder(radius, axis)`, and inside of a `bowl(radius)` and a `tube(radius, axis)`. Both bodies may move.
 pub enum Rolling {}
 
 /// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of

@@ -53,6 +53,22 @@ impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     }
 }
 
+/// The end of a step, brought onto the constraints that it has drifted off; [`Error::NotFinite`] and
+/// [`Error::Constraint`] name the start `t`.
+pub(crate) fn settled<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    end: State<T, NQ, NV>,
+    t: T,
+) -> Result<State<T, NQ, NV>, Error> {
+    let t = to_f64(t);
+    let end = end.finite().map_err(|_| Error::NotFinite { t })?;
+    if !system.is_constrained() {
+        return Ok(end);
+    }
+    let (q, v) = system.project(end.t, &end.q, &end.v).map_err(|reason| Error::Constraint { t, reason })?;
+    Ok(State { q, v, ..end })
+}
+
 /// What invalidates things that a method remembers from the step before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jump {

@@ -5,6 +5,7 @@
 //! - [`prelude`]: everything that a program with a mechanism needs, in one import.
 //! - [`elements`]: the words in which a mechanism is declared.
 //! - [`Mechanism`]: what every compiled mechanism offers.
+//! - [`Constrained`]: what those with closed loops, rolling or other constraints offer besides.
 //! - [`lanes`]: numbers of several states side by side, for evaluating a mechanism many times.
 //! - [`simulate()`]: its motion over time; [`integrate`] holds the methods.
 //!
@@ -19,6 +20,7 @@ extern crate self as linkwork;
 #[cfg(test)]
 extern crate std;
 
+pub use constraint::{Constrained, ConstraintError};
 pub use frame::{FrameIndex, NamedFrame};
 pub use lanes::Lanes;
 pub use linkwork_macros::mechanism;
@@ -27,6 +29,7 @@ pub use nalgebra;
 pub use rheonomic::{At, Rheonomic, at};
 pub use simulate::simulate;
 
+pub mod constraint;
 pub mod elements;
 mod frame;
 pub mod integrate;
@@ -45,13 +48,14 @@ pub mod prelude {
     pub use crate::elements::*;
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, SemiImplicitEuler};
     pub use crate::simulate::{Crossing, Sample, simulate};
-    pub use crate::{Mechanism, Real, at, frame, mechanism};
+    pub use crate::{Constrained, ConstraintError, Mechanism, Real, at, frame, mechanism};
     pub use nalgebra::{SMatrix, SVector};
 }
 
 /// What generated code calls; no part of the public interface.
 #[doc(hidden)]
 pub mod __private {
+    pub use crate::constraint::{least_multipliers, regular_solution};
     pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,

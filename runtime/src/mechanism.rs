@@ -1,5 +1,6 @@
 //! The trait that generic code (integrators, controllers, plotters) is written against.
 
+use crate::constraint::{Configuration, ConstraintError};
 use nalgebra::{RealField, SMatrix, SVector};
 
 /// The numbers that generated code can run on: every `Copy` real field of nalgebra, so `f64`, `f32`, dual
@@ -29,6 +30,20 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     const VELOCITIES: [&'static str; NV];
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
+
+    /// The coordinates are restricted by constraints ([`Constrained`](crate::Constrained)).
+    const CONSTRAINED: bool = false;
+
+    /// The state nearest to a given one that fulfils the constraints, if there are any.
+    ///
+    /// Errors: those of [`Constrained::project_state`](crate::Constrained::project_state).
+    fn project(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+        Ok((*q, *v))
+    }
 
     /// The configuration with all coordinates zero and unit quaternions.
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;

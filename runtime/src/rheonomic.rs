@@ -1,6 +1,7 @@
 //! Mechanisms whose equations contain time: driven cranks, rotating hoops, moving pivots. Integrators are written against
 //! this trait, which every [`Mechanism`] has too.
 
+use crate::constraint::{Configuration, ConstraintError};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -16,6 +17,21 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     const VELOCITIES: [&'static str; NV];
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
+
+    /// The coordinates are restricted by constraints ([`Mechanism::CONSTRAINED`]).
+    const CONSTRAINED: bool = false;
+
+    /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
+    ///
+    /// Errors: those of [`Constrained::project_state`](crate::Constrained::project_state).
+    fn project(
+        &self,
+        _t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+        Ok((*q, *v))
+    }
 
     /// The configuration with all coordinates zero and unit quaternions ([`Mechanism::neutral`]).
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
@@ -188,8 +204,19 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
     timeless!(pass);
     timed!(drop);
+
+    #[inline(always)]
+    fn project(
+        &self,
+        _t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+        Mechanism::project(self, q, v)
+    }
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for At<'_, M, T>
@@ -201,6 +228,16 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
     timeless!(inner);
     timed!(bind);
+
+    #[inline(always)]
+    fn project(
+        &self,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Result<Configuration<T, NQ, NV>, ConstraintError> {
+        self.mechanism.project(self.t, q, v)
+    }
 }

@@ -13,6 +13,7 @@ use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
 use crate::syntax::Requests;
 
+mod constraints;
 mod derivatives;
 mod dynamics;
 mod prepared;
@@ -93,6 +94,7 @@ fn functions<'g>(
     let sizes = Sizes::of(model);
     let passes = Passes { free_parameters: stage == Stage::Prepared, ..passes };
     let mut functions = signatures::always(&sizes);
+    constraints::replace(&mut functions, model);
     if requests.centroidal {
         functions.extend(signatures::centroidal(&sizes));
     }
@@ -105,7 +107,10 @@ fn functions<'g>(
             "control_power" => stage.program(&[power::control(model, joints)]),
             "disturbance_power" => stage.program(&[power::disturbance(model)]),
             "total_mass" => stage.program(&[energy::mass_and_moment(model, joints).0]),
-            name => dynamics.program(name).unwrap_or_default(),
+            name => match constraints::outputs(name, model) {
+                Some(outputs) => stage.program(&outputs),
+                None => dynamics.program(name).unwrap_or_default(),
+            },
         };
     }
     functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output, stage)));

@@ -14,7 +14,7 @@ mod derive;
 
 use derive::signatures::{self, Sizes};
 use diag::Diagnostics;
-use emit::{Emitted, Interface, emit_failed, emit_mechanism};
+use emit::{Constraints, Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
 use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
@@ -179,6 +179,7 @@ impl Source {
             units: m.units.clone(),
             time: m.time,
             velocity_inputs: m.velocity_inputs,
+            constraints: Constraints::of(m),
             ..self.bare_interface()
         }
     }
@@ -194,6 +195,7 @@ impl Source {
             inputs: Vec::new(),
             frames: Vec::new(),
             structure: d.joints.iter().map(structure_line).collect(),
+            constraints: Constraints::default(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: model::units::Units::default(),
             time: false,

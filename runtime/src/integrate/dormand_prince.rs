@@ -1,6 +1,6 @@
 //! The Dormand–Prince pair of orders 5 and 4 with adaptive steps.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, is_finite, positive};
+use super::{Dynamics, Error, Jump, Method, State, Step, is_finite, positive, settled};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
@@ -190,8 +190,9 @@ impl<T: Real> Method<T> for DormandPrince<T> {
             let longer = if h < wanted { larger.max(wanted) } else { larger };
             memory.step = Some(self.limited(if rejected { larger.min(h) } else { longer }));
             memory.error = error.max(constant(1e-4));
-            memory.acceleration = Some(trial.acceleration);
-            return Ok(trial.step);
+            let end = settled(system, trial.step.end, start.t)?;
+            memory.acceleration = (!system.is_constrained()).then_some(trial.acceleration);
+            return Ok(Step { end, ..trial.step });
         }
     }
 }

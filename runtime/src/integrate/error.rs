@@ -1,5 +1,6 @@
 //! Why a simulation stopped before its end.
 
+use crate::ConstraintError;
 use core::fmt;
 
 /// Why a simulation stopped before its end. Times in seconds.
@@ -31,6 +32,18 @@ pub enum Error {
         /// Time reached.
         t: f64,
     },
+    /// The state at the start does not fulfil the constraints: bring it there by `assemble` and `project_velocity`.
+    OffConstraints {
+        /// Time of the start.
+        t: f64,
+    },
+    /// The constraints cannot be fulfilled: the mechanism is locked, or a step went too far.
+    Constraint {
+        /// Time.
+        t: f64,
+        /// What is violated.
+        reason: ConstraintError,
+    },
     /// The equations of an implicit step were not solved: take smaller steps.
     NotConverged {
         /// Time at the start of the failed step.
@@ -51,6 +64,8 @@ impl fmt::Display for Error {
                 write!(f, "the tolerance asks for a step of {h} s at t = {t} s, which is too small")
             }
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
+            Self::OffConstraints { t } => write!(f, "the state at t = {t} s is off the constraints"),
+            Self::Constraint { t, reason } => write!(f, "at t = {t} s {reason}"),
             Self::NotConverged { t, iterations } => {
                 write!(f, "the implicit step at t = {t} s did not converge in {iterations} iterations")
             }

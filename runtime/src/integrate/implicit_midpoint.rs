@@ -1,6 +1,6 @@
 //! The implicit midpoint rule in momenta.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive};
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive, settled};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
@@ -121,7 +121,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let p = p + rate * h;
         let q = system.integrate(&q, &(v * half));
         let end = State { t, q, v: system.velocity(t, &q, &p, &(v + change)) };
-        let end = end.finite().map_err(|_| Error::NotFinite { t: to_f64(start.t) })?;
+        let end = settled(system, end, start.t)?;
         *memory = MidpointMemory { momentum: Some(p), change: end.v - v };
         let displacement = v * h;
         let step = Step::linear(*start, end, displacement);

@@ -1,8 +1,8 @@
 //! The classical Runge–Kutta method.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive};
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
-use crate::private::{constant, to_f64};
+use crate::private::constant;
 use nalgebra::SVector;
 
 /// The classical Runge–Kutta method, order 4, with fixed steps.
@@ -76,7 +76,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         let displacement = (k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth;
         let v = start.v + (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth;
         let end = State { t, q: system.integrate(&start.q, &displacement), v };
-        let end = end.finite().map_err(|_| Error::NotFinite { t: to_f64(start.t) })?;
+        let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

@@ -1,6 +1,6 @@
 //! The semi-implicit (symplectic) Euler method.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive};
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
 
 /// The semi-implicit Euler method, order 1: velocity first, then configuration with the new velocity.
@@ -46,7 +46,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         let v = start.v + before * h;
         let displacement = v * h;
         let end = State { t, q: system.integrate(&start.q, &displacement), v };
-        let end = end.finite().map_err(|_| Error::NotFinite { t: crate::private::to_f64(start.t) })?;
+        let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

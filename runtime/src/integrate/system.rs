@@ -1,5 +1,6 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
+use crate::constraint::{Configuration, ConstraintError};
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 
@@ -88,7 +89,20 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Generalized momentum `p`.
+    /// Whether constraints restrict the state.
+    fn is_constrained(&self) -> bool;
+
+    /// The state nearest to a given one that fulfils the constraints.
+    ///
+    /// Errors: [`ConstraintError`] if there is none.
+    fn project(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Result<Configuration<T, NQ, NV>, ConstraintError>;
+
+    /// Generalized momentum `p`; of a constrained mechanism the velocity itself stands for it.
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// `ṗ` under the inputs at time `t`.
@@ -151,15 +165,34 @@ where
         self.mechanism.forward_dynamics(t, q, v, &tau)
     }
 
+    fn is_constrained(&self) -> bool {
+        M::CONSTRAINED
+    }
+
+    fn project(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Result<Configuration<T, NQ, NV>, ConstraintError> {
+        self.mechanism.project(t, q, v)
+    }
+
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.generalized_momentum(t, q, v)
+        if M::CONSTRAINED { *v } else { self.mechanism.generalized_momentum(t, q, v) }
     }
 
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        if M::CONSTRAINED {
+            return self.acceleration(t, q, v);
+        }
         self.mechanism.momentum_rate(t, q, v) + self.forces(t, q, v)
     }
 
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        if M::CONSTRAINED {
+            return *p;
+        }
         // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the solution
         // a = M⁻¹ (p − b) − v.
         let missing = p - self.mechanism.generalized_momentum(t, q, v);

@@ -1,8 +1,8 @@
 //! The course of a run: steps of the integrator, samples, control instants and events in the order of time.
 
 use super::{Events, Flow, Hit, Sample, Simulation, positive};
-use crate::integrate::{Error, Inputs, Jump, Method, State, Step};
-use crate::private::{constant, epsilon};
+use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
+use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 
 /// Parts into which every step is divided in the search for events.
@@ -60,7 +60,13 @@ where
         self.duration.map_or(Ok(()), |duration| positive("the duration", duration))?;
         self.every.map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
-        let node = self.start.finite()?;
+        let node = self.on_constraints(self.start.finite()?)?;
+        let far = |a: T, b: T| (a - b).abs() > constant::<T>(1e-6) * (T::one() + a.abs());
+        let moved = node.q.iter().zip(&self.start.q).any(|(a, b)| far(*a, *b));
+        let changed = node.v.iter().zip(&self.start.v).any(|(a, b)| far(*a, *b));
+        if moved || changed {
+            return Err(Error::OffConstraints { t: to_f64(node.t) });
+        }
         self.events.begin(&node);
         Ok(Progress {
             node,
@@ -163,16 +169,24 @@ where
                 return Ok(None);
             }
             let theta = (t - step.start.t) / (step.end.t - step.start.t);
-            let state = State { t, ..step.at(&self.system, theta) };
+            let state = self.on_constraints(State { t, ..step.at(&self.system, theta) })?;
             return Ok(Some(self.sample(state, None)));
         }
         match event {
-            Some((hit, state)) => Ok(Some(self.fire(run, hit, state))),
+            Some((hit, state)) => {
+                let state = self.on_constraints(state)?;
+                Ok(Some(self.fire(run, hit, state)))
+            }
             None => {
                 (run.node, run.step, run.shown) = (step.end, None, false);
                 Ok(None)
             }
         }
+    }
+
+    /// A state brought onto the constraints, if there are any.
+    fn on_constraints(&self, state: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+        settled(&self.system, state, state.t)
     }
 
     /// Looks for the first event behind the cursor.

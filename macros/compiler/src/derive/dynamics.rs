@@ -4,7 +4,7 @@
 use super::Stage;
 use crate::expr::Expr;
 use crate::lower::Program;
-use crate::mechanics::{self, Joint, aba, crba, energy, frames, ldl, momentum, rnea};
+use crate::mechanics::{self, Joint, aba, constraints, crba, energy, frames, ldl, momentum, rnea};
 use crate::model::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
 
@@ -47,6 +47,8 @@ impl<'g> Dynamics<'g> {
             "inverse_dynamics" => return Some(self.inverse_dynamics.clone()),
             "bias_forces" => return Some(self.forms.recursion(false)),
             "forward_dynamics" => return Some(self.forms.forward_dynamics()),
+            "__constrained_dynamics" => return Some(self.forms.constrained_dynamics()),
+            "__constraint_correction" => return Some(self.forms.constraint_correction()),
             "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
             "potential_energy" => |m, j, _| vec![energy::potential_energy(m, j)],
             "generalized_momentum" => |m, j, v| momentum::generalized_momentum(m, j, v),
@@ -130,6 +132,34 @@ impl<'g> Forms<'g> {
             Some(program) if factorised.counts.total() * 20 > program.counts.total() * 21 => program,
             _ => factorised,
         }
+    }
+}
+
+impl<'g> Forms<'g> {
+    /// Accelerations and multipliers under the forces `tau`.
+    fn constrained_dynamics(&self) -> Program {
+        let bias = self.all.iter().min_by_key(|form| cost(&self.recursion_of(&form.model, false)));
+        let Some(bias) = bias.map(|form| &form.model) else { return Program::default() };
+        let v = mechanics::velocities(bias);
+        let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
+        let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
+        let force: Vec<Expr<'g>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
+        self.multipliers(&force, &constraints::biases(bias))
+    }
+
+    /// The same for forces and biases that are given.
+    fn constraint_correction(&self) -> Program {
+        let Some(form) = self.all.first() else { return Program::default() };
+        let (force, bias) = constraints::given(&form.model);
+        self.multipliers(&force, &bias)
+    }
+
+    fn multipliers(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        cheapest(self.plain().map(|model| {
+            let mass = crba::mass_matrix(model, &self.joints);
+            let rows = constraints::jacobian(model);
+            self.stage.program(&constraints::solve(model, &mass, &rows, force.to_vec(), bias.to_vec()))
+        }))
     }
 }
 

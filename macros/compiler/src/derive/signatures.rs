@@ -293,3 +293,38 @@ pub fn output(name: &str, size: usize, uses: Uses, sizes: &Sizes) -> Vec<Functio
     }
     functions
 }
+
+/// The functions of a mechanism with `nc` constraints, of which `nh` are on configurations, beside those that solve.
+pub fn constrained(sizes: &Sizes, nh: usize, nc: usize) -> Vec<Function> {
+    let nv = sizes.nv;
+    let (force, bias) = (Argument::Given("force", 0, nv), Argument::Given("bias", nv, nc));
+    let solution = Shape::Array(nv + 3 * nc);
+    vec![
+        sizes.function(
+            "constraint_residuals",
+            &[Q],
+            Shape::Vector(nh),
+            &["Residuals `φ(q)` of the constraints on configurations, m and rad: zero where they hold."],
+        ),
+        sizes.function(
+            "constraint_rates",
+            &[Q, V],
+            Shape::Vector(nc),
+            &["Rates `J(q) v + …` of all constraints, m/s and rad/s: zero where they hold."],
+        ),
+        sizes.function(
+            "constraint_jacobian",
+            &[Q],
+            Shape::Matrix(nc, nv),
+            &["Jacobian `J(q)` of the constraints: how their rates change with the velocities."],
+        ),
+        sizes.function(
+            "constraint_bias",
+            &[Q, V],
+            Shape::Vector(nc),
+            &["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
+        ),
+        sizes.function("__constrained_dynamics", &[Q, V, Tau], solution, &[]),
+        sizes.function("__constraint_correction", &[Q, force, bias], solution, &[]),
+    ]
+}

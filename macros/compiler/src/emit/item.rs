@@ -1,6 +1,7 @@
 //! The whole output: struct, inherent functions, trait, frames.
 
 use super::constants::write_constants;
+use super::constraints::{self, Constraints};
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
@@ -31,6 +32,8 @@ pub struct Interface<'a> {
     pub frames: Vec<String>,
     /// One line for each joint: what it joins.
     pub structure: Vec<String>,
+    /// The constraints.
+    pub constraints: Constraints,
     /// Names of the outputs.
     pub outputs: Vec<String>,
     /// Units of all of these and of the parameters.
@@ -103,6 +106,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
+    constraints::write_methods(&mut methods, &interface.constraints, &s);
     write_manifold(&mut methods, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
@@ -248,6 +252,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
         #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
     );
+    constraints::write_projection(out, &i.constraints, s);
 }
 
 /// Generics of the struct's implementations as text.
@@ -294,6 +299,16 @@ impl Head {
         );
         write_trait(out, i, s);
         out.push_str("}\n");
+        if !i.constraints.names.is_empty() {
+            let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
+            let sizes = sizes.map(|n| n.to_string()).join(", ");
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl{generics} ::linkwork::Constrained<{sizes}> for {name}{arguments} {bounds} {{"
+            );
+            constraints::write_trait(out, &i.constraints, s);
+            out.push_str("}\n");
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod body;
 mod constants;
+mod constraints;
 mod docs;
 pub mod frames;
 mod function;
@@ -12,6 +13,7 @@ mod matrices;
 mod prepared;
 mod scalar;
 
+pub use constraints::Constraints;
 pub use function::{Argument, Function, Shape};
 pub use item::{Emitted, Interface, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;

@@ -2,6 +2,7 @@
 //! functions of the first, which do what is left.
 
 use super::constants::write_sizes;
+use super::constraints;
 use super::docs::operations;
 use super::function::{Function, Shape, Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
@@ -46,6 +47,7 @@ pub fn write_prepared(
     for f in functions {
         write_function(&mut methods, f, s, content.numbers.is_none());
     }
+    constraints::write_methods(&mut methods, &i.constraints, s);
     write_manifold(&mut methods, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);
 

@@ -6,17 +6,34 @@ use super::kinematics::Joint;
 use crate::expr::Expr;
 
 /// The solution of `m x = r`.
-pub fn solve<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-    let Some(graph) = r.first().map(|e| e.graph()) else {
-        return r;
-    };
+pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let order = elimination_order(joints, r.len());
-    let mut inverse = vec![graph.zero(); r.len()];
+    solve_in(m, r, &order, 0).x
+}
+
+/// A solution with what tells whether it can be trusted.
+pub struct Solution<'g> {
+    /// The unknowns.
+    pub x: Vec<Expr<'g>>,
+    /// By index: the pivot.
+    pub pivots: Vec<Expr<'g>>,
+    /// By index: what the first so many indices have taken from the diagonal entry.
+    pub taken: Vec<Expr<'g>>,
+}
+
+/// The solution of `m x = r` for a symmetric `m`, eliminated in a given order.
+pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
+    let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
+    let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
     for (step, &k) in order.iter().enumerate() {
-        inverse[k] = graph.one() / m[k][k];
+        pivots[k] = m[k][k];
+        inverse[k] = m[k][k].num(1.0) / m[k][k];
         let rest: Vec<usize> = order[step + 1..].iter().copied().filter(|&i| !m[k][i].is_zero()).collect();
         for &i in &rest {
             let factor = m[k][i] * inverse[k];
+            if k < first {
+                taken[i] += factor * m[k][i];
+            }
             for &j in rest.iter().filter(|&&j| j <= i) {
                 let reduced = m[i][j] - factor * m[k][j];
                 m[i][j] = reduced;
@@ -25,7 +42,6 @@ pub fn solve<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, joints: &[Joint<'g>]) 
             r[i] = r[i] - factor * r[k];
         }
     }
-    let mut x = vec![graph.zero(); r.len()];
     for (step, &k) in order.iter().enumerate().rev() {
         let mut sum = r[k];
         for &i in order[step + 1..].iter().filter(|&&i| !m[k][i].is_zero()) {
@@ -33,7 +49,7 @@ pub fn solve<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, joints: &[Joint<'g>]) 
         }
         x[k] = sum * inverse[k];
     }
-    x
+    Solution { x, pivots, taken }
 }
 
 /// Entries of `v` from the leaves to the root.

@@ -4,7 +4,7 @@ use super::crba::Matrix;
 use super::kinematics::Joint;
 use crate::expr::Symbol;
 use crate::expr::eval::eval;
-use crate::model::{Model, Motion, Quantity};
+use crate::model::{Model, Quantity, random_configuration};
 
 /// Pivots below this part of their diagonal entry's first value count as zero.
 const TOLERANCE: f64 = 1e-11;
@@ -50,23 +50,4 @@ fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, see
         }
     }
     None
-}
-
-/// Random coordinates with unit quaternions.
-pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
-    let mut q: Vec<f64> = (0..model.nq())
-        .map(|k| 2.0 * crate::model::sample(Quantity::Configuration(k).symbol(), seed) - 2.0)
-        .collect();
-    for link in &model.links {
-        let first = match link.motion {
-            Motion::Ball { q, .. } => q,
-            Motion::Free { q, .. } => q + 3,
-            _ => continue,
-        };
-        let norm = q[first..first + 4].iter().map(|c| c * c).sum::<f64>().sqrt();
-        for c in &mut q[first..first + 4] {
-            *c /= norm;
-        }
-    }
-    q
 }

@@ -4,7 +4,7 @@ use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
 use super::resolve::Scope;
-use super::tree::{GROUND, Held, find_tree};
+use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
 use super::world::{Level, Placed, PlacedKind, View, World};
 use super::{
@@ -55,6 +55,8 @@ pub struct Builder<'a, 'g> {
     pub masses: Vec<Option<MassProperties<'g>>>,
     /// By joint.
     coordinates: Vec<JointCoordinates>,
+    /// Number of the group of constraints that is being added.
+    pub group: usize,
 }
 
 /// Checks a description and builds its model. `None` after a mistake; every mistake is in `cx`.
@@ -88,10 +90,11 @@ pub fn build_model<'g>(
         None => builder.check_joints(cx),
     }
     builder.add_masses(cx);
-    if order.is_some() && builder.is_placed() {
+    if let Some(order) = order.filter(|_| builder.is_placed()) {
         builder.know_motion();
         builder.add_actions(cx);
         builder.add_expressions(cx);
+        builder.add_constraints(&order.closing, cx);
         builder.find_dependencies();
         builder.add_frames();
         builder.check_finite(cx);
@@ -171,6 +174,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             frictions: Vec::new(),
             potentials: Vec::new(),
             dissipations: Vec::new(),
+            constraints: Vec::new(),
+            freedom: 0,
             loads: Vec::new(),
             inertances: Vec::new(),
             outputs: Vec::new(),
@@ -189,17 +194,19 @@ impl<'a, 'g> Builder<'a, 'g> {
             coordinates: Vec::new(),
             placeable,
             masses: Vec::new(),
+            group: 0,
         }
     }
 
-    /// Numbers `q` and `v` in the order of declaration. Joints that follow another one come after, since their
+    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow another one come after, since their
     /// masters may be declared later.
     fn number_coordinates(&mut self, cx: &mut Diagnostics) {
+        let closing = tree::closing(self.description);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
             let (q, v) = (self.model.nq(), self.model.nv());
             let mut plain = Vec::new();
-            if joint.mimic.is_none() {
+            if joint.mimic.is_none() && !closing[j] {
                 self.model.charts.extend(charts(joint.kind, q, v, joint.along.len()));
                 let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
                 for name in names_q {
@@ -286,7 +293,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
+    /// The joint's frame on the body of one of its ends.
+    pub fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx),
             None => Some(Vec3::zero(self.scope.graph)),
@@ -328,6 +336,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let d = self.description;
         let plain = d.actions.iter().all(|a| !needs_motion(a))
             && d.outputs.is_empty()
+            && d.constraints.is_empty()
             && d.dissipations.is_empty()
             && d.definitions.is_empty();
         if plain {

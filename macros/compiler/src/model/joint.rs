@@ -163,7 +163,7 @@ fn vanishes(e: Expr<'_>) -> bool {
 
 /// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
 /// other normal the first is orthogonal to the coordinate axis that the normal is farthest from.
-fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
+pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
     let graph = normal[0].graph();
     let n = normal.values()?;
     if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {

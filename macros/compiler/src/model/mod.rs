@@ -10,12 +10,16 @@ mod action;
 mod axis;
 mod build;
 mod carriers;
+mod constraint;
 mod inertia;
 mod joint;
 pub mod kinematics;
+mod mobility;
 mod outline;
 mod place;
+mod redundancy;
 mod resolve;
+mod rolling;
 mod terms;
 mod tree;
 pub mod units;
@@ -24,6 +28,7 @@ mod world;
 pub use axis::sample;
 pub use build::build_model;
 pub use outline::{Outline, Uses, outline};
+pub use redundancy::random_configuration;
 
 /// What a symbol of the expressions stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -373,6 +378,10 @@ pub struct Model<'g> {
     pub loads: Vec<Load<'g>>,
     /// Inertances.
     pub inertances: Vec<Inertance<'g>>,
+    /// Scalar constraints; those on configurations first.
+    pub constraints: Vec<Constraint<'g>>,
+    /// Degrees of freedom: independent velocities.
+    pub freedom: usize,
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
     /// Units of parameters, coordinates, inputs and outputs.
@@ -398,6 +407,23 @@ pub struct Inertance<'g> {
     pub rate: Expr<'g>,
     /// Inertance `b`.
     pub inertance: Expr<'g>,
+}
+
+/// A scalar constraint: `rate` stays zero, and so does `residual` if it restricts configurations.
+#[derive(Clone, Debug)]
+pub struct Constraint<'g> {
+    /// Its name: that of the joint or constraint, and which component.
+    pub name: String,
+    /// Where that stands.
+    pub place: Place,
+    /// An expression of configuration and time whose derivative is `rate`; none for a constraint on velocities alone.
+    pub residual: Option<Expr<'g>>,
+    /// Linear in the velocities, with a term that does not contain them where something is driven in time.
+    pub rate: Expr<'g>,
+    /// Derivative of `rate` at zero accelerations.
+    pub bias: Expr<'g>,
+    /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
+    pub group: usize,
 }
 
 /// An expression that becomes a function.
@@ -428,5 +454,10 @@ impl<'g> Model<'g> {
     /// Number of entries of `u`.
     pub fn nu(&self) -> usize {
         self.inputs.len()
+    }
+
+    /// Number of constraints on configurations.
+    pub fn holonomic(&self) -> usize {
+        self.constraints.iter().filter(|c| c.residual.is_some()).count()
     }
 }

@@ -3,7 +3,7 @@
 
 use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
-use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Law};
+use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Joint, Law};
 use std::collections::BTreeSet;
 
 /// A guess at the interface of a mechanism.
@@ -72,12 +72,14 @@ pub fn outline(d: &Description) -> Outline {
 /// Names of the entries of `q`, `v` and `u`.
 fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
+    let closing = super::tree::closing(d);
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();
         q.extend(free.iter().cloned());
         v.extend(free);
-        let Some(joint) = d.joints.get(j).filter(|joint| joint.mimic.is_none()) else { continue };
+        let holds = |joint: &&Joint| joint.mimic.is_none() && !closing[j];
+        let Some(joint) = d.joints.get(j).filter(holds) else { continue };
         let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));

@@ -1,8 +1,9 @@
-//! Topology: which joint holds which body, and the order in which links are built.
+//! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
 
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
-use crate::syntax::{Description, Name};
+use crate::syntax::{Description, Expr, ExprKind, Name};
+use std::collections::BTreeMap;
 
 /// The name of what does not move.
 pub const GROUND: &str = "ground";
@@ -17,10 +18,60 @@ pub struct Held<'a> {
 }
 
 /// The joints in an order in which every parent is placed before its children, with the bodies they join
-/// (`None` for the ground). `None` after a mistake.
+/// (`None` for the ground), and the joints that close loops.
 pub struct Order {
     /// Joint, parent, child.
     pub joints: Vec<(usize, Option<BodyIndex>, BodyIndex)>,
+    /// Joints whose child has its place already.
+    pub closing: Vec<usize>,
+}
+
+/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and those that
+/// would let it hang from itself. All others hold their child: they are the spanning tree.
+pub fn closing(description: &Description) -> Vec<bool> {
+    let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
+    for point in &description.points {
+        if let Some(base) = point.on.as_ref().and_then(base_name) {
+            parents.insert(&point.name.text, base);
+        }
+    }
+    for particle in &description.particles {
+        if let Some(at) = &particle.at {
+            parents.insert(&particle.name.text, base_name(at).unwrap_or(GROUND));
+        }
+    }
+    let mut closing = Vec::with_capacity(description.joints.len());
+    for joint in &description.joints {
+        let (parent, child) = (joint.parent.body.text.as_str(), joint.child.body.text.as_str());
+        let known = child == GROUND
+            || parents.contains_key(child)
+            || description.points.iter().any(|p| p.name.text == child);
+        let closes = known || (parent != child && carries(&parents, child, parent));
+        if !closes {
+            parents.insert(child, parent);
+        }
+        closing.push(closes);
+    }
+    closing
+}
+
+/// True if one thing hangs from another.
+fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
+    let mut at = Some(carried);
+    (0..=parents.len()).any(|_| {
+        let here = at;
+        at = here.and_then(|name| parents.get(name).copied());
+        here == Some(carrier)
+    })
+}
+
+/// The name that `body.at(vector)` starts with.
+fn base_name(e: &Expr) -> Option<&str> {
+    match &e.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Method(base, ..) => base_name(base),
+        _ => None,
+    }
 }
 
 /// Finds the tree of the joints.
@@ -45,53 +96,32 @@ pub fn find_tree(
         }
     };
     let mut parents: Vec<Option<usize>> = vec![None; held.len()];
-    let mut ends = Vec::new();
+    let (mut ends, mut loops) = (Vec::new(), Vec::new());
     let mut sound = true;
+    let closing = closing(description);
     for (j, joint) in description.joints.iter().enumerate() {
         let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {
             sound = false;
             continue;
         };
-        let Some(child) = child else {
+        let name = &joint.child.body;
+        if joint.parent.body.text == name.text {
             sound = false;
-            // A body of this name was reported.
+            // A body called ground was reported.
             if held.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
-            let name = &joint.child.body;
-            if name.text == GROUND {
-                cx.error(name.place.clone(), "the ground cannot be the child of a joint")
-                    .help("turn the joint around: `ground -> body`");
-            } else {
-                cx.error(name.place.clone(), format!("`{}` already has a place", name.text))
-                    .help("leave its `at` out to hold it by a joint");
+            cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text));
+            continue;
+        }
+        match child {
+            Some(child) if !closing[j] => {
+                parents[child] = Some(j);
+                ends.push((j, parent, child));
             }
-            continue;
-        };
-        if parent == Some(child) {
-            cx.error(
-                joint.child.body.place.clone(),
-                format!("`{}` is joined to itself", held[child].name.text),
-            );
-            sound = false;
-            continue;
+            _ => loops.push(j),
         }
-        if let Some(first) = parents[child] {
-            let name = &description.joints[first].name;
-            cx.error(
-                joint.child.body.place.clone(),
-                format!(
-                    "`{}` is already held by `{}`: a closed loop is not yet supported",
-                    held[child].name.text, name.text
-                ),
-            );
-            cx.error(name.place.clone(), format!("`{}` is first held here", held[child].name.text));
-            sound = false;
-            continue;
-        }
-        parents[child] = Some(j);
-        ends.push((j, parent, child));
     }
     if !sound {
         return None;
@@ -99,18 +129,33 @@ pub fn find_tree(
     let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in held.iter().enumerate() {
         if parents[k].is_none() && !is_placed(k) {
-            cx.error(body.name.place.clone(), format!("nothing holds `{}`", body.name.text))
-                .help(format!("add a joint `ground -> {}`, a Free one if it moves freely", body.name.text));
+            report_unheld(description, body.name, &loops, cx);
             sound = false;
         }
     }
     let roots: Vec<BodyIndex> = (0..held.len()).filter(|k| is_placed(*k)).collect();
     let order = sort(&ends, held.len(), &roots);
-    if sound && order.len() < ends.len() {
-        report_cycles(description, &ends, held, cx);
-        sound = false;
+    sound.then_some(Order { joints: order, closing: loops })
+}
+
+/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from itself.
+fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
+    let name = &body.text;
+    let joints = || loops.iter().map(|j| &description.joints[*j]);
+    if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
+        cx.error(
+            joint.name.place.clone(),
+            format!("`{name}` hangs from itself: its joints form a cycle that the ground is not part of"),
+        )
+        .help(format!("let one of them begin at the ground, as in `ground -> {name}`"));
+    } else if let Some(joint) = joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
+    {
+        cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
+            .help(format!("turn the joint around, `ground -> {name}`, or hold `{name}` by another one"));
+    } else {
+        cx.error(body.place.clone(), format!("nothing holds `{name}`"))
+            .help(format!("add a joint `ground -> {name}`, a Free one if it moves freely"));
     }
-    sound.then_some(Order { joints: order })
 }
 
 /// Depth first from the ground, siblings in declaration order; what is not reached is left out.
@@ -131,36 +176,6 @@ fn sort(
         todo.extend(children[ends[k].2].iter().rev());
     }
     order
-}
-
-/// Reports every cycle once: from each body that is not reached, the joints are followed up until one is met again.
-fn report_cycles(
-    description: &Description,
-    ends: &[(usize, Option<BodyIndex>, BodyIndex)],
-    held: &[Held<'_>],
-    cx: &mut Diagnostics,
-) {
-    let mut above: Vec<Option<(usize, BodyIndex)>> = vec![None; held.len()];
-    for (joint, parent, child) in ends {
-        above[*child] = parent.map(|parent| (*joint, parent));
-    }
-    let mut walks: Vec<Option<usize>> = vec![None; held.len()];
-    for start in 0..held.len() {
-        let mut body = start;
-        while let (None, Some((_, parent))) = (walks[body], above[body]) {
-            walks[body] = Some(start);
-            body = parent;
-        }
-        if let (Some((joint, _)), true) = (above[body], walks[body] == Some(start)) {
-            let (joint, name) = (&description.joints[joint].name, &held[body].name.text);
-            cx.error(
-                joint.place.clone(),
-                format!("`{name}` hangs from itself: its joints form a cycle that the ground is not part of"),
-            )
-            .help(format!("let one of them begin at the ground, as in `ground -> {name}`"));
-        }
-        walks[body].get_or_insert(start);
-    }
 }
 
 fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {

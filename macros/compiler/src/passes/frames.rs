@@ -138,6 +138,8 @@ fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         potentials: _,
         dissipations: _,
         loads: _,
+        constraints: _,
+        freedom: _,
         inertances: _,
         outputs: _,
         units: _,

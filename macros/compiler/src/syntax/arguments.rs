@@ -7,9 +7,11 @@ use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
 
-/// The arguments of an attribute: at most one relation `a -> b`, and `key = value` in any order.
+/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions, and
+/// `key = value` in any order.
 pub struct Arguments {
     relation: Option<(Expr, Expr)>,
+    equation: Option<(Expr, Expr)>,
     plain: Vec<Expr>,
     named: Vec<(Name, Value)>,
     seen: Vec<Name>,
@@ -207,6 +209,22 @@ impl Arguments {
         self.relation.take()
     }
 
+    /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands alone.
+    pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
+        if let Some((left, right)) = self.equation.take() {
+            return Some((left, Some(right)));
+        }
+        let is_expr = |(_, value): &(Name, Value)| matches!(value, Value::Expr(_));
+        if let Some(at) = self.named.iter().position(is_expr)
+            && self.plain.is_empty()
+            && let (name, Value::Expr(right)) = self.named.remove(at)
+        {
+            return Some((Expr { kind: ExprKind::Name(name.text), place: name.place }, Some(right)));
+        }
+        let first = (!self.plain.is_empty()).then(|| self.plain.remove(0));
+        first.map(|e| (e, None))
+    }
+
     /// Reports what was not taken; `whose` is the element with its article.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         for (name, _) in self.named.drain(..) {
@@ -221,6 +239,10 @@ impl Arguments {
         for e in self.plain.drain(..) {
             cx.error(e.place, "expected `name = value`").suggest("", known.iter().copied());
         }
+        if let Some((left, right)) = self.equation.take() {
+            cx.error(left.place.to(&right.place), "expected `name = value`")
+                .suggest("", known.iter().copied());
+        }
         if let Some((parent, child)) = self.relation.take() {
             cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
                 .help("`parent -> child` stands in a joint");
@@ -231,6 +253,7 @@ impl Arguments {
 fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments> {
     let mut arguments = Arguments {
         relation: None,
+        equation: None,
         plain: Vec::new(),
         named: Vec::new(),
         seen: Vec::new(),
@@ -275,6 +298,17 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             return Err(syn::Error::new(arrow.spans[0], "a second `parent -> child`"));
         }
         arguments.relation = Some((first, second));
+    } else if (input.peek(Token![=]) && !input.peek(Token![=>])) || input.peek(Token![==]) {
+        let sign = input.span();
+        let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
+        if input.is_empty() || input.peek(Token![,]) {
+            return Err(syn::Error::new(sign, "nothing stands behind this sign"));
+        }
+        let second = parse_expr(input)?;
+        if arguments.equation.is_some() {
+            return Err(syn::Error::new(sign, "a second equation"));
+        }
+        arguments.equation = Some((first, second));
     } else {
         arguments.plain.push(first);
     }

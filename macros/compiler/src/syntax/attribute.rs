@@ -198,6 +198,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         outputs: Vec::new(),
         energies: Vec::new(),
         dissipations: Vec::new(),
+        constraints: Vec::new(),
     }
 }
 

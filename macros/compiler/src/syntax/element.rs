@@ -4,8 +4,8 @@ use super::action::{article, read_action};
 use super::arguments::Arguments;
 use super::expression::parse_expr;
 use super::{
-    ActionKind, Body, Definition, Description, Endpoint, Expr, ExprKind, Frame, FreeCoordinate, Joint,
-    JointKind, Name, Particle, Point,
+    ActionKind, Body, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind, Frame,
+    FreeCoordinate, Joint, JointKind, Name, Particle, Point,
 };
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
@@ -49,19 +49,19 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 8] = [
+const OTHERS: [(&str, &[&str]); 11] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
     ("Point", &["point"]),
     ("Potential", &["energy"]),
     ("Rayleigh", &["dissipation"]),
+    ("Holonomic", &["constraint"]),
+    ("Nonholonomic", &["constraint"]),
+    ("Rolling", &["constraint"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
 ];
-
-/// Elements of the language that are not yet compiled.
-const LATER: [&str; 3] = ["Holonomic", "Nonholonomic", "Rolling"];
 
 /// Words of other trades, and the element that they mean.
 const SYNONYMS: [(&str, &str); 23] = [
@@ -120,7 +120,6 @@ fn element_types() -> Vec<&'static str> {
     all.extend(JOINTS.iter().map(|(name, _)| *name));
     all.extend(ACTIONS);
     all.extend(OTHERS.iter().map(|(name, _)| *name));
-    all.extend(LATER);
     all
 }
 
@@ -133,14 +132,6 @@ pub fn read_element(
     cx: &mut Diagnostics,
 ) {
     let kind_name = kind.to_string();
-    if LATER.contains(&kind_name.as_str()) {
-        // The grammar of its attribute is checked all the same.
-        for attribute in attributes.iter().filter(|a| is_one_of(a, &ATTRIBUTES)) {
-            let _ = Arguments::of(attribute, cx);
-        }
-        cx.error(kind.span(), format!("`{kind_name}` is not yet supported"));
-        return;
-    }
     if let Some((_, expected)) = OTHERS.iter().find(|(other, _)| *other == kind_name) {
         let given = attributes.iter().find(|a| is_one_of(a, expected));
         let word = given.map(spelt).or(expected.first().map(ToString::to_string));
@@ -455,8 +446,44 @@ fn read_other(
             arguments.finish("a Point", &["on", "at"], cx);
             description.points.push(Point { name, on, at });
         }
+        "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
+        "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
+        "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
         _ => read_expression(name, kind, attribute, arguments, description, cx),
     }
+}
+
+/// An equation or an expression that stays zero, or a rolling pair.
+fn read_constraint(
+    name: Name,
+    kind: ConstraintKind,
+    arguments: &mut Arguments,
+    description: &mut Description,
+    cx: &mut Diagnostics,
+) {
+    let found = arguments.take_equation();
+    let (whose, example) = match kind {
+        ConstraintKind::Holonomic => {
+            ("a Holonomic constraint", "#[constraint(norm(r(tip / base)) = length)]")
+        }
+        ConstraintKind::Nonholonomic => {
+            ("a Nonholonomic constraint", "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]")
+        }
+        ConstraintKind::Rolling => {
+            ("a Rolling constraint", "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]")
+        }
+    };
+    arguments.finish(whose, &[], cx);
+    let Some((value, other)) = found else {
+        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+            .help(format!("write `{example}`"));
+        return;
+    };
+    if let (ConstraintKind::Rolling, Some(other)) = (kind, &other) {
+        cx.error(other.place.clone(), "a rolling pair is no equation").help(format!("write `{example}`"));
+        return;
+    }
+    description.constraints.push(Constraint { name, kind, value, other });
 }
 
 /// Elements that are one expression.

@@ -171,6 +171,32 @@ pub struct Description {
     pub energies: Vec<(Name, Expr)>,
     /// Rayleigh dissipation functions.
     pub dissipations: Vec<(Name, Expr)>,
+    /// Constraints beside those of joints that close loops.
+    pub constraints: Vec<Constraint>,
+}
+
+/// What a constraint restricts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConstraintKind {
+    /// Configurations.
+    Holonomic,
+    /// Velocities.
+    Nonholonomic,
+    /// Two surfaces that touch and do not slip.
+    Rolling,
+}
+
+/// An expression that stays zero, or two that stay equal; or a rolling pair.
+#[derive(Clone, Debug)]
+pub struct Constraint {
+    /// Its name.
+    pub name: Name,
+    /// What it restricts.
+    pub kind: ConstraintKind,
+    /// The expression, a scalar or a vector, or `rolls(surface, surface)`.
+    pub value: Expr,
+    /// What it stays equal to; zero if absent.
+    pub other: Option<Expr>,
 }
 
 /// A generalized coordinate that belongs to no joint.

@@ -7,7 +7,10 @@ use super::si::{
 };
 use super::unify::Dimension;
 use crate::model::inertia::SOLIDS;
-use crate::syntax::{Action, ActionKind, Body, Description, Endpoint, Expr, ExprKind, Joint, Law, Target};
+use crate::syntax::{
+    Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
+    Target,
+};
 
 /// An expression with the dimension of its place.
 pub struct Task<'a> {
@@ -66,6 +69,9 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     }
     for action in &d.actions {
         places.action(action, inference);
+    }
+    for constraint in &d.constraints {
+        places.constraint(constraint, inference);
     }
     for (_, e) in &d.energies {
         places.add(e, &ENERGY, "J");
@@ -237,6 +243,28 @@ impl<'a> Places<'a> {
                     self.input(action, direction.as_ref(), force, inference);
                 }
             }
+        }
+    }
+
+    /// Both sides are alike, whatever they are; the lengths of rolling surfaces are lengths.
+    fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+        if constraint.kind != ConstraintKind::Rolling {
+            let side = Dimension::variable(inference.system.variable());
+            self.add(&constraint.value, &side, "");
+            self.all(&constraint.other, &side, "");
+            return;
+        }
+        let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
+        for surface in pair {
+            let ExprKind::Method(home, word, arguments) = &surface.kind else { continue };
+            self.points.push(home);
+            let axis = match word.text.as_str() {
+                "circle" | "torus" | "plane" | "cylinder" | "tube" => arguments.len().saturating_sub(1),
+                _ => arguments.len(),
+            };
+            let (lengths, axes) = arguments.split_at(axis);
+            self.all(lengths, &LENGTH, "m");
+            self.all(axes, &PLAIN, "1");
         }
     }
 

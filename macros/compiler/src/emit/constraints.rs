@@ -1,0 +1,150 @@
+//! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
+//! projection.
+
+use super::function::{Argument, Signature};
+use crate::model::Model;
+use std::fmt::Write;
+
+/// The scalar constraints of a mechanism.
+#[derive(Clone, Debug, Default)]
+pub struct Constraints {
+    /// Their names, those on configurations first.
+    pub names: Vec<String>,
+    /// How many restrict configurations.
+    pub holonomic: usize,
+    /// Which are components of one vector: those of one number.
+    pub groups: Vec<usize>,
+}
+
+impl Constraints {
+    /// Those of a model.
+    pub fn of(model: &Model<'_>) -> Constraints {
+        Constraints {
+            names: model.constraints.iter().map(|c| c.name.clone()).collect(),
+            holonomic: model.holonomic(),
+            groups: model.constraints.iter().map(|c| c.group).collect(),
+        }
+    }
+}
+
+/// Types and calls, as they are spelt.
+struct Words {
+    q: String,
+    v: String,
+    residuals: String,
+    multipliers: String,
+    /// `t: f64, ` where functions take time.
+    t: String,
+    /// `t, ` where they do.
+    pass: &'static str,
+    /// What stands for time where it does not matter.
+    any: String,
+}
+
+impl Words {
+    fn new(c: &Constraints, s: &Signature<'_>) -> Words {
+        let scalar = s.scalar.name();
+        Words {
+            q: s.vector(s.nq),
+            v: s.vector(s.nv),
+            residuals: s.vector(c.holonomic),
+            multipliers: s.vector(c.names.len()),
+            t: if s.time { format!("t: {scalar}, ") } else { String::new() },
+            pass: if s.time { "t, " } else { "" },
+            any: if s.time {
+                "t".to_string()
+            } else {
+                format!("::linkwork::__private::constant::<{scalar}>(0.0)")
+            },
+        }
+    }
+}
+
+/// The inherent functions.
+pub fn write_methods(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if c.names.is_empty() {
+        return;
+    }
+    let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
+    let (nv, nc, nh) = (s.nv, c.names.len(), c.holonomic);
+    let n = nv + 3 * nc;
+    let scalar = s.scalar.name();
+    let _ = writeln!(
+        out,
+        "/// Number of scalar constraints.\npub const NC: usize = {nc};
+        /// Number of constraints on configurations: the first of all.\npub const NH: usize = {nh};
+        /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {nc}] = {:?};
+        /// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
+        ///
+        /// Lagrange multipliers by a sparse elimination; where the configuration is singular or constraints are redundant, by least squares.
+        #[inline]\n#[must_use]
+        pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
+            self.constrained_dynamics({pass}q, v, tau).0
+        }}
+        /// Acceleration, and the multipliers `λ` of the constraints: N for lengths, N·m for angles; of redundant constraints those of least norm.
+        #[inline]\n#[must_use]
+        pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
+            let found = self.__constrained_dynamics({pass}q, v, tau);
+            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
+                ::core::option::Option::Some(solution) => solution,
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
+            }}
+        }}
+        /// The change of velocity of least kinetic energy that takes the rates `gap` of the constraints away: `J x = −gap`.
+        #[inline]\n#[must_use]
+        pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
+            let zero = <{v}>::from_array_storage(::linkwork::nalgebra::ArrayStorage([[::linkwork::__private::constant::<{scalar}>(0.0); {nv}]]));
+            let found = self.__constraint_correction({pass}q, &zero.data.0[0], &gap.data.0[0]);
+            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
+                ::core::option::Option::Some(solution) => solution.0,
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &zero, gap).0,
+            }}
+        }}
+        /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::assemble(self, {any}, q, held)
+        }}
+        /// The configuration nearest to `q` that fulfils the constraints.
+        pub fn project_configuration(&self, {t}q: &{q}) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::project_configuration(self, {any}, q)
+        }}
+        /// The velocity nearest to `v` that fulfils the constraints.
+        pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::project_velocity(self, {any}, q, v)
+        }}",
+        c.names,
+        groups = c.groups
+    );
+}
+
+/// Overrides of the trait's projection.
+pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if c.names.is_empty() {
+        return;
+    }
+    let Words { q, v, t, any, .. } = Words::new(c, s);
+    let _ = writeln!(
+        out,
+        "const CONSTRAINED: bool = true;
+        #[inline]\nfn project(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::project_state(self, {any}, q, v)
+        }}"
+    );
+}
+
+/// The trait of constrained mechanisms, in terms of the inherent functions.
+pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    let Words { q, v, residuals, multipliers, pass, .. } = Words::new(c, s);
+    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
+    let t = Argument::T.name();
+    let _ = writeln!(
+        out,
+        "const CONSTRAINTS: [&'static str; {nc}] = Self::CONSTRAINTS;
+        #[inline]\nfn constraint_residuals(&self, {t}: {scalar}, q: &{q}) -> {residuals} {{ Self::constraint_residuals(self, {pass}q) }}
+        #[inline]\nfn constraint_rates(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_rates(self, {pass}q, v) }}
+        #[inline]\nfn constraint_jacobian(&self, {t}: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {nc}, {nv}> {{ Self::constraint_jacobian(self, {pass}q) }}
+        #[inline]\nfn constraint_bias(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_bias(self, {pass}q, v) }}
+        #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
+        #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}"
+    );
+}

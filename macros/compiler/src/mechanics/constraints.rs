@@ -1,0 +1,111 @@
+//! Constrained motion by Lagrange multipliers: `M v̇ + h = τ + Jᵀ λ` with `J v̇ + J̇ v = 0`, one symmetric system
+//!
+//! ```text
+//! | M  Jᵀ | |  v̇ |   | τ − h |
+//! | J  0  | | −λ | = | −J̇ v  |
+//! ```
+//!
+//! that is eliminated symbolically, so that its zeros stay zeros (Featherstone 2008, ch. 8.5). A multiplier is eliminated
+//! after the velocities that its row names: its pivot is then the part of `−J M⁻¹ Jᵀ` that no other row explains.
+
+use super::crba::Matrix;
+use super::kinematics::velocity_gradient;
+use super::ldl::{Solution, solve_in};
+use crate::expr::Expr;
+use crate::model::{Model, Quantity};
+
+/// `J`: a row for each constraint, a column for each velocity.
+pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
+    let row = |c: &crate::model::Constraint<'g>| {
+        let mut row = vec![model.graph.zero(); model.nv()];
+        velocity_gradient(c.rate).into_iter().for_each(|(k, d)| row[k] = d);
+        row
+    };
+    model.constraints.iter().map(row).collect()
+}
+
+/// Residuals of the constraints on configurations.
+pub fn residuals<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.constraints.iter().filter_map(|c| c.residual).collect()
+}
+
+/// Rates `J v + …` of all constraints.
+pub fn rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.constraints.iter().map(|c| c.rate).collect()
+}
+
+/// `J̇ v + …`: derivatives of the rates at zero accelerations.
+pub fn biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.constraints.iter().map(|c| c.bias).collect()
+}
+
+/// Accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then what tells whether they can be trusted: for
+/// each constraint its pivot, and what that was before other constraints took their part of it, summed
+/// over its group.
+pub fn solve<'g>(
+    model: &Model<'g>,
+    mass: &Matrix<'g>,
+    jacobian: &Matrix<'g>,
+    force: Vec<Expr<'g>>,
+    bias: Vec<Expr<'g>>,
+) -> Vec<Expr<'g>> {
+    let (nv, nc) = (mass.len(), jacobian.len());
+    let mut k: Matrix<'g> = mass.clone();
+    for (row, c) in k.iter_mut().zip(0..) {
+        row.extend(jacobian.iter().map(|j| j[c]));
+    }
+    for row in jacobian {
+        let mut row = row.clone();
+        row.extend((0..nc).map(|_| row[0].zero()).collect::<Vec<_>>());
+        k.push(row);
+    }
+    let order = elimination_order(&k, nv);
+    let mut r = force;
+    r.extend(bias.into_iter().map(|b| -b));
+    let Solution { mut x, pivots, taken } = solve_in(k, r, &order, nv);
+    for multiplier in &mut x[nv..] {
+        *multiplier = -*multiplier;
+    }
+    x.extend(pivots[nv..].iter().map(|p| -*p));
+    let in_group = |group| model.constraints.iter().zip(&taken[nv..]).filter(move |(c, _)| c.group == group);
+    x.extend(
+        model
+            .constraints
+            .iter()
+            .map(|own| in_group(own.group).fold(model.graph.zero(), |sum, (_, taken)| sum + *taken)),
+    );
+    x
+}
+
+/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row.
+fn elimination_order(k: &Matrix<'_>, nv: usize) -> Vec<usize> {
+    let n = k.len();
+    let mut full: Vec<Vec<bool>> = k.iter().map(|row| row.iter().map(|e| !e.is_zero()).collect()).collect();
+    let waits: Vec<Vec<usize>> =
+        (0..n).map(|i| if i < nv { Vec::new() } else { (0..nv).filter(|j| full[i][*j]).collect() }).collect();
+    let mut left: Vec<usize> = (0..n).collect();
+    let mut order = Vec::with_capacity(n);
+    while !left.is_empty() {
+        let degree = |i: usize| left.iter().filter(|j| **j != i && full[i][**j]).count();
+        let ready = left.iter().copied().filter(|i| waits[*i].iter().all(|j| order.contains(j)));
+        // Of equals the last: leaves come before the links that carry them.
+        let Some(next) = ready.min_by_key(|i| (degree(*i), usize::MAX - i)) else { break };
+        left.retain(|i| *i != next);
+        order.push(next);
+        let near: Vec<usize> = left.iter().copied().filter(|j| full[next][*j]).collect();
+        for &i in &near {
+            for &j in &near {
+                full[i][j] = true;
+            }
+        }
+    }
+    order
+}
+
+/// The forces and biases of the equations of motion as symbols: what is handed to [`solve`] at run time.
+pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let (nv, nc) = (model.nv(), model.constraints.len());
+    let symbols =
+        |range: std::ops::Range<usize>| range.map(|k| Quantity::Given(k).expr(model.graph)).collect();
+    (symbols(0..nv), symbols(nv..nv + nc))
+}

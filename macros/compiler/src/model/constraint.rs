@@ -1,0 +1,410 @@
+//! Constraints: joints that close loops, expressions that stay zero, rolling pairs. Each becomes scalar rows with their
+//! rates and the derivatives of those. Motions are taken relative to the nearest link that carries both sides, so
+//! that what both share drops out.
+
+use super::axis::always;
+use super::build::Builder;
+use super::joint::{Elementary, in_plane};
+use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
+use super::world::{Level, Placed, PlacedKind, View};
+use super::{Constraint, LinkId, Pose, Quantity, mobility, redundancy};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::eval::eval;
+use crate::expr::{Expr, Vec3};
+use crate::model::sample;
+use crate::syntax::{self, ConstraintKind, Joint};
+
+/// A scalar with its rate, and the rate of that at zero accelerations.
+pub struct Jet<'g> {
+    value: Expr<'g>,
+    rate: Expr<'g>,
+    second: Expr<'g>,
+}
+
+/// The same of a vector, in the axes of a link that counts as fixed.
+#[derive(Clone, Copy)]
+pub struct Moving<'g> {
+    pub value: Vec3<'g>,
+    pub rate: Vec3<'g>,
+    pub second: Vec3<'g>,
+}
+
+impl<'g> Moving<'g> {
+    fn minus(&self, b: &Moving<'g>) -> Moving<'g> {
+        Moving { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
+    }
+
+    fn dot(&self, b: &Moving<'g>) -> Jet<'g> {
+        let twice = self.rate.dot(b.rate) * 2.0;
+        Jet {
+            value: self.value.dot(b.value),
+            rate: self.rate.dot(b.value) + self.value.dot(b.rate),
+            second: self.second.dot(b.value) + twice + self.value.dot(b.second),
+        }
+    }
+
+    fn component(&self, k: usize) -> Jet<'g> {
+        Jet { value: self.value[k], rate: self.rate[k], second: self.second[k] }
+    }
+}
+
+/// A link's motion relative to one of its ancestors, in link axes.
+pub struct Relative<'g> {
+    link: Option<LinkId>,
+    ancestor: Option<LinkId>,
+    /// Velocity of the origin, angular velocity.
+    pub twist: Spatial<'g>,
+    acceleration: Spatial<'g>,
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl<'g> Builder<'_, 'g> {
+    /// All constraints: those of the joints that close loops, then those declared.
+    pub fn add_constraints(&mut self, closing: &[usize], cx: &mut Diagnostics) {
+        if !cx.is_empty() {
+            for j in closing {
+                self.check_joint(&self.description.joints[*j], cx);
+            }
+            return;
+        }
+        for j in closing {
+            self.group += 1;
+            self.close_loop(&self.description.joints[*j], cx);
+        }
+        for constraint in &self.description.constraints {
+            self.group += 1;
+            match constraint.kind {
+                ConstraintKind::Holonomic => self.add_holonomic(constraint, cx),
+                ConstraintKind::Nonholonomic => self.add_nonholonomic(constraint, cx),
+                ConstraintKind::Rolling => self.add_rolling(constraint, cx),
+            }
+        }
+        self.model.constraints.sort_by_key(|c| c.residual.is_none());
+        self.model.freedom = self.model.nv();
+        if cx.is_empty() {
+            redundancy::check_constant(&self.model, cx);
+        }
+        if cx.is_empty() && !self.model.constraints.is_empty() {
+            let witnesses = mobility::witnesses(&self.model, cx);
+            redundancy::prune(&mut self.model, &witnesses);
+            self.model.freedom = mobility::degrees_of_freedom(&self.model, &witnesses, cx);
+        }
+    }
+
+    fn close_loop(&mut self, joint: &Joint, cx: &mut Diagnostics) {
+        let motions = self.scope.motions(joint, cx);
+        let ends = [&joint.parent, &joint.child].map(|end| {
+            let on_body = self.endpoint(end, cx)?;
+            let (link, pose) = self.joint_parent(&end.body, cx)?;
+            Some(Placed { link, pose: pose.then(&on_body), kind: PlacedKind::Body })
+        });
+        let (Some(motions), [Some(parent), Some(child)]) = (motions, ends) else { return };
+        let place = &joint.name.place;
+        if matches!(motions.as_slice(), [Elementary::Free]) {
+            cx.error(place.clone(), format!("`{}` closes a loop, but it restricts nothing", joint.name.text))
+                .help("remove it: a Free joint allows all motions");
+            return;
+        }
+        if parent.link == child.link {
+            cx.error(place.clone(), "these two ends do not move relative to each other")
+                .help("let the joint act between bodies that move relative to each other");
+            return;
+        }
+        self.translation_rows(&joint.name.text, place, &motions, &parent, &child);
+        self.group += 1;
+        self.rotation_rows(&joint.name.text, place, &motions, &parent, &child);
+    }
+
+    /// The child's joint frame has its origin where the slides of the joint let it be.
+    fn translation_rows(
+        &mut self,
+        name: &str,
+        place: &Place,
+        motions: &[Elementary<'g>],
+        parent: &Placed<'g>,
+        child: &Placed<'g>,
+    ) {
+        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(slide_of).collect();
+        let (on_parent, on_child) =
+            (self.relative(parent.link, child.link), self.relative(child.link, parent.link));
+        let gap = self
+            .point(&on_child, child.pose.translation)
+            .minus(&self.point(&on_parent, parent.pose.translation));
+        if slides.is_empty() {
+            for (k, axis) in AXES.iter().enumerate() {
+                self.push(format!("{name}.{axis}"), place, gap.component(k));
+            }
+            return;
+        }
+        let across: Vec<(&str, Vec3<'g>)> = match slides.as_slice() {
+            [one] => perpendicular(*one).to_vec(),
+            [first, second] => vec![("normal", super::resolve::unit(first.cross(*second)))],
+            _ => Vec::new(),
+        };
+        for (word, direction) in across {
+            let e = self.direction(&on_parent, parent.pose.rotation.to_parent(direction));
+            self.push(format!("{name}.{word}"), place, gap.dot(&e));
+        }
+        if let [Elementary::Helix(axis, pitch)] = motions {
+            let n = self.direction(&on_parent, parent.pose.rotation.to_parent(*axis));
+            let [(_, first), (_, second)] = perpendicular(*axis);
+            let on = |v| self.direction(&on_parent, parent.pose.rotation.to_parent(v)).value;
+            let turned = self.direction(&on_child, child.pose.rotation.to_parent(first)).value;
+            let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
+            let advance = gap.value.dot(n.value) / *pitch;
+            let residual = *pitch * (sine * advance.cos() - cosine * advance.sin());
+            self.push_residual(format!("{name}.advance"), place, residual);
+        }
+    }
+
+    /// The child's joint axes are turned as the turns of the joint let them be.
+    fn rotation_rows(
+        &mut self,
+        name: &str,
+        place: &Place,
+        motions: &[Elementary<'g>],
+        parent: &Placed<'g>,
+        child: &Placed<'g>,
+    ) {
+        if matches!(motions, [Elementary::Ball]) {
+            return;
+        }
+        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(turn_of).collect();
+        let (on_parent, on_child) =
+            (self.relative(parent.link, child.link), self.relative(child.link, parent.link));
+        let of_parent = |v| self.direction(&on_parent, parent.pose.rotation.to_parent(v));
+        let of_child = |v| self.direction(&on_child, child.pose.rotation.to_parent(v));
+        let axis = |k| Vec3::axis(self.scope.graph, k);
+        let mut rows: Vec<(String, Jet<'g>)> = Vec::new();
+        match turns.as_slice() {
+            // The sines of the angles about three axes.
+            [] => {
+                for k in 0..3 {
+                    let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+                    rows.push((format!("{name}.w{}", AXES[k]), of_parent(axis(m)).dot(&of_child(axis(l)))));
+                }
+            }
+            [axis] => {
+                let carried = of_child(*axis);
+                for (word, direction) in perpendicular(*axis) {
+                    rows.push((format!("{name}.tilt_{word}"), of_parent(direction).dot(&carried)));
+                }
+            }
+            [first, second, ..] => {
+                let mut jet = of_parent(*first).dot(&of_child(*second));
+                jet.value -= first.dot(*second);
+                rows.push((format!("{name}.axes"), jet));
+            }
+        }
+        for (name, jet) in rows {
+            self.push(name, place, jet);
+        }
+    }
+
+    fn push(&mut self, name: String, place: &Place, jet: Jet<'g>) {
+        let Jet { value, rate, second } = jet;
+        self.model.constraints.push(Constraint {
+            name,
+            place: place.clone(),
+            residual: Some(value),
+            rate,
+            bias: second,
+            group: self.group,
+        });
+    }
+
+    fn push_residual(&mut self, name: String, place: &Place, residual: Expr<'g>) {
+        let rate = time_derivative(self.model.space(), residual);
+        self.push_rate(name, place, Some(residual), rate);
+    }
+
+    /// A row whose rate is known.
+    pub fn push_rate(&mut self, name: String, place: &Place, residual: Option<Expr<'g>>, rate: Expr<'g>) {
+        let bias = time_derivative(self.model.space(), rate);
+        self.model.constraints.push(Constraint {
+            name,
+            place: place.clone(),
+            residual,
+            rate,
+            bias,
+            group: self.group,
+        });
+    }
+
+    /// Motion of a link relative to the nearest link that carries it and another.
+    pub fn relative(&self, link: Option<LinkId>, other: Option<LinkId>) -> Relative<'g> {
+        let world = self.scope.world.borrow();
+        let parent = |l: LinkId| world.joints[l.0].parent;
+        let (mut a, mut b) = (link, other);
+        let mut path = Vec::new();
+        // Parents have smaller indices, so the deeper of two links is the one with the larger index.
+        while a != b {
+            if a > b {
+                path.extend(a);
+                a = a.and_then(parent);
+            } else {
+                b = b.and_then(parent);
+            }
+        }
+        let g = self.scope.graph;
+        let v: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
+        let still = vec![g.zero(); self.model.nv()];
+        let zero = Spatial::zero(&self.model);
+        let mut motion: Option<(Spatial<'g>, Spatial<'g>)> = None;
+        for l in path.iter().rev() {
+            let joint = &world.joints[l.0];
+            let own = joint.twist(&self.model, &v);
+            let twist = motion.as_ref().map_or(own, |(twist, _)| joint.twist_to_child(twist).plus(&own));
+            let before = motion.as_ref().map(|(twist, acceleration)| (twist, acceleration));
+            let acceleration = joint.acceleration(&self.model, before, &v, &still);
+            motion = Some((twist, acceleration));
+        }
+        let (twist, acceleration) = motion.unwrap_or((zero, zero));
+        Relative { link, ancestor: a, twist, acceleration }
+    }
+
+    /// A point of a link.
+    pub fn point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
+        let world = self.scope.world.borrow();
+        let mut value = p;
+        let mut at = on.link;
+        while at != on.ancestor {
+            let Some(l) = at else { break };
+            let joint = &world.joints[l.0];
+            value = joint.translation + joint.rotation.to_parent(value);
+            at = joint.parent;
+        }
+        let (w, a) = (on.twist.angular, &on.acceleration);
+        let rate = on.twist.linear + w.cross(p);
+        let second = a.linear + a.angular.cross(p) + w.cross(w.cross(p));
+        let out = |v| change_axes(&world.joints, v, on.link, on.ancestor);
+        Moving { value, rate: out(rate), second: out(second) }
+    }
+
+    /// A direction fixed in a link.
+    pub fn direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
+        let w = on.twist.angular;
+        let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
+        let out = |v| self.direction_out(on, v);
+        Moving { value: out(e), rate: out(w.cross(e)), second: out(second) }
+    }
+
+    /// A vector of a link, in the axes of the ancestor.
+    pub fn direction_out(&self, on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
+        change_axes(&self.scope.world.borrow().joints, v, on.link, on.ancestor)
+    }
+
+    fn add_holonomic(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        for (name, residual) in self.difference(constraint, Level::Placement, cx) {
+            if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
+                cx.error(constraint.value.place.clone(), "this restricts no coordinate")
+                    .help("an expression of coordinates stays zero, or equal to another one");
+                return;
+            }
+            self.push_residual(name, &constraint.name.place, residual);
+        }
+    }
+
+    fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        for (name, rate) in self.difference(constraint, Level::Motion, cx) {
+            let place = &constraint.value.place;
+            let gradient = velocity_gradient(rate);
+            let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
+            let is = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+                symbols_in(e).into_iter().any(|s| f(Quantity::of(s)))
+            };
+            if gradient.is_empty() {
+                cx.error(place.clone(), "this restricts no velocity")
+                    .help("a constraint on coordinates is a `Holonomic` one");
+                return;
+            }
+            if is(&[rate], |q| matches!(q, Quantity::Input(_))) {
+                cx.error(place.clone(), "a constraint contains no input");
+                return;
+            }
+            if is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) && !is_linear(&coefficients) {
+                cx.error(place.clone(), "this constraint is not linear in the velocities").help(
+                    "each term holds one velocity at most, as in `dot(v(skate / ground / ground), sled.y)`",
+                );
+                return;
+            }
+            self.push_rate(name, &constraint.name.place, None, rate);
+        }
+    }
+
+    /// Left side minus right side: one component, or three.
+    fn difference(
+        &self,
+        constraint: &syntax::Constraint,
+        level: Level,
+        cx: &mut Diagnostics,
+    ) -> Vec<(String, Expr<'g>)> {
+        use super::resolve::Value;
+        let name = &constraint.name.text;
+        let view = || View::new(level, Some((None, Pose::identity(self.scope.graph))));
+        let left = self.scope.with_view(view(), |scope| scope.value(&constraint.value, cx));
+        let vector = matches!(left, Some(Value::Vector(_)));
+        let mut sides = vec![&constraint.value];
+        sides.extend(&constraint.other);
+        if !vector {
+            let values: Vec<Option<Expr<'g>>> =
+                sides.iter().map(|e| self.scope.with_view(view(), |scope| scope.scalar(e, cx))).collect();
+            return match values.as_slice() {
+                [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
+                [Some(left)] => vec![(name.clone(), *left)],
+                _ => Vec::new(),
+            };
+        }
+        let terms: Vec<_> =
+            sides.iter().map(|e| self.scope.with_view(view(), |scope| scope.terms(e, cx))).collect();
+        let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
+        let world = self.scope.world.borrow();
+        let zero = Vec3::zero(self.scope.graph);
+        let sides: Vec<Vec3<'g>> = terms.iter().map(|t| world.resolve(t, None, zero)).collect();
+        let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);
+        (0..3).map(|k| (format!("{name}.{}", AXES[k]), gap[k])).collect()
+    }
+}
+
+/// The axis of a slide.
+fn slide_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
+    match motion {
+        Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
+        _ => None,
+    }
+}
+
+/// The axis of a turn.
+fn turn_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
+    match motion {
+        Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
+        _ => None,
+    }
+}
+
+/// Two directions orthogonal to an axis and to each other, with their names.
+pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
+    let g = axis[0].graph();
+    let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::axis(g, k)));
+    let along = |k: usize| axis.values().is_some_and(|n| n[k].abs() == 1.0);
+    if let Some(k) = (0..3).find(|k| along(*k)) {
+        return [words[(k + 1) % 3], words[(k + 2) % 3]];
+    }
+    let [first, second] = match in_plane(axis) {
+        Some((first, second)) => [first, second],
+        None => {
+            // The coordinate axis that the direction is farthest from for a sample of the parameters.
+            let at = eval(&axis.0, &|s| sample(s, 0));
+            let far = (0..3).min_by(|a, b| at[*a].abs().total_cmp(&at[*b].abs())).unwrap_or(0);
+            let first = super::resolve::unit(axis.cross(Vec3::axis(g, far)));
+            [first, axis.cross(first)]
+        }
+    };
+    [("first", first), ("second", second)]
+}
+
+/// True if coefficients that name velocities do not depend on them after all.
+fn is_linear(coefficients: &[Expr<'_>]) -> bool {
+    coefficients.iter().all(|c| velocity_gradient(*c).iter().all(|(_, d)| always(*d, 0.0)))
+}

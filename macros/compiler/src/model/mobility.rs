@@ -1,0 +1,211 @@
+//! Degrees of freedom: a configuration that fulfils the constraints is searched for numerically, with the numbers of the
+//! mechanism and samples of its parameters, and the independent rows are counted there. Grübler's count, which takes
+//! all rows for independent, is what is left where none is found.
+
+use super::kinematics::{symbols_in, velocity_gradient};
+use super::redundancy::{basis_of, random_configuration};
+use super::{Chart, Model, Quantity, sample};
+use crate::diag::Diagnostics;
+use crate::expr::eval::eval;
+use crate::expr::{Expr, Symbol};
+
+/// Random starts of the search.
+const STARTS: u64 = 24;
+/// Configurations that must agree on a mechanism that cannot move.
+const WITNESSES: usize = 3;
+/// Steps from each start.
+const STEPS: usize = 60;
+/// What may be left of the residuals.
+const CLOSED: f64 = 1e-11;
+/// Residuals above this, m or rad, are not closed by more steps.
+const OPEN: f64 = 1e-4;
+
+/// A configuration with the seed of the parameters that it belongs to.
+pub type Witness = (Vec<f64>, u64);
+
+/// Some configurations that fulfil the constraints. Reports loops that nothing closes if all their numbers are known.
+pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
+    let rows = Rows::of(model);
+    let mut found: Vec<Witness> = Vec::new();
+    let mut worst: Option<(usize, f64)> = None;
+    for seed in 0..STARTS {
+        match rows.close(model, seed) {
+            Ok(q) => found.push((q, seed)),
+            Err(open) if worst.is_none_or(|(_, best)| open.1 < best) => worst = Some(open),
+            Err(_) => {}
+        }
+        if found.len() == WITNESSES {
+            return found;
+        }
+    }
+    if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && rows.is_numeric())
+    {
+        let c = &model.constraints[row];
+        cx.error(c.place.clone(), format!("no configuration was found that fulfils `{}`", c.name))
+            .help(format!("the best one is {open:.3} off: check the lengths and axes"));
+    }
+    found
+}
+
+/// Counts the degrees of freedom. Reports a mechanism that cannot move.
+pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> usize {
+    let (nv, nc) = (model.nv(), model.constraints.len());
+    let rows = Rows::of(model);
+    let free = |(q, seed): &Witness| nv - basis_of(&rows.values(q, *seed), 1e-7).len();
+    let Some(most) = witnesses.iter().map(free).max() else { return nv.saturating_sub(nc) };
+    if most == 0 {
+        let place = model.constraints.last().map_or(&model.place, |c| &c.place);
+        cx.error(place.clone(), "this mechanism cannot move").help(format!(
+            "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
+        ));
+    }
+    most
+}
+
+/// Constraints as expressions to be evaluated.
+struct Rows<'g> {
+    residuals: Vec<Expr<'g>>,
+    /// Entries of the Jacobian that are not zero: row, column.
+    at: Vec<(usize, usize)>,
+    entries: Vec<Expr<'g>>,
+    size: (usize, usize),
+}
+
+impl<'g> Rows<'g> {
+    fn of(model: &Model<'g>) -> Rows<'g> {
+        let (mut at, mut entries) = (Vec::new(), Vec::new());
+        for (row, c) in model.constraints.iter().enumerate() {
+            for (column, entry) in velocity_gradient(c.rate) {
+                at.push((row, column));
+                entries.push(entry);
+            }
+        }
+        let residuals = model.constraints.iter().filter_map(|c| c.residual).collect();
+        Rows { residuals, at, entries, size: (model.constraints.len(), model.nv()) }
+    }
+
+    /// No residual depends on a parameter or on time.
+    fn is_numeric(&self) -> bool {
+        symbols_in(&self.residuals)
+            .into_iter()
+            .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
+    }
+
+    fn values(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
+        let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
+        for ((row, column), value) in self.at.iter().zip(eval(&self.entries, &|s| value_of(s, q, seed))) {
+            rows[*row][*column] = value;
+        }
+        rows
+    }
+
+    /// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
+    fn close(&self, model: &Model<'_>, seed: u64) -> Result<Vec<f64>, (usize, f64)> {
+        let spread = [1.0, 3.0, 0.2][(seed % 3) as usize];
+        let mut q = random_configuration(model, seed);
+        for chart in &model.charts {
+            if let Chart::Plain(k, _) = chart {
+                q[*k] *= spread;
+            }
+        }
+        let residuals = |q: &[f64]| eval(&self.residuals, &|s| value_of(s, q, seed));
+        let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+        let mut r = residuals(&q);
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            if size(&r) <= CLOSED * CLOSED || !size(&r).is_finite() {
+                break;
+            }
+            let rows = &self.values(&q, seed)[..r.len()];
+            let step = damped_step(rows, &r, damping);
+            let next = moved(model, &q, &step);
+            let trial = residuals(&next);
+            if size(&trial) < size(&r) {
+                (q, r, damping) = (next, trial, damping * 0.1);
+            } else {
+                damping *= 10.0;
+            }
+        }
+        let worst = r.iter().map(|r| r.abs()).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match worst {
+            Some((row, open)) if open > CLOSED || open.is_nan() => Err((row, open)),
+            _ => Ok(q),
+        }
+    }
+}
+
+fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
+    match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        Quantity::Velocity(_) | Quantity::Time => 0.0,
+        _ => sample(s, seed),
+    }
+}
+
+/// `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
+fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
+    let n = rows.len();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut m: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
+    let mut y = r.to_vec();
+    for (k, row) in m.iter_mut().enumerate() {
+        row[k] = row[k] * (1.0 + damping) + 1e-12;
+    }
+    for k in 0..n {
+        for i in k + 1..n {
+            let factor = m[i][k] / m[k][k];
+            for j in k..n {
+                m[i][j] -= factor * m[k][j];
+            }
+            y[i] -= factor * y[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let rest: f64 = (k + 1..n).map(|j| m[k][j] * y[j]).sum();
+        y[k] = (y[k] - rest) / m[k][k];
+    }
+    let columns = rows.first().map_or(0, Vec::len);
+    (0..columns).map(|j| -(0..n).map(|i| rows[i][j] * y[i]).sum::<f64>()).collect()
+}
+
+/// `q ⊕ dv`, for free joints to first order.
+fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
+    let mut out = q.to_vec();
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(k, v) => out[k] += dv[v],
+            Chart::Ball(k, v) => turn(&mut out[k..k + 4], &dv[v..v + 3]),
+            Chart::Free(k, v) => {
+                let shift = rotated(&q[k + 3..k + 7], &dv[v..v + 3]);
+                (0..3).for_each(|i| out[k + i] += shift[i]);
+                turn(&mut out[k + 3..k + 7], &dv[v + 3..v + 6]);
+            }
+        }
+    }
+    out
+}
+
+/// A quaternion x y z w turned by a small rotation vector in body axes.
+fn turn(q: &mut [f64], w: &[f64]) {
+    let [x, y, z, s] = [q[0], q[1], q[2], q[3]];
+    let [a, b, c] = [w[0] / 2.0, w[1] / 2.0, w[2] / 2.0];
+    let next = [
+        x + s * a + y * c - z * b,
+        y + s * b + z * a - x * c,
+        z + s * c + x * b - y * a,
+        s - x * a - y * b - z * c,
+    ];
+    let norm = next.iter().map(|c| c * c).sum::<f64>().sqrt();
+    q.iter_mut().zip(next).for_each(|(q, next)| *q = next / norm);
+}
+
+/// A vector in body axes turned by a quaternion x y z w.
+fn rotated(q: &[f64], v: &[f64]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let (u, v) = ([q[0], q[1], q[2]], [v[0], v[1], v[2]]);
+    let once = cross(u, v);
+    let twice = cross(u, once);
+    std::array::from_fn(|k| v[k] + 2.0 * (q[3] * once[k] + twice[k]))
+}

@@ -1,0 +1,233 @@
+//! Constrained mechanisms: closed loops, rolling and other constraints, by Lagrange multipliers.
+//!
+//! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the residuals
+//! `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a configuration near a given
+//! one, [`Constrained::project_velocity`] the nearest velocity, and [`simulate`](crate::simulate()) keeps both.
+
+use crate::private::{constant, epsilon, to_f64};
+use crate::{Real, Rheonomic};
+use core::fmt;
+use nalgebra::{SMatrix, SVector};
+
+mod assemble;
+mod solve;
+
+#[doc(hidden)]
+pub use solve::{least_multipliers, regular_solution};
+
+/// Newton steps of a projection; a state that has drifted needs one or two.
+const MOST_STEPS: usize = 20;
+
+/// Why a state could not be brought onto the constraints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ConstraintError {
+    /// No configuration near the given one fulfils the constraints.
+    Configuration {
+        /// The constraint that is violated most.
+        constraint: &'static str,
+        /// What is left of it, m or rad.
+        residual: f64,
+    },
+    /// No velocity fulfils the constraints: what is driven in time contradicts them, or the configuration is singular.
+    Velocity {
+        /// The constraint that is violated most.
+        constraint: &'static str,
+        /// What is left of its rate, m/s or rad/s.
+        rate: f64,
+    },
+    /// Residuals or rates are infinite or NaN there.
+    NotFinite,
+}
+
+impl fmt::Display for ConstraintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Configuration { constraint, residual } => {
+                write!(f, "the constraint `{constraint}` is off by {residual}")
+            }
+            Self::Velocity { constraint, rate } => {
+                write!(f, "the constraint `{constraint}` is left at a rate of {rate}")
+            }
+            Self::NotFinite => write!(f, "the constraints are not finite"),
+        }
+    }
+}
+
+impl core::error::Error for ConstraintError {}
+
+/// A state.
+pub type Configuration<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);
+
+/// Accelerations and multipliers.
+pub type Multipliers<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
+
+/// A mechanism with `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
+/// velocities alone: what `#[mechanism]` implements where joints close loops or constraints are declared. Time `t` is in
+/// seconds; mechanisms that do not contain it take any.
+///
+/// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both, while the mass
+/// matrix, bias forces and inverse dynamics are those of the spanning tree.
+pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>:
+    Rheonomic<NQ, NV, NU>
+{
+    /// Name of every constraint.
+    const CONSTRAINTS: [&'static str; NC];
+
+    /// `φ(t, q)`, m and rad: zero where the constraints hold.
+    fn constraint_residuals(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> SVector<Self::Scalar, NH>;
+
+    /// `J(t, q) v + …`, m/s and rad/s: zero where the constraints hold. The first `NH` are the rates of the residuals.
+    fn constraint_rates(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NC>;
+
+    /// `J(t, q)`: how the rates change with the velocities.
+    fn constraint_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> SMatrix<Self::Scalar, NC, NV>;
+
+    /// `b(t, q, v)`, m/s² and rad/s²: the rates change by `J v̇ + b`.
+    fn constraint_bias(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NC>;
+
+    /// `v̇` and the multipliers `λ` under the forces `tau`: N for lengths, N·m for angles. Where constraints are redundant,
+    /// the multipliers of least norm.
+    fn constrained_dynamics(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Multipliers<Self::Scalar, NV, NC>;
+
+    /// The change of velocity `x` of least kinetic energy that takes `gap` away: `J x = −gap`.
+    fn constraint_correction(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        gap: &SVector<Self::Scalar, NC>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// A configuration near `q` in which the constraints hold, by damped Newton steps with bounded count
+    /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3). The coordinates whose
+    /// velocities have the indices `held` stay as they are.
+    ///
+    /// Errors: [`ConstraintError::Configuration`] where none is found.
+    fn assemble(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        held: &[usize],
+    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+        assemble::assemble(self, t, q, held)
+    }
+
+    /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy. For what has
+    /// drifted; [`assemble`](Self::assemble) comes from farther away.
+    ///
+    /// Errors: [`ConstraintError::Configuration`] where Newton's method does not converge.
+    fn project_configuration(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+        let mut q = *q;
+        let mut last = None;
+        for _ in 0..MOST_STEPS {
+            let residuals = self.constraint_residuals(t, &q);
+            let (worst, size) = largest(&residuals)?;
+            let rounding = constant::<Self::Scalar>(16.0) * epsilon() * reach(&q);
+            if size <= rounding {
+                return Ok(q);
+            }
+            // Rounding ends the convergence.
+            if last.is_some_and(|last| size * constant(2.0) > last) {
+                return near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size));
+            }
+            last = Some(size);
+            let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(nalgebra::zero()));
+            q = self.integrate(&q, &self.constraint_correction(t, &q, &gap));
+        }
+        let (worst, size) = largest(&self.constraint_residuals(t, &q))?;
+        near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size))
+    }
+
+    /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
+    ///
+    /// Errors: [`ConstraintError::Velocity`] where none does.
+    fn project_velocity(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        let mut v = *v;
+        let rates = self.constraint_rates(t, q, &v);
+        v += self.constraint_correction(t, q, &rates);
+        let rates = self.constraint_rates(t, q, &v);
+        v += self.constraint_correction(t, q, &rates);
+        let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
+        if near(size, &v) {
+            return Ok(v);
+        }
+        let constraint = Self::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+        Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
+    }
+
+    /// Both: configuration first.
+    ///
+    /// Errors: those of the two.
+    fn project_state(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+        let q = self.project_configuration(t, q)?;
+        let v = self.project_velocity(t, &q, v)?;
+        Ok((q, v))
+    }
+}
+
+/// Index and magnitude of the largest entry.
+fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
+    let mut found = (0, T::zero());
+    for (k, x) in x.iter().enumerate() {
+        if !x.is_finite() {
+            return Err(ConstraintError::NotFinite);
+        }
+        if x.abs() > found.1 {
+            found = (k, x.abs());
+        }
+    }
+    Ok(found)
+}
+
+/// The largest magnitude, at least one.
+fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
+}
+
+/// Whether what is left of constraints is rounding.
+fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
+    size <= constant::<T>(5e7) * epsilon() * reach(x)
+}
+
+fn off<T: Real, const NC: usize>(names: [&'static str; NC], worst: usize, size: T) -> ConstraintError {
+    let constraint = names.get(worst).copied().unwrap_or_default();
+    ConstraintError::Configuration { constraint, residual: to_f64(size) }
+}

@@ -1,0 +1,65 @@
+//! Assembly: from a guess to a configuration that fulfils the constraints.
+
+use super::{Constrained, ConstraintError, largest, near, off};
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+/// Most steps tried.
+const MOST_STEPS: usize = 200;
+
+/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held.
+pub(super) fn assemble<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    t: M::Scalar,
+    q: &SVector<M::Scalar, NQ>,
+    held: &[usize],
+) -> Result<SVector<M::Scalar, NQ>, ConstraintError>
+where
+    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
+{
+    let mut q = *q;
+    let mut residuals = mechanism.constraint_residuals(t, &q);
+    largest(&residuals)?;
+    let mut damping = constant::<M::Scalar>(1e-3);
+    for _ in 0..MOST_STEPS {
+        let (_, size) = largest(&residuals)?;
+        if size <= constant::<M::Scalar>(4.0) * epsilon() {
+            break;
+        }
+        let jacobian = mechanism.constraint_jacobian(t, &q);
+        let rows = SMatrix::<M::Scalar, NH, NV>::from_fn(|i, j| {
+            let fixed = held.contains(&j);
+            jacobian.get((i, j)).copied().filter(|_| !fixed).unwrap_or(nalgebra::zero())
+        });
+        let mut normal = rows * rows.transpose();
+        // Relative to each row, so that units do not matter; rows without influence are left alone.
+        for k in 0..NH {
+            let own = normal[(k, k)];
+            normal[(k, k)] = own + own * damping + constant(f64::MIN_POSITIVE);
+        }
+        let step = normal.cholesky().map(|c| -(rows.transpose() * c.solve(&residuals)));
+        let next = step.map(|step| mechanism.integrate(&q, &step));
+        let trial = next.map(|next| (next, mechanism.constraint_residuals(t, &next)));
+        match trial.filter(|(_, r)| r.norm() < residuals.norm()) {
+            Some((next, r)) => {
+                (q, residuals) = (next, r);
+                damping *= constant(0.1);
+            }
+            // Rounding is all that is left.
+            None if near(size, &q) => break,
+            None => damping *= constant(10.0),
+        }
+        if damping > constant(1e12) {
+            break;
+        }
+    }
+    let (worst, size) = largest(&residuals)?;
+    near(size, &q).then_some(q).ok_or_else(|| off(M::CONSTRAINTS, worst, size))
+}

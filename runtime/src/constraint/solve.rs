@@ -1,0 +1,153 @@
+//! What generated code calls to solve for accelerations and multipliers where its own elimination cannot be trusted:
+//! in singular configurations and with redundant constraints.
+
+use super::Multipliers;
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+/// What may be left of a constraint's pivot after the other constraints took their part.
+fn tolerance<T: Real>() -> T {
+    if epsilon::<T>() < constant(1e-10) { constant(1e-8) } else { constant(1e-4) }
+}
+
+/// Splits the result of an elimination into accelerations and multipliers; `None` if a pivot is too small beside what
+/// it was. `found` holds `NV` accelerations, and `NC` multipliers, pivots and former pivots.
+#[inline]
+pub fn regular_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+    found: &[T; N],
+) -> Option<Multipliers<T, NV, NC>> {
+    let tolerance = tolerance::<T>();
+    for k in 0..NC {
+        let (pivot, before) = (found.get(NV + NC + k)?, found.get(NV + 2 * NC + k)?);
+        // Not so for what is not a number.
+        let holds = *pivot > tolerance * *before;
+        if !holds {
+            return None;
+        }
+    }
+    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
+    Some((SVector::from_fn(|k, _| part(k)), SVector::from_fn(|k, _| part(NV + k))))
+}
+
+/// `v̇` and the multipliers of least norm: `M v̇ = f + Jᵀ λ`, `J v̇ = −b`. Constraints that follow from others are found by
+/// a factorisation with pivots (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 10.3); where they
+/// contradict each other, the least squares count. Constraints of one number in `groups` are components of one vector.
+pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
+    groups: &[usize; NC],
+    mass: &SMatrix<T, NV, NV>,
+    jacobian: &SMatrix<T, NC, NV>,
+    force: &SVector<T, NV>,
+    bias: &SVector<T, NC>,
+) -> Multipliers<T, NV, NC> {
+    let lower = factor(&mass.data.0);
+    let mut x = [[T::zero(); NV]; NC];
+    for (k, x) in x.iter_mut().enumerate() {
+        let row = core::array::from_fn(|i| jacobian.data.0[i][k]);
+        *x = forward(&lower, row);
+    }
+    let free = forward(&lower, force.data.0[0]);
+    let dot = |a: &[T; NV], b: &[T; NV]| a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
+    let gram: [[T; NC]; NC] = core::array::from_fn(|i| core::array::from_fn(|j| dot(&x[i], &x[j])));
+    let rhs: [T; NC] = core::array::from_fn(|k| -bias.data.0[0][k] - dot(&x[k], &free));
+    let lambda = least_norm(groups, gram, rhs);
+    let mut total = free;
+    for (x, lambda) in x.iter().zip(&lambda) {
+        total.iter_mut().zip(x).for_each(|(sum, x)| *sum += *x * *lambda);
+    }
+    (SVector::from(backward(&lower, total)), SVector::from(lambda))
+}
+
+/// `L` of `A = L Lᵀ`, by rows.
+fn factor<T: Real, const N: usize>(a: &[[T; N]; N]) -> [[T; N]; N] {
+    let mut l = [[T::zero(); N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            let sum = (0..j).fold(a[i][j], |sum, k| sum - l[i][k] * l[j][k]);
+            l[i][j] = if i == j { sum.sqrt() } else { sum / l[j][j] };
+        }
+    }
+    l
+}
+
+/// `L⁻¹ b`.
+fn forward<T: Real, const N: usize>(l: &[[T; N]; N], mut b: [T; N]) -> [T; N] {
+    for i in 0..N {
+        b[i] = (0..i).fold(b[i], |sum, k| sum - l[i][k] * b[k]) / l[i][i];
+    }
+    b
+}
+
+/// `L⁻ᵀ b`.
+fn backward<T: Real, const N: usize>(l: &[[T; N]; N], mut b: [T; N]) -> [T; N] {
+    for i in (0..N).rev() {
+        b[i] = (i + 1..N).fold(b[i], |sum, k| sum - l[k][i] * b[k]) / l[i][i];
+    }
+    b
+}
+
+/// The solution of least norm of `A x = b` for a positive semidefinite `A`: with `A = L Lᵀ` for as many columns of `L` as
+/// `A` has rank, `x = L (LᵀL)⁻² Lᵀ b`.
+fn least_norm<T: Real, const N: usize>(groups: &[usize; N], mut a: [[T; N]; N], b: [T; N]) -> [T; N] {
+    let before: [T; N] = core::array::from_fn(|k| {
+        (0..N).filter(|i| groups[*i] == groups[k]).fold(T::zero(), |sum, i| sum + a[i][i])
+    });
+    let mut columns = [[T::zero(); N]; N];
+    let mut taken = [false; N];
+    let mut rank = 0;
+    for column in &mut columns {
+        let part =
+            |k: usize, a: &[[T; N]; N]| if before[k] > T::zero() { a[k][k] / before[k] } else { T::zero() };
+        let best = (0..N)
+            .filter(|k| !taken[*k])
+            .max_by(|i, j| part(*i, &a).partial_cmp(&part(*j, &a)).unwrap_or(core::cmp::Ordering::Equal));
+        let Some(k) = best.filter(|k| part(*k, &a) > tolerance()) else { break };
+        taken[k] = true;
+        rank += 1;
+        let root = a[k][k].sqrt();
+        *column = core::array::from_fn(|i| if taken[i] && i != k { T::zero() } else { a[i][k] / root });
+        for i in 0..N {
+            for j in 0..N {
+                a[i][j] -= column[i] * column[j];
+            }
+        }
+    }
+    // Columns beyond the rank are zero; a one on the diagonal keeps their part of the system regular.
+    let gram: [[T; N]; N] = core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let sum = (0..N).fold(T::zero(), |sum, k| sum + columns[i][k] * columns[j][k]);
+            if i == j && i >= rank { T::one() } else { sum }
+        })
+    });
+    let l = factor(&gram);
+    let y = core::array::from_fn(|i| (0..N).fold(T::zero(), |sum, k| sum + columns[i][k] * b[k]));
+    let y = backward(&l, forward(&l, backward(&l, forward(&l, y))));
+    core::array::from_fn(|k| (0..N).fold(T::zero(), |sum, i| sum + columns[i][k] * y[i]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A particle on a line in the plane, held by the same constraint twice: each carries half of the force.
+    #[test]
+    fn redundant_constraints_share_the_force() {
+        let mass = SMatrix::<f64, 2, 2>::identity() * 2.0;
+        let jacobian = SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, 1.0);
+        let (a, lambda) =
+            least_multipliers(&[0, 1], &mass, &jacobian, &SVector::from([3.0, -20.0]), &SVector::zeros());
+        assert!((a - SVector::from([1.5, 0.0])).norm() < 1e-14);
+        assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
+    }
+
+    /// Regular constraints: the equations themselves hold.
+    #[test]
+    fn regular_constraints_fulfil_the_equations() {
+        let mass = SMatrix::<f64, 3, 3>::new(4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0);
+        let jacobian = SMatrix::<f64, 2, 3>::new(1.0, -2.0, 0.3, 0.4, 0.1, 2.0);
+        let (force, bias) = (SVector::from([1.0, 2.0, 3.0]), SVector::from([0.7, -0.2]));
+        let (a, lambda) = least_multipliers(&[0, 1], &mass, &jacobian, &force, &bias);
+        assert!((mass * a - force - jacobian.transpose() * lambda).norm() < 1e-13);
+        assert!((jacobian * a + bias).norm() < 1e-13);
+    }
+}

@@ -1,0 +1,5 @@
+//! Mechanisms with constraints, held to published and recomputed results.
+
+mod linkages;
+mod rolling;
+mod skates;
