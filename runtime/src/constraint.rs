@@ -10,8 +10,12 @@ use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
 mod assemble;
+mod linearize;
 mod solve;
 
+pub use linearize::Linearization;
+#[doc(hidden)]
+pub use linearize::{Motion, columns, constrained_derivatives};
 #[doc(hidden)]
 pub use solve::{least_multipliers, regular_solution};
 
@@ -36,6 +40,8 @@ pub enum ConstraintError {
         /// What is left of its rate, m/s or rad/s.
         rate: f64,
     },
+    /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to first order.
+    Singular,
     /// Residuals or rates are infinite or NaN there.
     NotFinite,
 }
@@ -49,6 +55,7 @@ impl fmt::Display for ConstraintError {
             Self::Velocity { constraint, rate } => {
                 write!(f, "the constraint `{constraint}` is left at a rate of {rate}")
             }
+            Self::Singular => write!(f, "the constraints lose rank in this configuration"),
             Self::NotFinite => write!(f, "the constraints are not finite"),
         }
     }

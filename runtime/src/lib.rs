@@ -55,7 +55,9 @@ pub mod prelude {
 /// What generated code calls; no part of the public interface.
 #[doc(hidden)]
 pub mod __private {
-    pub use crate::constraint::{least_multipliers, regular_solution};
+    pub use crate::constraint::{
+        Motion, columns, constrained_derivatives, least_multipliers, regular_solution,
+    };
     pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,

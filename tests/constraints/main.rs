@@ -1,5 +1,6 @@
 //! Mechanisms with constraints, held to published and recomputed results.
 
+mod bicycle;
 mod linkages;
 mod rolling;
 mod skates;

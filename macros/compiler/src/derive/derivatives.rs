@@ -6,7 +6,7 @@ use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::Program;
 use crate::mechanics::derivatives::{self, ForceDerivatives, Linearized, Method, analytic, symbolic};
-use crate::mechanics::{self, Joint, crba, forces};
+use crate::mechanics::{self, Joint, constraints, crba, forces};
 use crate::model::{Chart, Model, Quantity};
 use crate::passes::{self, Passes};
 
@@ -44,6 +44,17 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
             shape => shape,
         };
         f.program = parts.program(f, &tau);
+    }
+    if !model.constraints.is_empty() {
+        functions.retain(|f| !matches!(f.name.as_str(), "forward_dynamics_derivatives" | "linearize"));
+        let mut hidden = signatures::constrained_derivatives(&Sizes::of(model), model.constraints.len());
+        for f in &mut hidden {
+            f.program = match f.name.as_str() {
+                "__motion_derivatives" => parts.constrained_motion(),
+                _ => parts.inputs_alone(&tau),
+            };
+        }
+        functions.extend(hidden);
     }
     functions
 }
@@ -103,6 +114,30 @@ impl<'a, 'g> Parts<'a, 'g> {
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
         outputs.extend(columns(&symbolic::by_input(self.model, tau)));
         outputs.extend(columns(&commutators(self.model)));
+        self.stage.program(&outputs)
+    }
+
+    /// The same without what turns displacements.
+    fn inputs_alone(&self, tau: &[Expr<'g>]) -> Program {
+        let mut outputs = tau.to_vec();
+        outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
+        outputs.extend(columns(&symbolic::by_input(self.model, tau)));
+        self.stage.program(&outputs)
+    }
+
+    /// At given accelerations and multipliers: derivatives of `M a + h − Jᵀ λ`, of `J a + b`, and of the rates; then what
+    /// turns displacements.
+    fn constrained_motion(&self) -> Program {
+        let model = self.model;
+        let a = mechanics::accelerations(model);
+        let mut forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
+        let parts = constraints::first_order(model, &a);
+        derivatives::subtract(&mut forces.by_q, &parts.forces.by_q);
+        derivatives::subtract(&mut forces.by_v, &parts.forces.by_v);
+        let mut outputs = force_columns(&forces);
+        outputs.extend(force_columns(&parts.accelerations));
+        outputs.extend(columns(&parts.rates));
+        outputs.extend(columns(&commutators(model)));
         self.stage.program(&outputs)
     }
 

@@ -328,3 +328,14 @@ pub fn constrained(sizes: &Sizes, nh: usize, nc: usize) -> Vec<Function> {
         sizes.function("__constraint_correction", &[Q, force, bias], solution, &[]),
     ]
 }
+
+/// What a mechanism with `nc` constraints needs for the derivatives of its motion, all hidden.
+pub fn constrained_derivatives(sizes: &Sizes, nc: usize) -> Vec<Function> {
+    let Sizes { nv, nu, .. } = *sizes;
+    let lambda = Argument::Given("lambda", 0, nc);
+    let (motion, inputs) = (3 * nv * nv + 3 * nc * nv, nv + 2 * nv * nv + nv * nu);
+    vec![
+        sizes.function("__motion_derivatives", &[Q, V, A, lambda], Shape::Array(motion), &[]),
+        sizes.function("__input_derivatives", &[Q, V, U], Shape::Array(inputs), &[]),
+    ]
+}

@@ -1,7 +1,7 @@
 //! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
 //! projection.
 
-use super::function::{Argument, Signature};
+use super::function::{Argument, Function, Shape, Signature};
 use crate::model::Model;
 use std::fmt::Write;
 
@@ -14,6 +14,8 @@ pub struct Constraints {
     pub holonomic: usize,
     /// Which are components of one vector: those of one number.
     pub groups: Vec<usize>,
+    /// Independent coordinates and velocities.
+    pub freedom: [usize; 2],
 }
 
 impl Constraints {
@@ -22,6 +24,7 @@ impl Constraints {
         Constraints {
             names: model.constraints.iter().map(|c| c.name.clone()).collect(),
             holonomic: model.holonomic(),
+            freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
         }
     }
@@ -61,7 +64,7 @@ impl Words {
 }
 
 /// The inherent functions.
-pub fn write_methods(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
@@ -74,6 +77,8 @@ pub fn write_methods(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         "/// Number of scalar constraints.\npub const NC: usize = {nc};
         /// Number of constraints on configurations: the first of all.\npub const NH: usize = {nh};
         /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {nc}] = {:?};
+        /// Degrees of freedom: independent coordinates.\npub const NP: usize = {np};
+        /// Degrees of freedom: independent velocities.\npub const NS: usize = {ns};
         /// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
         /// Lagrange multipliers by a sparse elimination; where the configuration is singular or constraints are redundant, by least squares.
@@ -93,11 +98,14 @@ pub fn write_methods(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         /// The change of velocity of least kinetic energy that takes the rates `gap` of the constraints away: `J x = −gap`.
         #[inline]\n#[must_use]
         pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
-            let zero = <{v}>::from_array_storage(::linkwork::nalgebra::ArrayStorage([[::linkwork::__private::constant::<{scalar}>(0.0); {nv}]]));
-            let found = self.__constraint_correction({pass}q, &zero.data.0[0], &gap.data.0[0]);
+            self.__constraint_solution({pass}q, &[::linkwork::__private::constant::<{scalar}>(0.0); {nv}], &gap.data.0[0])
+        }}
+        #[doc(hidden)]\n#[inline]
+        pub fn __constraint_solution(&self, {t}q: &{q}, force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]) -> {v} {{
+            let found = self.__constraint_correction({pass}q, force, bias);
             match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
                 ::core::option::Option::Some(solution) => solution.0,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &zero, gap).0,
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(*force).into(), &(*bias).into()).0,
             }}
         }}
         /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
@@ -113,7 +121,62 @@ pub fn write_methods(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
         c.names,
-        groups = c.groups
+        groups = c.groups,
+        np = c.freedom[0],
+        ns = c.freedom[1],
+    );
+    if functions.iter().any(|f| f.name == "__motion_derivatives") {
+        write_derivatives(out, c, s);
+    }
+}
+
+/// Derivatives of constrained motion, on request.
+fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    let Words { q, v, t, pass, .. } = Words::new(c, s);
+    let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
+    let [np, ns] = c.freedom;
+    let square = s.shape(Shape::Square(nv));
+    let solve = format!(
+        "|force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]| self.__constraint_solution({pass}q, force, bias)"
+    );
+    let (rates, turning) = (2 * nv * nv + 2 * nc * nv, 2 * nv * nv + 3 * nc * nv);
+    let _ = writeln!(
+        out,
+        "/// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics), constraints included.
+        ///
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not; for ball and free joints this is a motion in body axes.
+        #[must_use]
+        pub fn forward_dynamics_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({square}, {square}, {square}) {{
+            let (a, lambda) = self.constrained_dynamics({pass}q, v, tau);
+            let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
+            ::linkwork::__private::constrained_derivatives::<{scalar}, {nv}, {nc}>(&parts, {solve})
+        }}
+        /// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
+        ///
+        /// # Errors
+        /// `Singular` where constraints lose rank.
+        pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
+            use ::linkwork::__private::{{columns, constrained_derivatives}};
+            let inputs = self.__input_derivatives({pass}q, v, u);
+            let (a, lambda) = self.constrained_dynamics({pass}q, v, &columns::<{scalar}, {nv}, 1>(&inputs, 0));
+            let mut parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
+            for k in 0..{both} {{ parts[k] -= inputs[{nv} + k]; }}
+            let (by_q, by_v, by_force) = constrained_derivatives::<{scalar}, {nv}, {nc}>(&parts, {solve});
+            ::linkwork::__private::Motion {{
+                by_q,
+                by_v,
+                by_u: by_force * columns::<{scalar}, {nv}, {nu}>(&inputs, {from}),
+                jacobian: self.constraint_jacobian({pass}q),
+                rates_by_q: columns::<{scalar}, {nc}, {nv}>(&parts, {rates}),
+                turning: columns::<{scalar}, {nv}, {nv}>(&parts, {turning}),
+                holonomic: {nh},
+                preferred,
+            }}.independent()
+        }}",
+        u = s.vector(nu),
+        nx = np + ns,
+        both = 2 * nv * nv,
+        from = nv + 2 * nv * nv,
     );
 }
 

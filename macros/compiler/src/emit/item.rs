@@ -106,7 +106,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
-    constraints::write_methods(&mut methods, &interface.constraints, &s);
+    constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
     write_manifold(&mut methods, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =

@@ -47,7 +47,7 @@ pub fn write_prepared(
     for f in functions {
         write_function(&mut methods, f, s, content.numbers.is_none());
     }
-    constraints::write_methods(&mut methods, &i.constraints, s);
+    constraints::write_methods(&mut methods, &i.constraints, functions, s);
     write_manifold(&mut methods, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);
 

@@ -9,6 +9,7 @@
 //! after the velocities that its row names: its pivot is then the part of `−J M⁻¹ Jᵀ` that no other row explains.
 
 use super::crba::Matrix;
+use super::derivatives::{ForceDerivatives, symbolic};
 use super::kinematics::velocity_gradient;
 use super::ldl::{Solution, solve_in};
 use crate::expr::Expr;
@@ -108,4 +109,31 @@ pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let symbols =
         |range: std::ops::Range<usize>| range.map(|k| Quantity::Given(k).expr(model.graph)).collect();
     (symbols(0..nv), symbols(nv..nv + nc))
+}
+
+/// What constraints add to the motion to first order.
+pub struct FirstOrder<'g> {
+    /// Derivatives of their forces `Jᵀ λ` at given multipliers.
+    pub forces: ForceDerivatives<'g>,
+    /// Derivatives of `J a + b` at the accelerations `a`.
+    pub accelerations: ForceDerivatives<'g>,
+    /// Derivatives of the rates by `q`.
+    pub rates: Matrix<'g>,
+}
+
+/// The derivatives for given multipliers, symbols as well.
+pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
+    let rows = jacobian(model);
+    let lambda: Vec<Expr<'g>> = (0..rows.len()).map(|k| Quantity::Given(k).expr(model.graph)).collect();
+    let zero = model.graph.zero();
+    let force = |k: usize| rows.iter().zip(&lambda).fold(zero, |sum, (row, l)| sum + row[k] * *l);
+    let forces: Vec<Expr<'g>> = (0..model.nv()).map(force).collect();
+    let along = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
+    let accelerations: Vec<Expr<'g>> =
+        rows.iter().zip(biases(model)).map(|(row, bias)| along(row) + bias).collect();
+    FirstOrder {
+        forces: symbolic::derivatives(model, &forces),
+        accelerations: symbolic::derivatives(model, &accelerations),
+        rates: symbolic::derivatives(model, &rates(model)).by_q,
+    }
 }

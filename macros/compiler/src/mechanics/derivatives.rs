@@ -102,7 +102,8 @@ pub fn linearized<'g>(
     found
 }
 
-fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
+/// `m − other`, entry by entry.
+pub fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
     for (entry, other) in m.iter_mut().flatten().zip(other.iter().flatten()) {
         *entry -= *other;
     }

@@ -175,7 +175,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             potentials: Vec::new(),
             dissipations: Vec::new(),
             constraints: Vec::new(),
-            freedom: 0,
+            freedom: [0; 2],
             loads: Vec::new(),
             inertances: Vec::new(),
             outputs: Vec::new(),

@@ -81,7 +81,7 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
-        self.model.freedom = self.model.nv();
+        self.model.freedom = [self.model.nv(); 2];
         if cx.is_empty() {
             redundancy::check_constant(&self.model, cx);
         }

@@ -47,19 +47,20 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     found
 }
 
-/// Counts the degrees of freedom. Reports a mechanism that cannot move.
-pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> usize {
+/// Counts the degrees of freedom, of configurations and of velocities. Reports a mechanism that cannot move.
+pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> [usize; 2] {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = Rows::of(model);
-    let free = |(q, seed): &Witness| nv - basis_of(&rows.values(q, *seed), 1e-7).len();
-    let Some(most) = witnesses.iter().map(free).max() else { return nv.saturating_sub(nc) };
-    if most == 0 {
+    let free = |(q, seed): &Witness, rank: usize| nv - basis_of(&rows.values(q, *seed)[..rank], 1e-7).len();
+    let most = |rank: usize| witnesses.iter().map(|w| free(w, rank)).max().unwrap_or(nv.saturating_sub(rank));
+    let freedom = [most(model.holonomic()), most(nc)];
+    if freedom[1] == 0 && !witnesses.is_empty() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
             "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
         ));
     }
-    most
+    freedom
 }
 
 /// Constraints as expressions to be evaluated.

@@ -380,8 +380,8 @@ pub struct Model<'g> {
     pub inertances: Vec<Inertance<'g>>,
     /// Scalar constraints; those on configurations first.
     pub constraints: Vec<Constraint<'g>>,
-    /// Degrees of freedom: independent velocities.
-    pub freedom: usize,
+    /// Degrees of freedom: independent coordinates and independent velocities.
+    pub freedom: [usize; 2],
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
     /// Units of parameters, coordinates, inputs and outputs.

@@ -1,0 +1,174 @@
+//! Constrained motion to first order: derivatives of the accelerations, and the linear system in independent
+//! coordinates and speeds.
+
+use super::ConstraintError;
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+/// The motion to first order about a state, in `NP` independent coordinates and `NS` independent speeds:
+/// `ẋ = A x + B δu` with `x` the displacements of the coordinates (body-axes motions for ball and free joints), then the
+/// changes of the speeds. `NX = NP + NS`.
+///
+/// All other coordinates and speeds follow from the constraints. Constraints on velocities alone leave more coordinates
+/// than speeds: a rolling wheel has somewhere to go that it cannot slide to (Neimark and Fufaev, *Dynamics of
+/// Nonholonomic Systems*, 1972).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, const NS: usize> {
+    /// `A`.
+    pub a: SMatrix<T, NX, NX>,
+    /// `B`.
+    pub b: SMatrix<T, NX, NU>,
+    /// The independent coordinates: indices in `v` of their rates.
+    pub coordinates: [usize; NP],
+    /// The independent speeds: indices in `v`.
+    pub speeds: [usize; NS],
+}
+
+/// A part of several matrices whose columns follow each other.
+pub fn columns<T: Real, const R: usize, const C: usize>(all: &[T], first: usize) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|i, j| all.get(first + j * R + i).copied().unwrap_or(T::zero()))
+}
+
+/// Derivatives of the accelerations by `q`, `v` and `τ`. `parts` are the derivatives, by `q` and `v`, of the forces that
+/// are missing in the equations of motion at given accelerations and multipliers, then of the constraints'
+/// accelerations; `solve` gives accelerations for forces and biases.
+pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
+    parts: &[T],
+    solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
+) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>) {
+    let biases = 2 * NV * NV;
+    let answer = |by: usize| {
+        let forces = columns::<T, NV, NV>(parts, by * NV * NV);
+        let bias = columns::<T, NC, NV>(parts, biases + by * NC * NV);
+        each_column(|j| solve(&forces.data.0[j].map(|f| -f), &bias.data.0[j]))
+    };
+    let by_force = each_column(|j| {
+        solve(&core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }), &[T::zero(); NC])
+    });
+    (answer(0), answer(1), by_force)
+}
+
+fn each_column<T: Real, const R: usize, const C: usize>(
+    column: impl Fn(usize) -> SVector<T, R>,
+) -> SMatrix<T, R, C> {
+    let mut m = SMatrix::zeros();
+    for (j, out) in m.data.0.iter_mut().enumerate() {
+        *out = column(j).data.0[0];
+    }
+    m
+}
+
+/// What generated code knows of a motion.
+pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
+    /// Derivatives of the accelerations by `q` and `v`.
+    pub by_q: SMatrix<T, NV, NV>,
+    /// The same by `v`.
+    pub by_v: SMatrix<T, NV, NV>,
+    /// The same by the inputs.
+    pub by_u: SMatrix<T, NV, NU>,
+    /// The Jacobian of the constraints.
+    pub jacobian: SMatrix<T, NC, NV>,
+    /// Derivatives of the constraints' rates by `q`.
+    pub rates_by_q: SMatrix<T, NC, NV>,
+    /// What displacements in turning axes add to their own rates.
+    pub turning: SMatrix<T, NV, NV>,
+    /// How many constraints are on configurations.
+    pub holonomic: usize,
+    /// Velocities that should be independent.
+    pub preferred: &'a [usize],
+}
+
+impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, NV, NC, NU> {
+    /// In independent coordinates and speeds. Where the constraints have less rank than elsewhere, there are more of
+    /// them than `NP` and `NS`: [`ConstraintError::Singular`].
+    pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
+        &self,
+    ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
+        let zero = SMatrix::<T, NC, NV>::zeros();
+        let mut on_configurations = self.jacobian;
+        (self.holonomic..NC).for_each(|k| on_configurations.row_mut(k).fill(T::zero()));
+        let positions = Dependence::of(on_configurations, zero, self.preferred);
+        let speeds = Dependence::of(self.jacobian, -self.rates_by_q, self.preferred);
+        let (coordinates, shape) = positions.free::<NP>()?;
+        let (free, gamma) = speeds.free::<NS>()?;
+        let carried = speeds.particular() * shape;
+        let (by_position, by_speed) = (self.by_q * shape + self.by_v * carried, self.by_v * gamma);
+        let drift = self.turning * shape + carried;
+        let row = |i: usize| if i < NP { coordinates[i] } else { free[i - NP] };
+        let a = SMatrix::from_fn(|i, j| match (i < NP, j < NP) {
+            (true, true) => drift[(row(i), j)],
+            (true, false) => gamma[(row(i), j - NP)],
+            (false, true) => by_position[(row(i), j)],
+            (false, false) => by_speed[(row(i), j - NP)],
+        });
+        let b = SMatrix::from_fn(|i, j| if i < NP { T::zero() } else { self.by_u[(row(i), j)] });
+        Ok(Linearization { a, b, coordinates, speeds: free })
+    }
+}
+
+/// `J x = R y` solved for dependent entries of `x`: Gauss–Jordan elimination with complete pivoting.
+struct Dependence<T, const NV: usize, const NC: usize> {
+    left: SMatrix<T, NC, NV>,
+    right: SMatrix<T, NC, NV>,
+    /// By row: the column of its pivot.
+    pivots: [Option<usize>; NC],
+}
+
+impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
+    fn of(mut left: SMatrix<T, NC, NV>, mut right: SMatrix<T, NC, NV>, preferred: &[usize]) -> Self {
+        let mut pivots = [None; NC];
+        let small = constant::<T>(1e6) * epsilon() * left.amax();
+        for _ in 0..NC {
+            let largest = |spare: bool| {
+                let mut best = (0, 0, T::zero());
+                for j in (0..NV).filter(|j| !(spare && preferred.contains(j))) {
+                    for i in (0..NC).filter(|i| pivots[*i].is_none()) {
+                        if left[(i, j)].abs() > best.2 {
+                            best = (i, j, left[(i, j)].abs());
+                        }
+                    }
+                }
+                Some(best).filter(|best| best.2 > small)
+            };
+            let Some((row, column, _)) = largest(true).or_else(|| largest(false)) else { break };
+            pivots[row] = Some(column);
+            let scale = T::one() / left[(row, column)];
+            left.row_mut(row).scale_mut(scale);
+            right.row_mut(row).scale_mut(scale);
+            for i in (0..NC).filter(|i| *i != row) {
+                let factor = left[(i, column)];
+                for j in 0..NV {
+                    let (l, r) = (left[(row, j)], right[(row, j)]);
+                    left[(i, j)] -= factor * l;
+                    right[(i, j)] -= factor * r;
+                }
+            }
+        }
+        Self { left, right, pivots }
+    }
+
+    /// The independent entries, and how all entries follow from them.
+    fn free<const N: usize>(&self) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
+        let is_free = |j: &usize| !self.pivots.contains(&Some(*j));
+        if (0..NV).filter(is_free).count() != N {
+            return Err(ConstraintError::Singular);
+        }
+        let mut indices = [0; N];
+        indices.iter_mut().zip((0..NV).filter(is_free)).for_each(|(slot, j)| *slot = j);
+        let shape = SMatrix::from_fn(|i, j| match self.pivots.iter().position(|p| *p == Some(i)) {
+            Some(row) => -self.left[(row, indices[j])],
+            None if i == indices[j] => T::one(),
+            None => T::zero(),
+        });
+        Ok((indices, shape))
+    }
+
+    /// The dependent entries where the independent ones are zero, by `y`.
+    fn particular(&self) -> SMatrix<T, NV, NV> {
+        SMatrix::from_fn(|i, j| {
+            let row = self.pivots.iter().position(|p| *p == Some(i));
+            row.map_or(T::zero(), |row| self.right[(row, j)])
+        })
+    }
+}
