@@ -18,6 +18,7 @@ use std::path::PathBuf;
 /// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
 /// | `derivatives` | generates the first derivatives of the dynamics too |
 /// | `centroidal` | generates the centroidal momentum matrix and its bias too |
+/// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |

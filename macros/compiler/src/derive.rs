@@ -17,8 +17,10 @@ mod constraints;
 mod derivatives;
 mod dynamics;
 mod prepared;
+mod regressor;
 pub mod signatures;
 
+use regressor::Identification;
 use signatures::Sizes;
 
 /// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
@@ -45,15 +47,15 @@ pub fn derive_with<'g>(
         }
         return None;
     }
-    let functions = functions(model, requests, passes, &joints, Stage::Whole);
+    let identification = requests.regressor.then(|| Identification::new(model, &joints));
+    let all = |stage| functions(model, requests, passes, &joints, identification.as_ref(), stage);
+    let functions = all(Stage::Whole);
     if functions.iter().any(|f| !f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
             .help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
-    let prepared = requests.prepare.then(|| {
-        prepared::prepared(model.graph, self::functions(model, requests, passes, &joints, Stage::Prepared))
-    });
+    let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
     Some(Output {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
@@ -61,6 +63,7 @@ pub fn derive_with<'g>(
         charts: model.charts.clone(),
         equations: written(model),
         prepared,
+        names: identification.map_or_else(Vec::new, |i| i.names()),
     })
 }
 
@@ -89,6 +92,7 @@ fn functions<'g>(
     requests: Requests,
     passes: Passes,
     joints: &[Joint<'g>],
+    identification: Option<&Identification<'_, 'g>>,
     stage: Stage,
 ) -> Vec<Function> {
     let sizes = Sizes::of(model);
@@ -116,6 +120,9 @@ fn functions<'g>(
     functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output, stage)));
     if requests.derivatives {
         functions.extend(derivatives::functions(model, passes, stage));
+    }
+    if let Some(identification) = identification {
+        functions.extend(identification.functions(joints, stage));
     }
     functions
 }

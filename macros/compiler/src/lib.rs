@@ -215,7 +215,15 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
         };
         let mut functions = signatures::always(&sizes);
-        functions.extend(signatures::requested(&sizes, self.mechanism.requests));
+        let requests = self.mechanism.requests;
+        functions.extend(signatures::requested(&sizes, requests));
+        let mut names = Vec::new();
+        if requests.regressor {
+            // How many base parameters there are, only the equations could tell.
+            let base = vec![String::new(); 7 * sizes.nv];
+            functions.extend(signatures::regressor(&sizes, outline.bodies.len(), base.len()));
+            names = signatures::names(outline.bodies, base);
+        }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
                 // An output may have the wrong name.
@@ -233,7 +241,7 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
             ..self.bare_interface()
         };
-        emit_failed(&interface, &functions, self.mechanism.requests.prepare)
+        emit_failed(&interface, &functions, &names, requests.prepare)
     }
 }
 

@@ -1,6 +1,6 @@
 use linkwork::prelude::*;
 
-#[mechanism(gravity = -g * z, derivatives, prepare)]
+#[mechanism(gravity = -g * z, derivatives, regressor, prepare)]
 struct BeadOnSpinningHoop {
     g: f64,
     m: f64,
@@ -40,6 +40,10 @@ fn main() {
     let _ = hoop.frame_placement(frame!(BeadOnSpinningHoop, "eye"), t, &q);
     let _ = hoop.frame_velocity(bead, t, &q, &v) - hoop.frame_jacobian(bead, t, &q) * v;
     let _ = hoop.frame_acceleration(bead, t, &q, &v, &a);
+    let standard = hoop.standard_parameters();
+    let _ = hoop.joint_torque_regressor(t, &q, &v, &a) * standard;
+    let _ = hoop.base_regressor(t, &q, &v, &a) * hoop.base_parameters(&standard);
+    let _ = (BeadOnSpinningHoop::BODIES, BeadOnSpinningHoop::BASE_PARAMETERS);
     let prepared: PreparedBeadOnSpinningHoop = hoop.prepare();
     let _ = prepared.mass_matrix(t, &q) * prepared.sliding(t, &q, &v).norm();
     let _ = simulate(&hoop).from(q, v);

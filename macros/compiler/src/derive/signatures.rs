@@ -2,8 +2,9 @@
 //! has these alone.
 
 use crate::emit::Argument::{A, Q, T, Tau, U, V};
-use crate::emit::{Argument, Function, Shape};
+use crate::emit::{Argument, Function, Names, Shape};
 use crate::lower::Program;
+use crate::mechanics::regressor::COUNT;
 use crate::model::{Model, Uses};
 use crate::syntax::Requests;
 
@@ -212,6 +213,60 @@ pub fn centroidal(sizes: &Sizes) -> Vec<Function> {
             Shape::Vector(6),
             &["`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) where all accelerations are zero, so that it is `A v̇ + Ȧ v` in every motion."],
         ),
+    ]
+}
+
+/// The functions of the word `regressor`, for so many bodies and base parameters.
+pub fn regressor(sizes: &Sizes, bodies: usize, base: usize) -> Vec<Function> {
+    let standard = COUNT * bodies;
+    vec![
+        sizes.function(
+            "joint_torque_regressor",
+            &[Q, V, A],
+            Shape::Matrix(sizes.nv, standard),
+            &[
+                "Regressor `Y(q, v, a)`: without springs, friction and other elements, [`inverse_dynamics`](Self::inverse_dynamics) is `Y π`, with the [`standard_parameters`](Self::standard_parameters) `π`.",
+                "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* (1986); columns as in Pinocchio.",
+            ],
+        ),
+        constant(
+            "standard_parameters",
+            Shape::Vector(standard),
+            &["The mass properties `π`: for every one of `BODIES`, with all that is fixed to it, its mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) about the body's origin in its axes."],
+        ),
+        sizes.function(
+            "base_regressor",
+            &[Q, V, A],
+            Shape::Matrix(sizes.nv, base),
+            &["The regressor of the base parameters, whose columns are linearly independent: `base_regressor(q, v, a) · base_parameters(π)` is `joint_torque_regressor(q, v, a) · π` for every `π`."],
+        ),
+        Function {
+            arguments: vec![Argument::Standard(standard)],
+            ..constant(
+                "base_parameters",
+                Shape::Vector(base),
+                &[
+                    "The base parameters of given standard parameters: the fewest linear combinations by which mass properties act on the motion, all that can be identified from it.",
+                    "What a joint's motion neither changes nor sets moving is moved to the parent (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial robots*, 1990); what then still depends on others is found in numbers. Where the geometry has parameters, combinations whose factors depend on them beyond those rules are left apart.",
+                ],
+            )
+        },
+    ]
+}
+
+/// The lists of names that go with them.
+pub fn names(bodies: Vec<String>, base: Vec<String>) -> Vec<Names> {
+    vec![
+        Names {
+            name: "BODIES",
+            about: "the body that every ten standard parameters belong to, with all that is fixed to it",
+            list: bodies,
+        },
+        Names {
+            name: "BASE_PARAMETERS",
+            about: "every base parameter: the parameter of a link, about the frame of its joint, that stands for the combination",
+            list: base,
+        },
     ]
 }
 

@@ -312,6 +312,7 @@ fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'
             Argument::Q => (s.nq, false),
             Argument::V | Argument::A | Argument::Tau => (s.nv, false),
             Argument::U => (s.nu, false),
+            Argument::Standard(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
         };
         if n == 0 {

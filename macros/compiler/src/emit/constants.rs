@@ -1,6 +1,6 @@
 //! Associated constants of a mechanism.
 
-use super::item::Interface;
+use super::item::{Interface, Names};
 use crate::expr::print::Written;
 use std::fmt::Write;
 
@@ -30,9 +30,12 @@ fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
 }
 
 /// Sizes, names, equations.
-pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written) {
+pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, names: &[Names]) {
     write_sizes(out, i);
     write_names(out, "FRAMES", &i.frames, "every frame");
+    for names in names {
+        write_names(out, names.name, &names.list, names.about);
+    }
     let texts = [
         (
             "EQUATIONS",

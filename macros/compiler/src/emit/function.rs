@@ -24,6 +24,8 @@ pub enum Argument {
     U,
     /// Given numbers: name of the argument, index of the first, how many.
     Given(&'static str, usize, usize),
+    /// Parameters of mass properties, so many given numbers in a vector.
+    Standard(usize),
 }
 
 impl Argument {
@@ -37,6 +39,7 @@ impl Argument {
             Argument::Tau => "tau",
             Argument::U => "u",
             Argument::Given(name, ..) => name,
+            Argument::Standard(_) => "standard",
         }
     }
 
@@ -51,6 +54,7 @@ impl Argument {
             (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
                 Some(k - first)
             }
+            (Argument::Standard(_), Quantity::Given(k)) => Some(k),
             _ => None,
         }
     }
@@ -121,6 +125,7 @@ impl Signature<'_> {
             Argument::Q => self.nq,
             Argument::V | Argument::A | Argument::Tau => self.nv,
             Argument::U => self.nu,
+            Argument::Standard(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
         };
         format!("&{}", self.vector(n))

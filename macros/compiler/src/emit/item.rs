@@ -60,6 +60,18 @@ pub struct Output {
     pub equations: Written,
     /// The functions of numbers that are computed before, if they were asked for.
     pub prepared: Option<Prepared>,
+    /// Further lists of names.
+    pub names: Vec<Names>,
+}
+
+/// A constant with names.
+pub struct Names {
+    /// Its own name.
+    pub name: &'static str,
+    /// What they are the names of.
+    pub about: &'static str,
+    /// The names.
+    pub list: Vec<String>,
 }
 
 /// Functions of the traits that depend on the state, with their arguments there.
@@ -102,7 +114,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, &output.equations);
+    write_constants(&mut methods, interface, &output.equations, &output.names);
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
@@ -139,11 +151,16 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
 }
 
 /// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
-pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], prepare: bool) -> Emitted {
+pub fn emit_failed(
+    interface: &Interface<'_>,
+    functions: &[Function],
+    names: &[Names],
+    prepare: bool,
+) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, &Written::default());
+    write_constants(&mut methods, interface, &Written::default(), names);
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }

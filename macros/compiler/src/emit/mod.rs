@@ -15,5 +15,5 @@ mod scalar;
 
 pub use constraints::Constraints;
 pub use function::{Argument, Function, Shape};
-pub use item::{Emitted, Interface, Output, emit_failed, emit_mechanism};
+pub use item::{Emitted, Interface, Names, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;

@@ -13,11 +13,13 @@ pub mod energy;
 pub mod equations;
 pub mod forces;
 pub mod frames;
+pub mod independence;
 pub mod inertances;
 pub mod lagrange;
 pub mod ldl;
 pub mod momentum;
 pub mod power;
+pub mod regressor;
 pub mod regularity;
 pub mod rnea;
 

@@ -5,7 +5,7 @@
 use super::kinematics::{Joint, resistance};
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
-use crate::model::{Inertia, Model};
+use crate::model::{Inertia, Model, Pose};
 
 /// `τ = M a + h`. Without accelerations it is the bias `h` alone.
 pub fn inverse_dynamics<'g>(
@@ -42,7 +42,7 @@ pub fn wrenches<'g>(
 
 /// Motion of a link: angular velocity, its products, angular acceleration, `U`, acceleration of the origin.
 #[derive(Clone, Copy)]
-struct State<'g> {
+pub(super) struct State<'g> {
     w: Vec3<'g>,
     /// `wx²`, `wy²`, `wz²`.
     squares: Vec3<'g>,
@@ -66,10 +66,16 @@ impl<'g> State<'g> {
         ]);
         State { w, squares: Vec3([xx, yy, zz]), products, dw, u, a }
     }
+
+    /// The motion of a frame that is fixed in the link.
+    pub(super) fn seen_from(&self, pose: &Pose<'g>) -> State<'g> {
+        let turned = |v| pose.rotation.to_child(v);
+        State::new(turned(self.w), turned(self.dw), turned(self.a + self.u * pose.translation))
+    }
 }
 
 /// Outward recursion. Gravity is an acceleration of the ground upwards.
-fn motion<'g>(
+pub(super) fn motion<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
@@ -101,7 +107,7 @@ fn motion<'g>(
 }
 
 /// The wrench that gives a body its acceleration, about the link's origin.
-fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
+pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
     let (i, u) = (&inertia.tensor, &s.u.0);
     // Component k of I ẇ + w × I w, gathered by the entries of I; (k, l, m) cyclic.
     let mut moment = inertia.moment.cross(s.a);

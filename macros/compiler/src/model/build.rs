@@ -496,12 +496,13 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn add_frames(&mut self) {
         let d = self.description;
-        let names = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
+        let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
+        let massive = massive.map(|name| (name, true));
         let world = self.scope.world.borrow();
-        for name in names.chain(d.points.iter().map(|p| &p.name)) {
+        for (name, massive) in massive.chain(d.points.iter().map(|p| (&p.name, false))) {
             if let Some(p) = world.places.get(&name.text) {
                 let (name, link, pose) = (name.text.clone(), p.link, p.pose.clone());
-                self.model.frames.push(NamedFrame { name, link, pose });
+                self.model.frames.push(NamedFrame { name, massive, link, pose });
             }
         }
     }

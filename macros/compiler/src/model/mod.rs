@@ -261,11 +261,13 @@ pub struct Link<'g> {
     pub inertia: Inertia<'g>,
 }
 
-/// A named frame: a body's or a particle's.
+/// A named frame: a body's, a particle's or a point's.
 #[derive(Clone, Debug)]
 pub struct NamedFrame<'g> {
     /// Name.
     pub name: String,
+    /// It may have mass: it is no point.
+    pub massive: bool,
     /// The link it is fixed in; the ground if none.
     pub link: Option<LinkId>,
     /// Its placement in the link's frame.

@@ -3,7 +3,7 @@
 
 use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
-use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Joint, Law};
+use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Joint, JointKind, Law};
 use std::collections::BTreeSet;
 
 /// A guess at the interface of a mechanism.
@@ -16,6 +16,8 @@ pub struct Outline {
     pub inputs: Vec<String>,
     /// Names of the frames.
     pub frames: Vec<String>,
+    /// Names of the bodies that move by themselves.
+    pub bodies: Vec<String>,
     /// Functions take time first.
     pub time: bool,
     /// Inputs act by way of the velocity.
@@ -63,6 +65,7 @@ pub fn outline(d: &Description) -> Outline {
         }),
         outputs: d.outputs.iter().map(|output| outlined(d, output)).collect(),
         frames: frames(d),
+        bodies: bodies(d),
         configuration,
         velocities,
         inputs,
@@ -93,6 +96,16 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
 fn frames(d: &Description) -> Vec<String> {
     let bodies = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
     bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone()).collect()
+}
+
+/// Names of the bodies and particles that are not welded to others.
+fn bodies(d: &Description) -> Vec<String> {
+    let particles = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
+    let welded = |name: &str| {
+        d.joints.iter().any(|joint| joint.kind == JointKind::Weld && joint.child.body.text == name)
+    };
+    let all = d.bodies.iter().map(|b| &b.name).chain(particles).map(|name| name.text.clone());
+    all.filter(|name| !welded(name)).collect()
 }
 
 fn outlined(d: &Description, output: &Definition) -> OutlinedOutput {

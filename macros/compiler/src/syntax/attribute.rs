@@ -29,6 +29,8 @@ pub struct Requests {
     pub derivatives: bool,
     /// The matrix of the momentum, and its bias.
     pub centroidal: bool,
+    /// The dynamics as linear functions of the mass properties.
+    pub regressor: bool,
     /// A second struct that holds what depends on the parameters alone.
     pub prepare: bool,
 }
@@ -69,7 +71,7 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 3] = ["derivatives", "centroidal", "prepare"];
+const REQUESTS: [&str; 4] = ["derivatives", "centroidal", "regressor", "prepare"];
 
 /// The options that have a value.
 const OPTIONS: [&str; 10] =
@@ -367,6 +369,7 @@ fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut 
     let requests = Requests {
         derivatives: asked("derivatives").is_some(),
         centroidal: asked("centroidal").is_some(),
+        regressor: asked("regressor").is_some(),
         prepare: prepare.is_some(),
     };
     if let Some(place) = prepare.filter(|_| description.parameters.is_empty()) {

@@ -1,0 +1,129 @@
+//! The functions of the word `regressor`: the dynamics as linear functions of the mass properties, and the smallest set
+//! of combinations that they act by.
+
+use super::Stage;
+use super::signatures::{self, Sizes};
+use crate::emit::{Function, Names};
+use crate::expr::Expr;
+use crate::mechanics::independence::{Part, independent};
+use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
+use crate::mechanics::{self, Joint};
+use crate::model::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity};
+use crate::passes::{Gauge, Regroup, regroup};
+
+/// What identification needs to know of a model.
+pub(super) struct Identification<'a, 'g> {
+    model: &'a Model<'g>,
+    /// The first body of each link that carries some.
+    bodies: Vec<&'a NamedFrame<'g>>,
+    base: Base<'g>,
+}
+
+/// The base parameters.
+struct Base<'g> {
+    /// A link and one of its ten parameters, about the link's own frame.
+    entries: Vec<(usize, usize)>,
+    /// The combination of the bodies' parameters that acts there.
+    values: Vec<Expr<'g>>,
+    /// The generalized forces per unit.
+    columns: Vec<Vec<Expr<'g>>>,
+}
+
+impl<'a, 'g> Identification<'a, 'g> {
+    pub(super) fn new(model: &'a Model<'g>, joints: &[Joint<'g>]) -> Identification<'a, 'g> {
+        let first = |link: usize| model.frames.iter().find(|f| f.massive && f.link == Some(LinkId(link)));
+        let bodies: Vec<&NamedFrame<'g>> = (0..model.links.len()).filter_map(first).collect();
+        let base = base(model, joints, &bodies);
+        Identification { model, bodies, base }
+    }
+
+    /// The functions.
+    pub(super) fn functions(&self, joints: &[Joint<'g>], stage: Stage) -> Vec<Function> {
+        let (bodies, count) = (self.bodies.len(), self.base.entries.len());
+        let mut functions = signatures::regressor(&Sizes::of(self.model), bodies, count);
+        for f in &mut functions {
+            f.program = match f.name.as_str() {
+                "joint_torque_regressor" => stage.program(&self.regressor(joints)),
+                "standard_parameters" => stage.program(&self.standard()),
+                "base_regressor" => stage.program(&self.base.columns.concat()),
+                _ => stage.program(&self.base.values),
+            };
+        }
+        functions
+    }
+
+    /// Names of the bodies and of the base parameters.
+    pub(super) fn names(&self) -> Vec<Names> {
+        let link = |k: usize| {
+            let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
+            let moved = || mechanics::joints(self.model)[k].dofs.first().map(|d| d.index);
+            let joint = || moved().map_or(String::new(), |v| self.model.velocities[v].0.clone());
+            body.map_or_else(joint, |body| body.name.clone())
+        };
+        let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", link(*k), NAMES[*p]));
+        signatures::names(self.bodies.iter().map(|body| body.name.clone()).collect(), base.collect())
+    }
+
+    fn regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+        let (v, a) = (mechanics::velocities(self.model), mechanics::accelerations(self.model));
+        let sites: Vec<Site<'g>> = self.bodies.iter().filter_map(|body| site(body)).collect();
+        let all: Vec<(usize, usize)> =
+            (0..sites.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p))).collect();
+        columns(self.model, joints, &v, &a, &sites, &all).concat()
+    }
+
+    /// The parameters that the model has.
+    fn standard(&self) -> Vec<Expr<'g>> {
+        let zero = Inertia::zero(self.model.graph);
+        let sites = self.bodies.iter().filter_map(|body| site(body));
+        sites
+            .flat_map(|site| {
+                let back = site.pose.inverse();
+                let own = &self.model.links[site.link.0].inertia;
+                parameters(&zero.plus_placed(own, &back.rotation, back.translation))
+            })
+            .collect()
+    }
+}
+
+fn site<'g>(body: &NamedFrame<'g>) -> Option<Site<'g>> {
+    Some(Site { link: body.link?, pose: body.pose.clone() })
+}
+
+/// What acts of given parameters of the bodies: moved towards the base as far as they go (Gautier and Khalil 1990), then
+/// without those that still depend on others.
+fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>]) -> Base<'g> {
+    let g = model.graph;
+    let mut given = model.clone();
+    given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
+    for (k, site) in bodies.iter().filter_map(|body| site(body)).enumerate() {
+        let own = inertia(std::array::from_fn(|p| Quantity::Given(COUNT * k + p).expr(g)));
+        let link = &mut given.links[site.link.0].inertia;
+        *link = link.plus_placed(&own, &site.pose.rotation, site.pose.translation);
+    }
+    regroup(&mut given, Regroup { gauge: Gauge::Second, anchors: false, symbolic: true });
+
+    let left: Vec<[Expr<'g>; COUNT]> = given.links.iter().map(|link| parameters(&link.inertia)).collect();
+    let all = (0..left.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p)));
+    let entries: Vec<(usize, usize)> = all.filter(|(k, p)| !left[*k][*p].is_zero()).collect();
+    let sites: Vec<Site<'g>> =
+        (0..left.len()).map(|k| Site { link: LinkId(k), pose: Pose::identity(g) }).collect();
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let columns = columns(model, joints, &v, &a, &sites, &entries);
+
+    let parts = independent(model, &columns);
+    let mut values: Vec<Expr<'g>> = entries.iter().map(|(k, p)| left[*k][*p]).collect();
+    for (k, part) in parts.iter().enumerate() {
+        if let Part::Combined(list) = part {
+            let dependent = values[k];
+            list.iter().for_each(|(i, factor)| values[*i] += dependent * *factor);
+        }
+    }
+    let kept = |k: &usize| parts[*k] == Part::Own;
+    let kept: Vec<usize> = (0..entries.len()).filter(kept).collect();
+    Base {
+        entries: kept.iter().map(|k| entries[*k]).collect(),
+        values: kept.iter().map(|k| values[*k]).collect(),
+        columns: kept.iter().map(|k| columns[*k].clone()).collect(),
+    }
+}

@@ -1,0 +1,125 @@
+//! Which of several columns of expressions depend linearly on the others, in numbers: they are evaluated at random
+//! states, and what adds nothing to those before it is a combination of them.
+
+use crate::expr::eval::eval;
+use crate::expr::{Expr, Symbol};
+use crate::model::{Model, Quantity, random_configuration, sample};
+
+/// A column that is left of another one in proportion to it, and counts as nothing.
+const TOLERANCE: f64 = 1e-8;
+
+/// A sum of columns: index, factor.
+pub type Combination = Vec<(usize, f64)>;
+
+/// What becomes of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Part {
+    /// It is independent of those before it.
+    Own,
+    /// It is this combination of independent ones before it, an empty one if it is zero.
+    Combined(Combination),
+}
+
+/// Sorts columns of equal length. Factors that depend on the parameters are none: such a column counts as independent.
+pub fn independent(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
+    let one = parts(&values(model, columns, 0));
+    if model.parameters.is_empty() {
+        return one;
+    }
+    let other = parts(&values(model, columns, 1));
+    let same = |(one, other): (Part, Part)| match (&one, &other) {
+        (Part::Combined(a), Part::Combined(b)) if !agree(a, b) => Part::Own,
+        _ => one,
+    };
+    one.into_iter().zip(other).map(same).collect()
+}
+
+fn agree(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
+    let close = |x: f64, y: f64| (x - y).abs() <= 1e-6 * (1.0 + x.abs());
+    a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && close(*x, *y))
+}
+
+/// Each column at so many states that they are more than the columns, for one choice of parameters.
+fn values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
+    let all: Vec<Expr<'_>> = columns.concat();
+    let height = columns.first().map_or(1, Vec::len).max(1);
+    let states = columns.len().div_ceil(height) + 4;
+    let mut rows = vec![Vec::new(); columns.len()];
+    for state in 0..states as u64 {
+        let at = 1000 * (seed + 1) + state;
+        let q = random_configuration(model, at);
+        let found = eval(&all, &|s: Symbol| match Quantity::of(s) {
+            Quantity::Configuration(k) => q[k],
+            Quantity::Parameter(_) => sample(s, seed),
+            _ => 4.0 * (sample(s, at) - 1.0),
+        });
+        for (row, found) in rows.iter_mut().zip(found.chunks(height)) {
+            row.extend_from_slice(found);
+        }
+    }
+    rows
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Orthogonalises one column after another (Gram and Schmidt, twice for the sake of rounding).
+fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
+    let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
+    // Unit vectors, each with its combination of independent columns.
+    let mut base: Vec<(Vec<f64>, Combination)> = Vec::new();
+    let mut parts = Vec::with_capacity(columns.len());
+    for (k, column) in columns.iter().enumerate() {
+        let size = dot(column, column).sqrt();
+        if size <= TOLERANCE * largest {
+            parts.push(Part::Combined(Vec::new()));
+            continue;
+        }
+        let mut rest = column.clone();
+        let mut along = vec![0.0; base.len()];
+        for _ in 0..2 {
+            for (share, (unit, _)) in along.iter_mut().zip(&base) {
+                let part = dot(unit, &rest);
+                *share += part;
+                rest.iter_mut().zip(unit).for_each(|(r, u)| *r -= part * u);
+            }
+        }
+        let mut combination = vec![0.0; k];
+        for (share, (_, of)) in along.iter().zip(&base) {
+            of.iter().for_each(|(i, factor)| combination[*i] += share * factor);
+        }
+        let left = dot(&rest, &rest).sqrt();
+        if left > TOLERANCE * size {
+            let mut of: Combination =
+                (0..k).filter(|i| combination[*i] != 0.0).map(|i| (i, -combination[i] / left)).collect();
+            of.push((k, 1.0 / left));
+            base.push((rest.iter().map(|r| r / left).collect(), of));
+            parts.push(Part::Own);
+        } else {
+            let size_of = |i: usize| dot(&columns[i], &columns[i]).sqrt();
+            let matters = |i: &usize| (combination[*i] * size_of(*i)).abs() > 1e-7 * size;
+            parts.push(Part::Combined((0..k).filter(matters).map(|i| (i, combination[i])).collect()));
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Part, parts};
+
+    #[test]
+    fn combinations_are_found() {
+        let (a, b) = (vec![1.0, 2.0, -1.0, 0.5], vec![0.3, -1.0, 2.0, 4.0]);
+        let zero = vec![0.0; 4];
+        let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
+        let d = vec![1.0, 0.0, 0.0, 0.0];
+        let found = parts(&[a, zero, b, c, d]);
+        assert_eq!((&found[0], &found[2], &found[4]), (&Part::Own, &Part::Own, &Part::Own));
+        assert_eq!(found[1], Part::Combined(Vec::new()));
+        let Part::Combined(list) = &found[3] else { panic!("{found:?}") };
+        let [(0, x), (2, y)] = list[..] else { panic!("{list:?}") };
+        assert!((x - 2.0).abs() < 1e-12 && (y + 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,97 @@
+//! Inverse dynamics as a linear function of the mass properties: `τ = Y π`, with ten parameters for each frame in which
+//! mass properties are given (Atkeson, An and Hollerbach 1986). Springs, friction and other elements stay outside.
+
+use super::Spatial;
+use super::kinematics::Joint;
+use super::rnea::{motion, newton_euler};
+use crate::expr::{Expr, Sym3, Vec3};
+use crate::model::{Inertia, LinkId, Model, Pose};
+
+/// Parameters of a frame.
+pub const COUNT: usize = 10;
+
+/// Their names: mass, first moment `m c`, inertia about the frame's origin, in Pinocchio's order.
+pub const NAMES: [&str; COUNT] = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz", "yz", "zz"];
+
+/// Row and column in the inertia of the parameters after the fourth.
+const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
+
+/// A frame that is fixed in a link.
+#[derive(Clone)]
+pub struct Site<'g> {
+    /// The link.
+    pub link: LinkId,
+    /// The frame in the link's.
+    pub pose: Pose<'g>,
+}
+
+/// The ten parameters of mass properties.
+pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
+    std::array::from_fn(|k| match k {
+        0 => inertia.mass,
+        1..4 => inertia.moment[k - 1],
+        _ => inertia.tensor.at(ENTRIES[k - 4].0, ENTRIES[k - 4].1),
+    })
+}
+
+/// The mass properties with these parameters.
+pub fn inertia<'g>(parameters: [Expr<'g>; COUNT]) -> Inertia<'g> {
+    let [mass, x, y, z, xx, xy, yy, xz, yz, zz] = parameters;
+    let tensor = Sym3 { diagonal: [xx, yy, zz], off: [xy, xz, yz] };
+    Inertia { mass, moment: Vec3([x, y, z]), tensor }
+}
+
+/// The columns of `Y` for parameters of frames: the generalized forces per unit of each. `wanted` are pairs of a
+/// frame's index and a parameter's.
+pub fn columns<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    a: &[Expr<'g>],
+    sites: &[Site<'g>],
+    wanted: &[(usize, usize)],
+) -> Vec<Vec<Expr<'g>>> {
+    let g = model.graph;
+    let states = motion(model, joints, v, Some(a));
+    let subspaces = subspaces(model, joints);
+    let mut columns = Vec::with_capacity(wanted.len());
+    let mut at: Option<(usize, Vec<(usize, Spatial<'g>)>)> = None;
+    for &(index, parameter) in wanted {
+        let site = &sites[index];
+        let state = states[site.link.0].seen_from(&site.pose);
+        let mut unit = [g.zero(); COUNT];
+        unit[parameter] = g.one();
+        let wrench = newton_euler(&inertia(unit), &state);
+        let seen = match at.take().filter(|(known, _)| *known == index) {
+            Some((_, seen)) => seen,
+            None => subspaces[site.link.0].iter().map(|(k, s)| (*k, seen_from(&site.pose, s))).collect(),
+        };
+        let mut column = vec![g.zero(); model.nv()];
+        for (k, subspace) in &seen {
+            column[*k] += subspace.dot(&wrench);
+        }
+        columns.push(column);
+        at = Some((index, seen));
+    }
+    columns
+}
+
+/// By link, the twist that a unit of each velocity gives it, in its axes.
+fn subspaces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
+    let mut all: Vec<Vec<(usize, Spatial<'g>)>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let carried = joint.parent.map_or(&[][..], |p| &all[p.0]);
+        let mut own: Vec<_> = carried.iter().map(|(k, s)| (*k, joint.twist_to_child(s))).collect();
+        own.extend(joint.dofs.iter().map(|d| (d.index, d.subspace.times(model.graph.num(d.ratio)))));
+        all.push(own);
+    }
+    all
+}
+
+/// A twist of a link as one of a frame that is fixed in it.
+fn seen_from<'g>(pose: &Pose<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
+    Spatial {
+        linear: pose.rotation.to_child(twist.linear + twist.angular.cross(pose.translation)),
+        angular: pose.rotation.to_child(twist.angular),
+    }
+}
