@@ -20,6 +20,7 @@ use std::path::PathBuf;
 /// | `centroidal` | generates the centroidal momentum matrix and its bias too |
 /// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
+/// | `batch` | generates every function of the state for several states at once too |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
 /// | `passive = honour` or `ignore` | damping and friction of the file's joints |

@@ -17,6 +17,7 @@ use core::fmt;
 use core::ops::{
     Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
+use nalgebra::SVector;
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///
@@ -123,6 +124,27 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     pub fn mul_add(self, b: Self, c: Self) -> Self {
         if private::FUSED { Self(vector::fused(&self.0, &b.0, &c.0)) } else { self * b + c }
     }
+}
+
+/// A constant or parameter in all lanes, for generated code.
+#[inline(always)]
+pub fn splat<T: Copy, const N: usize>(x: T) -> Lanes<T, N> {
+    Lanes::splat(x)
+}
+
+/// One lane of a column, for generated code.
+#[inline]
+pub fn lane<T: Real, const N: usize, const R: usize>(x: &SVector<Lanes<T, N>, R>, k: usize) -> SVector<T, R> {
+    x.map(|x| x.0.get(k).copied().unwrap_or(T::zero()))
+}
+
+/// A column from the columns of its lanes, for generated code.
+#[inline]
+pub fn lane_by_lane<T: Real, const N: usize, const R: usize>(
+    f: impl FnMut(usize) -> SVector<T, R>,
+) -> SVector<Lanes<T, N>, R> {
+    let columns: [SVector<T, R>; N] = core::array::from_fn(f);
+    SVector::from_fn(|i, _| Lanes(columns.each_ref().map(|column| column.data.0[0][i])))
 }
 
 impl<T, const N: usize> From<[T; N]> for Lanes<T, N> {

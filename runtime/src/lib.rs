@@ -20,6 +20,7 @@ extern crate self as linkwork;
 #[cfg(test)]
 extern crate std;
 
+pub use batch::Batch;
 pub use constraint::{Constrained, ConstraintError};
 pub use frame::{FrameIndex, NamedFrame};
 pub use lanes::Lanes;
@@ -29,6 +30,7 @@ pub use nalgebra;
 pub use rheonomic::{At, Rheonomic, at};
 pub use simulate::simulate;
 
+pub mod batch;
 pub mod constraint;
 pub mod elements;
 mod frame;
@@ -47,8 +49,9 @@ mod trigonometry;
 pub mod prelude {
     pub use crate::elements::*;
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, SemiImplicitEuler};
+    pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
-    pub use crate::{Constrained, ConstraintError, Mechanism, Real, at, frame, mechanism};
+    pub use crate::{Batch, Constrained, ConstraintError, Mechanism, Real, at, frame, mechanism};
     pub use nalgebra::{SMatrix, SVector};
 }
 
@@ -59,6 +62,7 @@ pub mod __private {
         Motion, columns, constrained_derivatives, least_multipliers, regular_solution,
     };
     pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
+    pub use crate::lanes::{lane, lane_by_lane, splat};
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,

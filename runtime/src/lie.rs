@@ -6,6 +6,8 @@
 
 use crate::Real;
 use crate::private::{constant, epsilon};
+use crate::trigonometry::{sin_cos, sin_cos_all};
+use core::cmp::Ordering;
 
 /// `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
 const BERNOULLI: [f64; 8] = [
@@ -62,33 +64,60 @@ fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
     add(a, scale(cross(u, inner), constant(2.0)))
 }
 
+/// `small(x)` below the limit, else `large(x)`. Where lanes differ both are evaluated, each on its own side of the limit,
+/// and every lane gets exactly the one that it would get alone.
+fn choose<T: Real, const K: usize>(
+    x: T,
+    limit: T,
+    small: impl Fn(T) -> [T; K],
+    large: impl Fn(T) -> [T; K],
+) -> [T; K] {
+    match x.partial_cmp(&limit) {
+        Some(Ordering::Less) => return small(x),
+        Some(_) => return large(x),
+        None => {}
+    }
+    let is_large = (T::one() + T::one().copysign(x - limit)) * constant(0.5);
+    let is_small = T::one() - is_large;
+    let mut values = small(x * is_small + limit * is_large);
+    for (value, other) in values.iter_mut().zip(large(limit * is_small + x * is_large)) {
+        *value = *value * is_small + other * is_large;
+    }
+    values
+}
+
 /// The unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
 pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
-    let (factor, w) = if square < epsilon::<T>() {
+    let [factor, w] = choose(
+        square,
+        epsilon(),
         // The first neglected terms, θ⁴/3840 and θ⁴/384, are far below rounding.
-        (constant::<T>(0.5) - square / constant(48.0), T::one() - square / constant(8.0))
-    } else {
-        let angle = square.sqrt();
-        let (sin, cos) = (angle * constant(0.5)).sin_cos();
-        (sin / angle, cos)
-    };
+        |square| [constant::<T>(0.5) - square / constant(48.0), T::one() - square / constant(8.0)],
+        |square| {
+            let angle = square.sqrt();
+            let (sin, cos) = sin_cos(angle * constant(0.5));
+            [sin / angle, cos]
+        },
+    );
     let [x, y, z] = scale(dv, factor);
     [x, y, z, w]
 }
 
 /// The rotation vector of shortest length of a quaternion of any length but zero.
 pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
-    let sign = if w < T::zero() { -T::one() } else { T::one() };
+    let sign = T::one().copysign(w);
     let u = scale([x, y, z], sign);
     let w = w * sign;
-    let square = dot(u, u);
-    let factor = if square < epsilon::<T>() * w * w {
-        constant::<T>(2.0) / w - constant::<T>(2.0 / 3.0) * square / (w * w * w)
-    } else {
-        let sin = square.sqrt();
-        constant::<T>(2.0) * sin.atan2(w) / sin
-    };
+    let [factor] = choose(
+        dot(u, u),
+        epsilon::<T>() * w * w,
+        |square| [constant::<T>(2.0) / w - constant::<T>(2.0 / 3.0) * square / (w * w * w)],
+        |square| {
+            let sin = square.sqrt();
+            [constant::<T>(2.0) * sin.atan2(w) / sin]
+        },
+    );
     scale(u, factor)
 }
 
@@ -107,27 +136,35 @@ const SMALL: f64 = 0.25;
 /// `(1 − (θ/2) cot(θ/2)) / θ²` of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse Jacobians of SO(3).
 /// Not finite at the full turns, where the exponential cannot be inverted.
 fn second_bracket<T: Real>(square: T) -> T {
-    if square < constant(SMALL) {
-        return series(square, 1, |_| 1.0);
-    }
-    let half = square.sqrt() * constant(0.5);
-    (T::one() - half / half.tan()) / square
+    let [factor] = choose(
+        square,
+        constant(SMALL),
+        |square| [series(square, 1, |_| 1.0)],
+        |square| {
+            let half = square.sqrt() * constant(0.5);
+            [(T::one() - half / half.tan()) / square]
+        },
+    );
+    factor
 }
 
 /// Factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3), of `θ²`.
 ///
 /// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree four
 /// that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
-fn even_brackets<T: Real>(square: T) -> (T, T) {
-    if square < constant(SMALL) {
-        return (series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k));
-    }
-    let half = square.sqrt() * constant(0.5);
-    let (sin, cos) = half.sin_cos();
-    let value = T::one() - half * cos / sin;
-    let slope = (half * cos / sin - half * half / (sin * sin)) * constant(0.5);
-    let two = constant::<T>(2.0);
-    ((two * value + slope) / square, (value + slope) / (square * square))
+fn even_brackets<T: Real>(square: T) -> [T; 2] {
+    choose(
+        square,
+        constant(SMALL),
+        |square| [series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k)],
+        |square| {
+            let half = square.sqrt() * constant(0.5);
+            let (sin, cos) = sin_cos(half);
+            let value = T::one() - half * cos / sin;
+            let slope = (half * cos / sin - half * half / (sin * sin)) * constant(0.5);
+            [(constant::<T>(2.0) * value + slope) / square, (value + slope) / (square * square)]
+        },
+    )
 }
 
 /// The bracket `[a, b]` of SE(3) for body velocities, linear part first.
@@ -146,18 +183,25 @@ fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5
 }
 
 /// `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` of `θ²`: the left Jacobian of SO(3) is `1 + a [φ]ₓ + b [φ]ₓ²`.
-pub(crate) fn left_jacobian<T: Real>(square: T) -> (T, T) {
-    if square < constant(0.05) {
-        let polynomial =
-            |terms: [f64; 6]| terms.iter().rev().fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s);
-        return (
-            polynomial([2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
-            polynomial([6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
-        );
-    }
-    let angle = square.sqrt();
-    let half_sin = (angle * constant(0.5)).sin();
-    (constant::<T>(2.0) * half_sin * half_sin / square, (angle - angle.sin()) / (angle * square))
+pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
+    choose(
+        square,
+        constant(0.05),
+        |square| {
+            let polynomial = |terms: [f64; 6]| {
+                terms.iter().rev().fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s)
+            };
+            [
+                polynomial([2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
+                polynomial([6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
+            ]
+        },
+        |square| {
+            let angle = square.sqrt();
+            let ([half_sin, sin], _) = sin_cos_all([angle * constant(0.5), angle]);
+            [constant::<T>(2.0) * half_sin * half_sin / square, (angle - sin) / (angle * square)]
+        },
+    )
 }
 
 /// `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
@@ -193,7 +237,7 @@ pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
     let [x, y, z, rx, ry, rz] = dv;
     let (linear, turn) = ([x, y, z], [rx, ry, rz]);
     let quaternion = normalised([qx, qy, qz, qw]);
-    let (a, b) = left_jacobian(dot(turn, turn));
+    let [a, b] = left_jacobian(dot(turn, turn));
     let first = cross(turn, linear);
     let moved = add(add(linear, scale(first, a)), scale(cross(turn, first), b));
     let [px, py, pz] = add([px, py, pz], rotated(quaternion, moved));
@@ -222,7 +266,7 @@ pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
 pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
-    let (second, fourth) = even_brackets(dot(turn, turn));
+    let [second, fourth] = even_brackets(dot(turn, turn));
     let first = bracket(dv, v);
     let twice = bracket(dv, first);
     let four_times = bracket(dv, bracket(dv, twice));

@@ -105,9 +105,9 @@ fn closed_forms_continue_the_series() {
     let (below, above) = (SMALL - 1e-15, SMALL);
     assert!((second_bracket(below) - second_bracket(above)).abs() < 1e-14);
     let (a, b) = (even_brackets(below), even_brackets(above));
-    assert!((a.0 - b.0).abs() < 1e-14 && (a.1 - b.1).abs() < 1e-13);
+    assert!((a[0] - b[0]).abs() < 1e-14 && (a[1] - b[1]).abs() < 1e-13);
     let (a, b) = (left_jacobian(0.05_f64 - 1e-16), left_jacobian(0.05_f64));
-    assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).abs() < 3e-14);
+    assert!((a[0] - b[0]).abs() < 1e-15 && (a[1] - b[1]).abs() < 3e-14);
 }
 
 #[test]

@@ -120,7 +120,8 @@ pub fn compile_with<'g>(
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
     let output = derive_with(&model, source.mechanism.requests, passes, cx)?;
-    check_outputs(&source.mechanism.description, &output.functions, cx).then_some((model, output))
+    check_outputs(&source.mechanism.description, &output.functions, source.mechanism.requests, cx)
+        .then_some((model, output))
 }
 
 /// Functions of every mechanism that are not derived but written as they are.
@@ -137,13 +138,21 @@ const WRITTEN: [&str; 9] = [
 ];
 
 /// Reports outputs that would be functions of the same name as others.
-fn check_outputs(description: &Description, functions: &[emit::Function], cx: &mut Diagnostics) -> bool {
+fn check_outputs(
+    description: &Description,
+    functions: &[emit::Function],
+    requests: syntax::Requests,
+    cx: &mut Diagnostics,
+) -> bool {
     let outputs = &description.outputs;
     let jacobian = |name: &str| format!("{name}_jacobian");
     // Each output brings one function of its name and may bring its Jacobian: what is there besides was there before.
     let is_taken = |name: &str| {
         let own = outputs.iter().filter(|o| o.name.text == name || jacobian(&o.name.text) == name).count();
-        WRITTEN.contains(&name) || functions.iter().filter(|f| f.name == name).count() > own
+        let one = name.strip_suffix("_lanes").filter(|_| requests.batch);
+        let in_lanes =
+            one.is_some_and(|one| WRITTEN.contains(&one) || functions.iter().any(|f| f.name == one));
+        in_lanes || WRITTEN.contains(&name) || functions.iter().filter(|f| f.name == name).count() > own
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
@@ -200,6 +209,7 @@ impl Source {
             units: model::units::Units::default(),
             time: false,
             velocity_inputs: false,
+            batch: self.mechanism.requests.batch,
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }

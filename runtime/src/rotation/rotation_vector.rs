@@ -99,7 +99,7 @@ impl<T: Real> RotationVector<T> {
     /// Angular velocity in space axes, rad/s:
     /// `ω = φ̇ + ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) / θ³) φ × (φ × φ̇)`. Never singular.
     pub fn omega_space(&self, rate: &Vector3<T>) -> Vector3<T> {
-        let (versine, cubic) = left_jacobian(self.0.norm_squared());
+        let [versine, cubic] = left_jacobian(self.0.norm_squared());
         let first = self.0.cross(rate);
         rate + first * versine + self.0.cross(&first) * cubic
     }

@@ -120,8 +120,8 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
     };
     w.write_instructions();
     let outputs: Vec<Piece> = f.program.outputs.iter().map(|o| w.operand(*o)).collect();
-    if s.scalar.is_generic() {
-        w.helper("constant");
+    for helper in s.scalar.helpers() {
+        w.helper(helper);
     }
     write_prelude(out, f, s, &w);
     write_statements(out, &w.statements, &outputs);
@@ -185,7 +185,12 @@ impl Writer<'_> {
                 (format!("({}, {})", sines[0], cosines[0]), format!("{helper}({one})"))
             }
             _ => {
-                let width = if arguments.len() <= 4 { 4 } else { 8 };
+                // Lanes fill the registers by themselves.
+                let width = match arguments.len() {
+                    _ if self.scalar.is_in_lanes() => 1,
+                    0..=4 => 4,
+                    _ => 8,
+                };
                 while arguments.len() % width != 0 {
                     arguments.push(self.constant(0.0));
                     sines.push("_".to_string());
@@ -223,8 +228,8 @@ impl Writer<'_> {
             return "t".to_string();
         }
         match quantity {
-            Quantity::Parameter(k) => return format!("self.{}", self.scalar.parameter(k)),
-            Quantity::Prepared(k) => return format!("c{k}"),
+            Quantity::Parameter(k) => return self.scalar.value(k),
+            Quantity::Prepared(k) => return self.scalar.spread(format!("c{k}")),
             _ => {}
         }
         self.arguments
@@ -240,7 +245,7 @@ impl Writer<'_> {
                 let text = format!("-{}", wrap(&a, 3));
                 Piece { text, needs: a.needs, level: 2 }
             }
-            Op::Add(a, b) => self.infix(a, "+", b, 1, 1),
+            Op::Add(a, b) => self.infix(a, "+", b, 1, 2),
             Op::Sub(a, b) => self.infix(a, "-", b, 1, 2),
             Op::Mul(a, b) => self.infix(a, "*", b, 2, 3),
             Op::Div(a, b) => self.infix(a, "/", b, 2, 3),

@@ -102,6 +102,7 @@ pub struct Function {
 }
 
 /// Dimensions and names that signatures need.
+#[derive(Clone, Copy)]
 pub struct Signature<'a> {
     /// Spelling of scalars.
     pub scalar: &'a ScalarSpelling,
@@ -158,6 +159,16 @@ impl Signature<'_> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
+    /// What stands after a function's name: nothing, or what tells it from the one of a single state.
+    pub fn generics(&self) -> &'static str {
+        if self.scalar.is_in_lanes() { "_lanes<const LANES: usize>" } else { "" }
+    }
+
+    /// What stands after a function's name where it is called.
+    pub fn suffix(&self) -> &'static str {
+        if self.scalar.is_in_lanes() { "_lanes" } else { "" }
+    }
+
     /// `&self, q: …, v: …`.
     pub fn parameters(&self, arguments: &[Argument]) -> String {
         let mut text = "&self".to_string();
@@ -178,8 +189,9 @@ pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: b
     }
     let _ = writeln!(
         out,
-        "#[inline]\n#[must_use]\npub fn {}({}) -> {} {{",
+        "#[inline]\n#[must_use]\npub fn {}{}({}) -> {} {{",
         f.name,
+        s.generics(),
         s.parameters(&f.arguments),
         s.shape(f.shape)
     );

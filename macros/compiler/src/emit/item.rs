@@ -5,6 +5,7 @@ use super::constraints::{self, Constraints};
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
+use super::lanes;
 use super::manifold::write_manifold;
 use super::prepared::{Content, Prepared, write_prepared};
 use super::scalar::ScalarSpelling;
@@ -44,6 +45,8 @@ pub struct Interface<'a> {
     pub time: bool,
     /// Inputs act by way of the velocity.
     pub velocity_inputs: bool,
+    /// There are functions of several states at once.
+    pub batch: bool,
 }
 
 /// What was derived.
@@ -75,7 +78,7 @@ pub struct Names {
 }
 
 /// Functions of the traits that depend on the state, with their arguments there.
-const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
+pub(super) const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
     ("mass_matrix", &[Argument::Q]),
     ("bias_forces", &[Argument::Q, Argument::V]),
     ("inverse_dynamics", &[Argument::Q, Argument::V, Argument::A]),
@@ -120,6 +123,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     }
     constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
     write_manifold(&mut methods, Some(&output.charts), &s);
+    lanes::write_methods(&mut methods, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
         (0..interface.shell.parameters.len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
@@ -165,6 +169,7 @@ pub fn emit_failed(
         write_function(&mut methods, f, &s, true);
     }
     write_manifold(&mut methods, None, &s);
+    lanes::write_methods(&mut methods, interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
@@ -239,6 +244,21 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     );
 }
 
+/// The arguments of a function of the traits that the inherent one takes.
+pub(super) fn needed(name: &str, arguments: &[Argument], velocity_inputs: bool) -> Vec<Argument> {
+    let own = |a: &&Argument| name != "generalized_forces" || **a != Argument::V || velocity_inputs;
+    arguments.iter().filter(own).copied().collect()
+}
+
+/// The result of a function of the traits.
+pub(super) fn result_of(name: &str, nv: usize) -> Shape {
+    match name {
+        "mass_matrix" => Shape::Square(nv),
+        "kinetic_energy" | "potential_energy" => Shape::Scalar,
+        _ => Shape::Vector(nv),
+    }
+}
+
 /// The trait's functions, in terms of the inherent ones, which take only what they need.
 fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
@@ -247,13 +267,8 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     }
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     for (name, arguments) in TRAIT_FUNCTIONS {
-        let result = match name {
-            "mass_matrix" => s.shape(Shape::Square(s.nv)),
-            "kinetic_energy" | "potential_energy" => s.scalar.name().to_string(),
-            _ => v.clone(),
-        };
-        let own = |a: &&Argument| name != "generalized_forces" || **a != Argument::V || i.velocity_inputs;
-        let needed: Vec<Argument> = arguments.iter().filter(own).copied().collect();
+        let result = s.shape(result_of(name, s.nv));
+        let needed = needed(name, arguments, i.velocity_inputs);
         let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
@@ -316,6 +331,15 @@ impl Head {
         );
         write_trait(out, i, s);
         out.push_str("}\n");
+        if i.batch {
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl{generics} ::linkwork::Batch<{}, {}, {}> for {name}{arguments} {bounds} {{",
+                s.nq, s.nv, s.nu
+            );
+            lanes::write_trait(out, i, s);
+            out.push_str("}\n");
+        }
         if !i.constraints.names.is_empty() {
             let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
             let sizes = sizes.map(|n| n.to_string()).join(", ");

@@ -35,7 +35,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, s: &Signature<
         ),
     ];
     for function in &functions {
-        function.write(out, charts);
+        function.write(out, charts, s);
     }
 }
 
@@ -49,11 +49,14 @@ struct ManifoldFunction {
 }
 
 impl ManifoldFunction {
-    fn write(&self, out: &mut String, charts: Option<&[Chart]>) {
+    fn write(&self, out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
         let _ = writeln!(
             out,
-            "/// {}\n#[inline]\n#[must_use]\npub fn {}(&self, {} {{",
-            self.about, self.name, self.signature
+            "/// {}\n#[inline]\n#[must_use]\npub fn {}{}(&self, {} {{",
+            self.about,
+            self.name,
+            s.generics(),
+            self.signature
         );
         match charts {
             Some(charts) => self.write_body(out, charts),

@@ -58,10 +58,11 @@ fn solved(by_q: &str, by_v: &str) -> String {
 /// The same by calls of the other functions; `less` is taken from the derivatives of the forces first.
 fn called(s: &Signature<'_>, less: &str) -> String {
     let t = if s.time { "t, " } else { "" };
+    let lanes = s.suffix();
     format!(
-        "let a = &self.forward_dynamics({t}q, v, tau);
-        let mut forces = self.inverse_dynamics_derivatives({t}q, v, a);
-        {less}let inverse = self.mass_matrix_inverse({t}q);
+        "let a = &self.forward_dynamics{lanes}({t}q, v, tau);
+        let mut forces = self.inverse_dynamics_derivatives{lanes}({t}q, v, a);
+        {less}let inverse = self.mass_matrix_inverse{lanes}({t}q);
         {}",
         solved("forces.0", "forces.1")
     )

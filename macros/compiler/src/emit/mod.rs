@@ -8,6 +8,7 @@ mod docs;
 pub mod frames;
 mod function;
 mod item;
+mod lanes;
 mod manifold;
 mod matrices;
 mod prepared;

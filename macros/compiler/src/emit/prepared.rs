@@ -6,6 +6,7 @@ use super::constraints;
 use super::docs::operations;
 use super::function::{Function, Shape, Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
+use super::lanes;
 use super::manifold::write_manifold;
 use crate::lower::Program;
 use crate::model::Chart;
@@ -49,6 +50,7 @@ pub fn write_prepared(
     }
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     write_manifold(&mut methods, content.charts, s);
+    lanes::write_methods(&mut methods, i, functions, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);
 
     let Head { generics, arguments, bounds } = &head;

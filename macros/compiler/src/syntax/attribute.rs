@@ -33,6 +33,8 @@ pub struct Requests {
     pub regressor: bool,
     /// A second struct that holds what depends on the parameters alone.
     pub prepare: bool,
+    /// Functions of several states at once, in lanes.
+    pub batch: bool,
 }
 
 /// The struct without its elements.
@@ -71,7 +73,7 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 4] = ["derivatives", "centroidal", "regressor", "prepare"];
+const REQUESTS: [&str; 5] = ["derivatives", "centroidal", "regressor", "prepare", "batch"];
 
 /// The options that have a value.
 const OPTIONS: [&str; 10] =
@@ -371,6 +373,7 @@ fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut 
         centroidal: asked("centroidal").is_some(),
         regressor: asked("regressor").is_some(),
         prepare: prepare.is_some(),
+        batch: asked("batch").is_some(),
     };
     if let Some(place) = prepare.filter(|_| description.parameters.is_empty()) {
         cx.error(place, "there is nothing to prepare: this mechanism has no parameters")

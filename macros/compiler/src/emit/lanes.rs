@@ -1,0 +1,100 @@
+//! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
+
+use super::function::{Argument, Function, Signature, write_function};
+use super::item::{Interface, TRAIT_FUNCTIONS, needed, result_of};
+use super::manifold::write_manifold;
+use crate::model::Chart;
+use std::fmt::Write;
+
+/// Writes every public function of the state once more, its name with `_lanes`, if this was asked for; without the parts of
+/// the configuration space, for a mechanism that failed to compile, as stubs.
+pub fn write_methods(
+    out: &mut String,
+    i: &Interface<'_>,
+    functions: &[Function],
+    charts: Option<&[Chart]>,
+    s: &Signature<'_>,
+) {
+    if !i.batch {
+        return;
+    }
+    let in_lanes = s.scalar.in_lanes();
+    let lanes = Signature { scalar: &in_lanes, ..*s };
+    let wanted = |f: &&Function| match f.name.as_str() {
+        "__constrained_dynamics" => true,
+        _ => !f.docs.is_empty() && !f.arguments.is_empty(),
+    };
+    for f in functions.iter().filter(wanted) {
+        let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, bit for bit.", f.name)];
+        let twin = Function {
+            name: f.name.clone(),
+            docs: if f.docs.is_empty() { Vec::new() } else { docs },
+            arguments: f.arguments.clone(),
+            shape: f.shape,
+            program: f.program.clone(),
+        };
+        write_function(out, &twin, &lanes, charts.is_none());
+    }
+    if !i.constraints.names.is_empty() {
+        write_constrained(out, i, &lanes);
+    }
+    write_manifold(out, charts, &lanes);
+}
+
+/// Forward dynamics with constraints. Where the elimination fails in some lane, all take the way of a single state.
+fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let (nv, nc) = (s.nv, i.constraints.names.len());
+    let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau]);
+    let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+    let one: Vec<String> = arguments
+        .iter()
+        .map(|a| match a {
+            Argument::T => "t.0[k]".to_string(),
+            _ => format!("&lane({}, k)", a.name()),
+        })
+        .collect();
+    let _ = writeln!(
+        out,
+        "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit.
+        #[inline]\n#[must_use]
+        pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
+            use ::linkwork::__private::{{lane, lane_by_lane, regular_solution}};
+            let found = self.__constrained_dynamics_lanes({});
+            match regular_solution::<{}, {nv}, {nc}, {}>(&found) {{
+                ::core::option::Option::Some(solution) => solution.0,
+                ::core::option::Option::None => lane_by_lane(|k| self.forward_dynamics({})),
+            }}
+        }}",
+        s.parameters(&arguments),
+        s.vector(nv),
+        names.join(", "),
+        s.scalar.name(),
+        nv + 3 * nc,
+        one.join(", ")
+    );
+}
+
+/// Writes the functions of the trait `Batch` in terms of the inherent ones. They take time first, needed or not.
+pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let in_lanes = s.scalar.in_lanes();
+    let s = &Signature { scalar: &in_lanes, ..*s };
+    for (name, arguments) in TRAIT_FUNCTIONS {
+        let all: Vec<Argument> = [&[Argument::T], arguments].concat();
+        let needed = s.timed(&needed(name, arguments, i.velocity_inputs));
+        let names: Vec<&str> = needed.iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}_lanes<const LANES: usize>({}) -> {} {{ Self::{name}_lanes(self, {}) }}",
+            s.parameters(&all),
+            s.shape(result_of(name, s.nv)),
+            names.join(", ")
+        );
+    }
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn integrate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate_lanes(self, q, dv) }}
+        #[inline]\nfn difference_lanes<const LANES: usize>(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference_lanes(self, from, to) }}
+        #[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate_lanes(self, dv, v) }}"
+    );
+}

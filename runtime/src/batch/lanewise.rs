@@ -1,0 +1,91 @@
+//! A mechanism whose scalars are lanes.
+
+use super::Batch;
+use crate::lanes::{lane, lane_by_lane};
+use crate::{ConstraintError, Lanes, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// A mechanism with `L` lanes for scalars, made by [`Batch::lanes`]: several states in one call. It is a
+/// [`Rheonomic`] mechanism itself, and at an instant ([`at`](crate::at())) a [`Mechanism`](crate::Mechanism).
+#[derive(Debug)]
+pub struct Lanewise<'m, M, const L: usize> {
+    pub(super) mechanism: &'m M,
+}
+
+impl<M, const L: usize> Clone for Lanewise<'_, M, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M, const L: usize> Copy for Lanewise<'_, M, L> {}
+
+impl<'m, M, const L: usize> Lanewise<'m, M, L> {
+    /// `mechanism.lanes::<L>()`.
+    pub fn new(mechanism: &'m M) -> Self {
+        Self { mechanism }
+    }
+}
+
+/// Functions with `t` and the vectors that follow it.
+macro_rules! lanewise {
+    ($($name:ident = $twin:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
+        #[inline(always)]
+        fn $name(&self, $($time: Self::Scalar,)? $($argument: &SVector<Self::Scalar, $of>),*) -> $result {
+            self.mechanism.$twin($($time,)? $($argument),*)
+        }
+    )+};
+}
+
+impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU>
+    for Lanewise<'_, M, L>
+where
+    M: Batch<NQ, NV, NU>,
+{
+    type Scalar = Lanes<M::Scalar, L>;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
+
+    #[inline(always)]
+    fn neutral(&self) -> SVector<Self::Scalar, NQ> {
+        self.mechanism.neutral().map(Lanes::splat)
+    }
+
+    #[inline]
+    fn project(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<(SVector<Self::Scalar, NQ>, SVector<Self::Scalar, NV>), ConstraintError> {
+        let mut result = Ok(());
+        let states = [(); L];
+        let mut k = 0;
+        let states = states.map(|()| {
+            let (t, q, v) = (t.0[k], lane(q, k), lane(v, k));
+            k += 1;
+            self.mechanism.project(t, &q, &v).unwrap_or_else(|error| {
+                result = Err(error);
+                (q, v)
+            })
+        });
+        result.map(|()| (lane_by_lane(|k| states[k].0), lane_by_lane(|k| states[k].1)))
+    }
+
+    lanewise! {
+        integrate = integrate_lanes[](q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
+        difference = difference_lanes[](from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
+        tangent_rate = tangent_rate_lanes[](dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        mass_matrix = mass_matrix_lanes[t](q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
+        bias_forces = bias_forces_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+        inverse_dynamics = inverse_dynamics_lanes[t](q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
+        forward_dynamics = forward_dynamics_lanes[t](q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
+        generalized_forces = generalized_forces_lanes[t](q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
+        kinetic_energy = kinetic_energy_lanes[t](q: NQ, v: NV) -> Self::Scalar;
+        potential_energy = potential_energy_lanes[t](q: NQ) -> Self::Scalar;
+        generalized_momentum = generalized_momentum_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+        momentum_rate = momentum_rate_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+    }
+}

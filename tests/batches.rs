@@ -1,0 +1,312 @@
+//! Functions of several states at once give, lane by lane, the bits of the functions of one state.
+
+use linkwork::Rheonomic;
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+use std::any::type_name;
+use support::random::Random;
+
+#[mechanism(urdf = "../models/urdf/ur5.urdf", batch)]
+struct Ur5;
+
+#[mechanism(urdf = "../models/urdf/kinova.urdf", batch)]
+struct Kinova;
+
+#[mechanism(urdf = "../models/urdf/panda.urdf", batch, derivatives, centroidal, regressor)]
+struct Panda;
+
+#[mechanism(urdf = "../models/urdf/panda.urdf", scalar = f32, batch)]
+struct SinglePanda;
+
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
+struct Solo12;
+
+#[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, batch)]
+struct Humanoid;
+
+/// Every kind of configuration, laws with all sorts of functions, and an output; generic.
+#[mechanism(gravity = -g * y, derivatives, batch)]
+struct Machine<T> {
+    g: T,
+    m: T,
+    l: T,
+    k: T,
+    #[body(mass = m, com = 0.3 * l * x, inertia = cuboid(m, l, 2 * l, 3 * l))]
+    hull: Body,
+    #[body(mass = 0.4 * m, com = 0.1 * y + 0.2 * z, inertia = cylinder(m, 0.3 * l, l, x))]
+    ball: Body,
+    #[body(mass = 0.3 * m, com = 0.05 * x, inertia = sphere(m, 0.2))]
+    weight: Body,
+    #[body(mass = 0.2 * m, inertia = cuboid(m, 0.2, 0.3, 0.1))]
+    rotor: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[joint(hull.at(l * x).rotated(z(0.4)) -> ball.at(0.1 * z))]
+    socket: Ball,
+    #[joint(hull.at(-l * y) -> weight, about = (x, y))]
+    cross: Universal,
+    #[joint(weight.at(l * z) -> rotor, about = z, pitch = 0.02)]
+    thread: Screw,
+    #[acts(between = (ground, weight.at(0.1 * x)), energy = k * (exp(stretch / l) + sqrt(stretch * stretch / (l * l) + 1)))]
+    rope: Spring,
+    #[acts(on = thread, coulomb = 0.3)]
+    rubbing: Friction,
+    #[acts(on = cross.first, energy = k * (ln(2 + cos(stretch)) + atan(stretch)))]
+    cam: Spring,
+    #[acts(on = rotor.at(0.2 * x), along = y)]
+    push: Force,
+    #[output(r(rotor / ball), resolved_in = hull)]
+    offset: Vector,
+}
+
+/// Driven in time.
+#[mechanism(gravity = -9.81 * z, batch)]
+struct Hoop {
+    radius: f64,
+    spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t + 0.2 * sin(3 * t)))]
+    hoop: Frame,
+    #[particle(mass = 0.3, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
+    bead: Particle,
+    #[acts(on = theta)]
+    motor: Torque,
+}
+
+/// A four-bar linkage, whose loop is singular where all bars lie on one line; and what is computed of its parameters.
+#[mechanism(gravity = -g * y, batch, prepare, derivatives, centroidal)]
+struct FourBar {
+    g: f64,
+    l: f64,
+    #[body(mass = 1, com = l / 2 * x, inertia = rod(1, l, x))]
+    crank: Body,
+    #[body(mass = 2, com = l * x, inertia = rod(2, 2 * l, x))]
+    coupler: Body,
+    #[body(mass = 1, com = l / 2 * x, inertia = rod(1, l, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    first: Pin,
+    #[joint(crank.at(l * x) -> coupler, about = z)]
+    second: Pin,
+    #[joint(ground.at(2 * l * x) -> rocker, about = z)]
+    third: Pin,
+    #[joint(rocker.at(l * x) -> coupler.at(2 * l * x), about = z)]
+    closing: Pin,
+}
+
+fn machine() -> Machine<f64> {
+    Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 }
+}
+
+/// The same numbers to the last bit; what is not a number is like any other that is not.
+fn same<T: Real>(a: T, b: T) -> bool {
+    a == b && a.is_sign_negative() == b.is_sign_negative() || (is_nan(a) && is_nan(b))
+}
+
+fn is_nan<T: Real>(x: T) -> bool {
+    x.partial_cmp(&x).is_none()
+}
+
+fn assert_lanes<T: Real, const R: usize, const C: usize, const L: usize>(
+    what: &str,
+    wide: &SMatrix<Lanes<T, L>, R, C>,
+    one: impl Fn(usize) -> SMatrix<T, R, C>,
+) {
+    for k in 0..L {
+        for (found, expected) in wide.iter().zip(one(k).iter()) {
+            assert!(same(found[k], *expected), "{what}, lane {k} of {L}: {}, not {expected}", found[k]);
+        }
+    }
+}
+
+fn scalar<T: Real>(x: T) -> SMatrix<T, 1, 1> {
+    SMatrix::from_element(x)
+}
+
+/// States in lanes, and state by state.
+struct States<T, const N: usize, const L: usize> {
+    wide: SVector<Lanes<T, L>, N>,
+    each: [SVector<T, N>; L],
+}
+
+impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
+    fn new(each: [SVector<T, N>; L]) -> Self {
+        Self { wide: SVector::from_fn(|i, _| Lanes::from_fn(|k| each[k][i])), each }
+    }
+
+    fn random(random: &mut Random, bound: f64) -> Self {
+        Self::new(core::array::from_fn(|_| random.vector::<N>(bound).map(linkwork::nalgebra::convert)))
+    }
+
+    /// Displacements of all sizes.
+    fn displacements(random: &mut Random) -> Self {
+        let sizes = [2.0, 1e-9, 0.1, 1e-3, 0.5, 3.0, 0.0, 1e-6];
+        Self::new(core::array::from_fn(|k| {
+            (random.vector::<N>(1.0) * sizes[k % 8]).map(linkwork::nalgebra::convert)
+        }))
+    }
+}
+
+/// All functions of the trait.
+fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(m: &M)
+where
+    M: Batch<NQ, NV, NU>,
+{
+    let wide = m.lanes::<L>();
+    let mut random = Random::new(17);
+    for _ in 0..20 {
+        let t: States<M::Scalar, 1, L> = States::random(&mut random, 2.0);
+        let dv: States<M::Scalar, NV, L> = States::displacements(&mut random);
+        let q0 = m.integrate(&m.neutral(), &States::<M::Scalar, NV, 1>::random(&mut random, 2.0).each[0]);
+        let q: States<M::Scalar, NQ, L> =
+            States::new(core::array::from_fn(|k| m.integrate(&q0, &dv.each[k])));
+        let v: States<M::Scalar, NV, L> = States::random(&mut random, 2.0);
+        let a: States<M::Scalar, NV, L> = States::random(&mut random, 5.0);
+        let u: States<M::Scalar, NU, L> = States::random(&mut random, 5.0);
+        let s = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
+        let (t0, q0, v0) = (t.wide[0], &q.wide, &v.wide);
+        let start = q.each[0].map(Lanes::splat);
+        assert_lanes("integrate", &wide.integrate(q0, &dv.wide), |k| m.integrate(&q.each[k], &dv.each[k]));
+        assert_lanes("difference", &wide.difference(&start, q0), |k| m.difference(&q.each[0], &q.each[k]));
+        assert_lanes("tangent_rate", &wide.tangent_rate(&dv.wide, v0), |k| {
+            m.tangent_rate(&dv.each[k], &v.each[k])
+        });
+        assert_lanes("mass_matrix", &wide.mass_matrix(t0, q0), |k| m.mass_matrix(s(k).0, s(k).1));
+        assert_lanes("bias_forces", &wide.bias_forces(t0, q0, v0), |k| m.bias_forces(s(k).0, s(k).1, s(k).2));
+        assert_lanes("inverse_dynamics", &wide.inverse_dynamics(t0, q0, v0, &a.wide), |k| {
+            m.inverse_dynamics(s(k).0, s(k).1, s(k).2, &a.each[k])
+        });
+        assert_lanes("forward_dynamics", &wide.forward_dynamics(t0, q0, v0, &a.wide), |k| {
+            m.forward_dynamics(s(k).0, s(k).1, s(k).2, &a.each[k])
+        });
+        assert_lanes("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
+            m.generalized_forces(s(k).0, s(k).1, s(k).2, &u.each[k])
+        });
+        assert_lanes("kinetic_energy", &scalar(wide.kinetic_energy(t0, q0, v0)), |k| {
+            scalar(m.kinetic_energy(s(k).0, s(k).1, s(k).2))
+        });
+        assert_lanes("potential_energy", &scalar(wide.potential_energy(t0, q0)), |k| {
+            scalar(m.potential_energy(s(k).0, s(k).1))
+        });
+        assert_lanes("generalized_momentum", &wide.generalized_momentum(t0, q0, v0), |k| {
+            m.generalized_momentum(s(k).0, s(k).1, s(k).2)
+        });
+        assert_lanes("momentum_rate", &wide.momentum_rate(t0, q0, v0), |k| {
+            m.momentum_rate(s(k).0, s(k).1, s(k).2)
+        });
+    }
+    assert_lanes(type_name::<M>(), &wide.neutral(), |_| m.neutral());
+}
+
+#[test]
+fn robots_in_lanes() {
+    check::<_, 6, 6, 6, 1>(&Ur5);
+    check::<_, 6, 6, 6, 3>(&Ur5);
+    check::<_, 6, 6, 6, 4>(&Ur5);
+    check::<_, 6, 6, 6, 8>(&Ur5);
+    check::<_, 6, 6, 6, 16>(&Ur5);
+    check::<_, _, _, _, 8>(&Kinova);
+    check::<_, _, _, _, 8>(&Panda);
+    check::<_, _, _, _, 2>(&Solo12);
+    check::<_, _, _, _, 4>(&Solo12);
+    check::<_, _, _, _, 8>(&Solo12);
+    check::<_, _, _, _, 4>(&Humanoid);
+    check::<_, _, _, _, 8>(&Humanoid);
+}
+
+#[test]
+fn single_precision_in_lanes() {
+    check::<_, _, _, _, 8>(&SinglePanda);
+    check::<_, _, _, _, 16>(&SinglePanda);
+}
+
+#[test]
+fn every_kind_of_configuration_in_lanes() {
+    check::<_, _, _, _, 4>(&machine());
+    check::<_, _, _, _, 8>(&machine());
+    let single: Machine<f32> = Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 };
+    check::<_, _, _, _, 8>(&single);
+}
+
+#[test]
+fn driven_mechanisms_in_lanes() {
+    check::<_, _, _, _, 4>(&Hoop { radius: 0.4, spin: 5.0 });
+    check::<_, _, _, _, 8>(&Hoop { radius: 0.4, spin: 5.0 });
+}
+
+#[test]
+fn loops_in_lanes() {
+    let linkage = FourBar { g: 9.7, l: 0.4 };
+    check::<_, _, _, _, 4>(&linkage);
+    check::<_, _, _, _, 8>(&linkage);
+    check::<_, _, _, _, 8>(&linkage.prepare());
+    // A lane where the constraints depend on one another, beside others where they do not.
+    let q: States<f64, 3, 4> = States::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
+    let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random(&mut Random::new(31), 1.0));
+    assert_lanes("forward_dynamics", &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide), |k| {
+        linkage.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k])
+    });
+}
+
+#[test]
+fn large_angles_do_not_disturb_their_neighbours() {
+    let q: States<f64, 6, 8> =
+        States::new(core::array::from_fn(|k| SVector::from_fn(|i, _| [0.3, 1e6, -2.0][(k + i) % 3])));
+    assert_lanes("mass_matrix", &Ur5.mass_matrix_lanes(&q.wide), |k| Ur5.mass_matrix(&q.each[k]));
+}
+
+#[test]
+fn functions_on_request_in_lanes() {
+    let mut random = Random::new(23);
+    let q: States<f64, 8, 4> = States::random(&mut random, 2.0);
+    let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
+    let u: States<f64, 8, 4> = States::random(&mut random, 2.0);
+    let (by_q, by_v) = Panda.inverse_dynamics_derivatives_lanes(&q.wide, &v.wide, &a.wide);
+    let one = |k: usize| Panda.inverse_dynamics_derivatives(&q.each[k], &v.each[k], &a.each[k]);
+    assert_lanes("∂τ/∂q", &by_q, |k| one(k).0);
+    assert_lanes("∂τ/∂v", &by_v, |k| one(k).1);
+    let (state, input) = Panda.linearize_lanes(&q.wide, &v.wide, &u.wide);
+    let one = |k: usize| Panda.linearize(&q.each[k], &v.each[k], &u.each[k]);
+    assert_lanes("A", &state, |k| one(k).0);
+    assert_lanes("B", &input, |k| one(k).1);
+    assert_lanes("M⁻¹", &Panda.mass_matrix_inverse_lanes(&q.wide), |k| {
+        Panda.mass_matrix_inverse(&q.each[k])
+    });
+    assert_lanes("momentum matrix", &Panda.centroidal_momentum_matrix_lanes(&q.wide), |k| {
+        Panda.centroidal_momentum_matrix(&q.each[k])
+    });
+    assert_lanes("centre of mass", &Panda.center_of_mass_lanes(&q.wide), |k| {
+        Panda.center_of_mass(&q.each[k])
+    });
+}
+
+#[test]
+fn large_mechanisms_call_each_other_in_lanes() {
+    let (m, mut random) = (machine(), Random::new(29));
+    let dv: States<f64, 12, 4> = States::random(&mut random, 2.0);
+    let q: States<f64, 14, 4> = States::new(core::array::from_fn(|k| m.integrate(&m.neutral(), &dv.each[k])));
+    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
+    let u: States<f64, 1, 4> = States::random(&mut random, 2.0);
+    let (by_q, _, inverse) = m.forward_dynamics_derivatives_lanes(&q.wide, &v.wide, &tau.wide);
+    let one = |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
+    assert_lanes("∂v̇/∂q", &by_q, |k| one(k).0);
+    assert_lanes("M⁻¹", &inverse, |k| one(k).2);
+    let (state, _) = m.linearize_lanes(&q.wide, &v.wide, &u.wide);
+    assert_lanes("A", &state, |k| m.linearize(&q.each[k], &v.each[k], &u.each[k]).0);
+    assert_lanes("offset", &m.offset_lanes(&q.wide), |k| m.offset(&q.each[k]));
+    assert_lanes("Jacobian", &m.offset_jacobian_lanes(&q.wide), |k| m.offset_jacobian(&q.each[k]));
+}
+
+#[test]
+fn a_lanewise_mechanism_is_a_mechanism() {
+    fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+        m: &M,
+        v: M::Scalar,
+    ) -> M::Scalar {
+        m.kinetic_energy(&m.neutral(), &SVector::repeat(v)) + m.potential_energy(&m.neutral())
+    }
+    let found = energy(&at(&Ur5.lanes::<4>(), Lanes::splat(0.0)), Lanes([0.0, 1.0, 2.0, 3.0]));
+    for k in 0..4 {
+        assert!(same(found[k], energy(&Ur5, k as f64)));
+    }
+}
