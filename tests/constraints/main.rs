@@ -2,5 +2,6 @@
 
 mod bicycle;
 mod linkages;
+mod reactions;
 mod rolling;
 mod skates;

@@ -7,7 +7,7 @@ use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
 use crate::lower::{Program, lower, lower_without};
-use crate::mechanics::{self, Joint, crba, energy, forces, frames, power};
+use crate::mechanics::{self, Joint, crba, energy, forces, frames, power, reactions};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
@@ -154,6 +154,9 @@ fn done(outputs: &[Expr<'_>]) -> Program {
 /// The function of an output, and its Jacobian: how it changes with the velocities, or how its rate does if it depends
 /// on the configuration alone.
 fn output_functions(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Vec<Function> {
+    if reactions::names_one(&output.values) {
+        return vec![reaction_function(model, output, stage)];
+    }
     let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
     let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
     let uses = Uses {
@@ -170,6 +173,13 @@ fn output_functions(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -
         };
     }
     functions
+}
+
+/// The hidden function of an output that names reactions, for given accelerations and multipliers.
+fn reaction_function(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Function {
+    let mut f = signatures::reaction(&output.name, output.values.len(), &Sizes::of(model), model.constraints.len());
+    f.program = stage.program(&reactions::resolved(model, &output.values));
+    f
 }
 
 /// The Jacobian column by column.

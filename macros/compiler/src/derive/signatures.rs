@@ -2,7 +2,7 @@
 //! has these alone.
 
 use crate::emit::Argument::{A, Q, T, Tau, U, V};
-use crate::emit::{Argument, Function, Names, Shape};
+use crate::emit::{Argument, Function, Names, REACTION, Shape};
 use crate::lower::Program;
 use crate::mechanics::regressor::COUNT;
 use crate::model::{Model, Uses};
@@ -393,4 +393,13 @@ pub fn constrained_derivatives(sizes: &Sizes, nc: usize) -> Vec<Function> {
         sizes.function("__motion_derivatives", &[Q, V, A, lambda], Shape::Array(motion), &[]),
         sizes.function("__input_derivatives", &[Q, V, U], Shape::Array(inputs), &[]),
     ]
+}
+
+/// The hidden function of an output that names reactions: of the motion, its accelerations and its `nc` multipliers.
+pub fn reaction(name: &str, size: usize, sizes: &Sizes, nc: usize) -> Function {
+    let mut arguments = vec![Q, V, A];
+    arguments.extend((sizes.nu > 0).then_some(U));
+    arguments.extend((nc > 0).then_some(Argument::Given("lambda", 0, nc)));
+    let shape = if size == 1 { Shape::Scalar } else { Shape::Vector(size) };
+    sizes.function(&format!("{REACTION}{name}"), &arguments, shape, &[])
 }

@@ -2,6 +2,7 @@
 
 use super::constants::write_constants;
 use super::constraints::{self, Constraints};
+use super::reactions;
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
@@ -122,6 +123,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         write_function(&mut methods, f, &s, false);
     }
     constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
+    reactions::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
     write_manifold(&mut methods, Some(&output.charts), &s);
     lanes::write_methods(&mut methods, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.

@@ -3,6 +3,7 @@
 
 use super::constants::write_sizes;
 use super::constraints;
+use super::reactions;
 use super::docs::operations;
 use super::function::{Function, Shape, Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
@@ -49,6 +50,7 @@ pub fn write_prepared(
         write_function(&mut methods, f, s, content.numbers.is_none());
     }
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
+    reactions::write_methods(&mut methods, &i.constraints, functions, s);
     write_manifold(&mut methods, content.charts, s);
     lanes::write_methods(&mut methods, i, functions, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);

@@ -79,8 +79,9 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
         if let Node::Call(Function::Sin | Function::Cos, argument) = node
             && let Node::Symbol(symbol) = nodes[*argument as usize]
             && let Quantity::Configuration(k) = Quantity::of(symbol)
+            && let Some(angle) = angle.get_mut(k)
         {
-            angle[k] = true;
+            *angle = true;
         }
     }
     let of_angles = (0..model.nq()).filter(|k| angle[*k]);

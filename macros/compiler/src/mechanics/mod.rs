@@ -19,6 +19,7 @@ pub mod lagrange;
 pub mod ldl;
 pub mod momentum;
 pub mod power;
+pub mod reactions;
 pub mod regressor;
 pub mod regularity;
 pub mod rnea;

@@ -8,14 +8,16 @@ use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
 use super::world::{Level, Placed, PlacedKind, View, World};
 use super::{
-    Chart, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
-    Pose, Quantity,
+    Chart, Constraint, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
+    Opened, Pose, Quantity, reaction,
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};
 use crate::syntax::{
     Action, ActionKind, Body, Description, Endpoint, ExprKind, Joint, JointKind, Name, Particle, Target,
 };
+
+use std::rc::Rc;
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
 const MAX_VELOCITIES: usize = 128;
@@ -55,6 +57,8 @@ pub struct Builder<'a, 'g> {
     pub masses: Vec<Option<MassProperties<'g>>>,
     /// By joint.
     coordinates: Vec<JointCoordinates>,
+    /// Joints to be opened, and the names of the constraints that a mechanism with opened joints keeps.
+    pub opening: Option<(&'a [usize], &'a [Constraint<'g>])>,
     /// Number of the group of constraints that is being added.
     pub group: usize,
 }
@@ -74,9 +78,25 @@ pub fn build_model<'g>(
             .help("add one, as in `#[body(mass = 1)] cart: Body`, or read a file: `#[mechanism(urdf = \"robot.urdf\")]`");
         return None;
     }
-    let mut builder = Builder::new(description, graph, cx);
+    let mut model = build(description, graph, None, cx)?;
+    let joints = reaction::requested(&model);
+    if !joints.is_empty() {
+        let same = build(description, graph, Some((&joints, &model.constraints)), &mut Diagnostics::new());
+        model.opened = same.map(|model| Rc::new(Opened { model, joints }));
+    }
+    Some(model)
+}
+
+/// Builds the model; with opened joints it keeps the given constraints.
+fn build<'g>(
+    description: &Description,
+    graph: &'g Graph,
+    opening: Option<(&[usize], &[Constraint<'g>])>,
+    cx: &mut Diagnostics,
+) -> Option<Model<'g>> {
+    let mut builder = Builder { opening, ..Builder::new(description, graph, cx) };
     builder.number_coordinates(cx);
-    if builder.model.nv() > MAX_VELOCITIES {
+    if builder.model.nv() > MAX_VELOCITIES && opening.is_none() {
         let n = builder.model.nv();
         cx.error(
             description.name.place.clone(),
@@ -84,6 +104,7 @@ pub fn build_model<'g>(
         );
         return None;
     }
+    builder.number_open_coordinates(opening.map_or(&[], |(joints, _)| joints));
     let order = find_tree(description, &builder.held, &builder.scope, cx);
     match &order {
         Some(order) => builder.place_all(order, cx),
@@ -93,8 +114,8 @@ pub fn build_model<'g>(
     if let Some(order) = order.filter(|_| builder.is_placed()) {
         builder.know_motion();
         builder.add_actions(cx);
-        builder.add_expressions(cx);
         builder.add_constraints(&order.closing, cx);
+        builder.add_expressions(cx);
         builder.find_dependencies();
         builder.add_frames();
         builder.check_finite(cx);
@@ -102,7 +123,7 @@ pub fn build_model<'g>(
         builder.check_actions(cx);
     }
     builder.check_unused(cx);
-    if cx.is_empty() {
+    if cx.is_empty() && opening.is_none() {
         let coordinates = &builder.scope.world.borrow().coordinates;
         builder.model.units = units::infer(description, &builder.model, coordinates, cx);
     }
@@ -179,6 +200,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             loads: Vec::new(),
             inertances: Vec::new(),
             outputs: Vec::new(),
+            opened: None,
             units: Units::default(),
         };
         let places = vec![None; held.len()];
@@ -194,6 +216,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             coordinates: Vec::new(),
             placeable,
             masses: Vec::new(),
+            opening: None,
             group: 0,
         }
     }
@@ -312,7 +335,14 @@ impl<'a, 'g> Builder<'a, 'g> {
         if let (Some(motions), Some(on_parent), Some(on_child), Some((link, pose))) =
             (motions, on_parent, on_child, start)
         {
-            let (link, pose) = self.add_chain(j, &motions, link, pose.then(&on_parent));
+            let frame = pose.then(&on_parent);
+            self.transmit(j, link, &frame.rotation);
+            let (joints, _) = self.opening.unwrap_or_default();
+            let (link, frame) = match joints.iter().position(|open| *open == j) {
+                Some(at) => self.open(at, joints.len(), link, frame),
+                None => (link, frame),
+            };
+            let (link, pose) = self.add_chain(j, &motions, link, frame);
             let pose = pose.then(&on_child.inverse());
             let kind =
                 if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };

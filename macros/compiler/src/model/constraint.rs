@@ -7,12 +7,12 @@ use super::build::Builder;
 use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
 use super::world::{Level, Placed, PlacedKind, View};
-use super::{Constraint, LinkId, Pose, Quantity, mobility, redundancy};
+use super::{Constraint, LinkId, Pose, Quantity, Transmission, mobility, redundancy};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval;
-use crate::expr::{Expr, Vec3};
+use crate::expr::{Expr, Rotation, Vec3};
 use crate::model::sample;
-use crate::syntax::{self, ConstraintKind, Joint};
+use crate::syntax::{self, ConstraintKind};
 
 /// A scalar with its rate, and the rate of that at zero accelerations.
 pub struct Jet<'g> {
@@ -57,6 +57,15 @@ pub struct Relative<'g> {
     acceleration: Spatial<'g>,
 }
 
+/// The two ends of a joint that closes a loop.
+struct Closing<'g> {
+    j: usize,
+    parent: Placed<'g>,
+    child: Placed<'g>,
+    on_parent: Relative<'g>,
+    on_child: Relative<'g>,
+}
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl<'g> Builder<'_, 'g> {
@@ -70,7 +79,7 @@ impl<'g> Builder<'_, 'g> {
         }
         for j in closing {
             self.group += 1;
-            self.close_loop(&self.description.joints[*j], cx);
+            self.close_loop(*j, cx);
         }
         for constraint in &self.description.constraints {
             self.group += 1;
@@ -82,6 +91,10 @@ impl<'g> Builder<'_, 'g> {
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
         self.model.freedom = [self.model.nv(); 2];
+        if let Some((_, kept)) = self.opening {
+            self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
+            return;
+        }
         if cx.is_empty() {
             redundancy::check_constant(&self.model, cx);
         }
@@ -92,7 +105,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn close_loop(&mut self, joint: &Joint, cx: &mut Diagnostics) {
+    fn close_loop(&mut self, j: usize, cx: &mut Diagnostics) {
+        let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
         let ends = [&joint.parent, &joint.child].map(|end| {
             let on_body = self.endpoint(end, cx)?;
@@ -111,29 +125,25 @@ impl<'g> Builder<'_, 'g> {
                 .help("let the joint act between bodies that move relative to each other");
             return;
         }
-        self.translation_rows(&joint.name.text, place, &motions, &parent, &child);
+        self.transmit(j, None, &Rotation::identity(self.scope.graph));
+        let on_parent = self.relative(parent.link, child.link);
+        let on_child = self.relative(child.link, parent.link);
+        let ends = Closing { j, parent, child, on_parent, on_child };
+        self.translation_rows(&ends, &motions);
         self.group += 1;
-        self.rotation_rows(&joint.name.text, place, &motions, &parent, &child);
+        self.rotation_rows(&ends, &motions);
     }
 
     /// The child's joint frame has its origin where the slides of the joint let it be.
-    fn translation_rows(
-        &mut self,
-        name: &str,
-        place: &Place,
-        motions: &[Elementary<'g>],
-        parent: &Placed<'g>,
-        child: &Placed<'g>,
-    ) {
+    fn translation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
+        let g = self.scope.graph;
         let slides: Vec<Vec3<'g>> = motions.iter().filter_map(slide_of).collect();
-        let (on_parent, on_child) =
-            (self.relative(parent.link, child.link), self.relative(child.link, parent.link));
-        let gap = self
-            .point(&on_child, child.pose.translation)
-            .minus(&self.point(&on_parent, parent.pose.translation));
+        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let origin = self.point(on_parent, parent.pose.translation);
+        let gap = self.point(on_child, child.pose.translation).minus(&origin);
         if slides.is_empty() {
-            for (k, axis) in AXES.iter().enumerate() {
-                self.push(format!("{name}.{axis}"), place, gap.component(k));
+            for (k, word) in AXES.iter().enumerate() {
+                self.push(ends, word, gap.component(k), Some((false, Vec3::axis(g, k))));
             }
             return;
         }
@@ -143,75 +153,83 @@ impl<'g> Builder<'_, 'g> {
             _ => Vec::new(),
         };
         for (word, direction) in across {
-            let e = self.direction(&on_parent, parent.pose.rotation.to_parent(direction));
-            self.push(format!("{name}.{word}"), place, gap.dot(&e));
+            let e = self.direction(on_parent, parent.pose.rotation.to_parent(direction));
+            self.push(ends, word, gap.dot(&e), Some((false, e.value)));
         }
         if let [Elementary::Helix(axis, pitch)] = motions {
-            let n = self.direction(&on_parent, parent.pose.rotation.to_parent(*axis));
+            let n = self.direction(on_parent, parent.pose.rotation.to_parent(*axis)).value;
             let [(_, first), (_, second)] = perpendicular(*axis);
-            let on = |v| self.direction(&on_parent, parent.pose.rotation.to_parent(v)).value;
-            let turned = self.direction(&on_child, child.pose.rotation.to_parent(first)).value;
+            let on = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
+            let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
             let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
-            let advance = gap.value.dot(n.value) / *pitch;
-            let residual = *pitch * (sine * advance.cos() - cosine * advance.sin());
-            self.push_residual(format!("{name}.advance"), place, residual);
+            let advance = gap.value.dot(n) / *pitch;
+            let value = *pitch * (sine * advance.cos() - cosine * advance.sin());
+            let rate = time_derivative(self.model.space(), value);
+            let second = time_derivative(self.model.space(), rate);
+            // It turns the child by the pitch and pushes it back along the axis.
+            self.push(ends, "advance", Jet { value, rate, second }, Some((true, n * *pitch)));
+            let pushed = self.transmission(ends, false, -n);
+            self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(pushed));
         }
     }
 
     /// The child's joint axes are turned as the turns of the joint let them be.
-    fn rotation_rows(
-        &mut self,
-        name: &str,
-        place: &Place,
-        motions: &[Elementary<'g>],
-        parent: &Placed<'g>,
-        child: &Placed<'g>,
-    ) {
+    fn rotation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
         if matches!(motions, [Elementary::Ball]) {
             return;
         }
         let turns: Vec<Vec3<'g>> = motions.iter().filter_map(turn_of).collect();
-        let (on_parent, on_child) =
-            (self.relative(parent.link, child.link), self.relative(child.link, parent.link));
-        let of_parent = |v| self.direction(&on_parent, parent.pose.rotation.to_parent(v));
-        let of_child = |v| self.direction(&on_child, child.pose.rotation.to_parent(v));
+        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let of_parent = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
+        let of_child = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
         let axis = |k| Vec3::axis(self.scope.graph, k);
-        let mut rows: Vec<(String, Jet<'g>)> = Vec::new();
-        match turns.as_slice() {
+        // Directions of the parent and of the child that stay orthogonal, or at a constant angle.
+        let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
             // The sines of the angles about three axes.
-            [] => {
-                for k in 0..3 {
+            [] => (0..3)
+                .map(|k| {
                     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-                    rows.push((format!("{name}.w{}", AXES[k]), of_parent(axis(m)).dot(&of_child(axis(l)))));
-                }
-            }
-            [axis] => {
-                let carried = of_child(*axis);
-                for (word, direction) in perpendicular(*axis) {
-                    rows.push((format!("{name}.tilt_{word}"), of_parent(direction).dot(&carried)));
-                }
-            }
+                    (format!("w{}", AXES[k]), of_parent(axis(m)), of_child(axis(l)), self.scope.graph.zero())
+                })
+                .collect(),
+            [axis] => perpendicular(*axis)
+                .into_iter()
+                .map(|(word, e)| {
+                    (format!("tilt_{word}"), of_parent(e), of_child(*axis), self.scope.graph.zero())
+                })
+                .collect(),
             [first, second, ..] => {
-                let mut jet = of_parent(*first).dot(&of_child(*second));
-                jet.value -= first.dot(*second);
-                rows.push((format!("{name}.axes"), jet));
+                vec![("axes".to_string(), of_parent(*first), of_child(*second), first.dot(*second))]
             }
-        }
-        for (name, jet) in rows {
-            self.push(name, place, jet);
+        };
+        for (word, e, carried, angle) in rows {
+            let mut jet = e.dot(&carried);
+            jet.value -= angle;
+            self.push(ends, &word, jet, Some((true, carried.value.cross(e.value))));
         }
     }
 
-    fn push(&mut self, name: String, place: &Place, jet: Jet<'g>) {
+    /// A row of a joint, with the force or torque on the child that its multiplier is, in the axes of the link that
+    /// carries both ends.
+    fn push(&mut self, ends: &Closing<'g>, word: &str, jet: Jet<'g>, acts: Option<(bool, Vec3<'g>)>) {
+        let joint = &self.description.joints[ends.j].name;
         let Jet { value, rate, second } = jet;
+        let transmits = acts.map(|(torque, direction)| self.transmission(ends, torque, direction));
         self.model.constraints.push(Constraint {
-            name,
-            place: place.clone(),
+            name: format!("{}.{word}", joint.text),
+            place: joint.place.clone(),
             residual: Some(value),
             rate,
             bias: second,
+            transmits: transmits.into_iter().collect(),
             group: self.group,
         });
+    }
+
+    fn transmission(&self, ends: &Closing<'g>, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
+        let joints = &self.scope.world.borrow().joints;
+        let direction = change_axes(joints, direction, ends.on_child.ancestor, None);
+        Transmission { joint: ends.j, torque, direction }
     }
 
     fn push_residual(&mut self, name: String, place: &Place, residual: Expr<'g>) {
@@ -228,6 +246,7 @@ impl<'g> Builder<'_, 'g> {
             residual,
             rate,
             bias,
+            transmits: Vec::new(),
             group: self.group,
         });
     }

@@ -5,6 +5,7 @@
 use crate::diag::Place;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Symbol, Vec3};
 use crate::syntax::ScalarType;
+use std::rc::Rc;
 
 mod action;
 mod axis;
@@ -17,6 +18,7 @@ pub mod kinematics;
 mod mobility;
 mod outline;
 mod place;
+mod reaction;
 mod redundancy;
 mod resolve;
 mod rolling;
@@ -51,6 +53,8 @@ pub enum Quantity {
     Given(usize),
     /// A number that is computed from the parameters before.
     Prepared(usize),
+    /// A component of what a joint transmits: six for each, a force and then a torque.
+    Reaction(usize),
 }
 
 impl Quantity {
@@ -68,6 +72,7 @@ impl Quantity {
             Quantity::Time => (6, 0),
             Quantity::Given(k) => (7, k),
             Quantity::Prepared(k) => (8, k),
+            Quantity::Reaction(k) => (9, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -84,7 +89,8 @@ impl Quantity {
             5 => Quantity::Input(index),
             6 => Quantity::Time,
             7 => Quantity::Given(index),
-            _ => Quantity::Prepared(index),
+            8 => Quantity::Prepared(index),
+            _ => Quantity::Reaction(index),
         }
     }
 
@@ -386,6 +392,8 @@ pub struct Model<'g> {
     pub freedom: [usize; 2],
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
+    /// The same mechanism with the joints whose reactions outputs name opened: six coordinates for each after all others.
+    pub opened: Option<Rc<Opened<'g>>>,
     /// Units of parameters, coordinates, inputs and outputs.
     pub units: units::Units,
 }
@@ -424,8 +432,30 @@ pub struct Constraint<'g> {
     pub rate: Expr<'g>,
     /// Derivative of `rate` at zero accelerations.
     pub bias: Expr<'g>,
+    /// What its multiplier is in a joint that closes a loop.
+    pub transmits: Vec<Transmission<'g>>,
     /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
     pub group: usize,
+}
+
+/// A part of the force or torque that a joint's parent exerts on its child.
+#[derive(Clone, Copy, Debug)]
+pub struct Transmission<'g> {
+    /// The joint.
+    pub joint: usize,
+    /// A torque, not a force.
+    pub torque: bool,
+    /// Direction in ground axes.
+    pub direction: Vec3<'g>,
+}
+
+/// A mechanism with opened joints: what holds their coordinates at zero is what they transmit.
+#[derive(Clone)]
+pub struct Opened<'g> {
+    /// The mechanism.
+    pub model: Model<'g>,
+    /// The joints in the order of their coordinates.
+    pub joints: Vec<usize>,
 }
 
 /// An expression that becomes a function.

@@ -71,9 +71,9 @@ impl Value<'_> {
 const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 /// Functions of the language beside the elementary ones.
-const FUNCTIONS: [&str; 16] = [
+const FUNCTIONS: [&str; 18] = [
     "atan2", "pow", "min", "max", "dot", "cross", "norm", "unit", "r", "v", "a", "omega", "alpha", "rate",
-    "angle", "project",
+    "angle", "project", "reaction_force", "reaction_torque",
 ];
 
 impl<'a, 'g> Scope<'a, 'g> {
@@ -441,6 +441,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
             "angle" => self.angle(function, arguments, cx),
             "r" | "v" | "a" | "omega" | "alpha" => self.slash(function, arguments, cx),
+            "reaction_force" | "reaction_torque" => self.reaction(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
             _ => {
                 let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS);

@@ -244,7 +244,7 @@ impl<'g> Builder<'_, 'g> {
         }
         // Definitions that nothing uses are checked all the same.
         for definition in &d.definitions {
-            let view = View::new(Level::Acceleration, ground());
+            let view = View::new(Level::Reaction, ground());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
             if cx.is_empty() {
@@ -255,7 +255,7 @@ impl<'g> Builder<'_, 'g> {
 
     fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let home = Some((None, Pose::identity(self.scope.graph)));
-        let view = View::new(Level::Acceleration, home);
+        let view = View::new(Level::Reaction, home);
         if !output.vector {
             return self.scope.with_view(view, |scope| scope.scalar(&output.value, cx)).map(|s| vec![s]);
         }

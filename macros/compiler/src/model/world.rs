@@ -6,7 +6,7 @@ use super::resolve::{Axes, Scope, Value};
 use super::tree::GROUND;
 use super::{Coordinate, LinkId, Pose, Quantity};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::{Expr, Vec3};
+use crate::expr::{Expr, Rotation, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
 use std::collections::BTreeMap;
 
@@ -21,6 +21,8 @@ pub enum Level {
     Motion,
     /// Accelerations too.
     Acceleration,
+    /// Reactions of joints too.
+    Reaction,
 }
 
 /// Where an expression stands.
@@ -82,6 +84,8 @@ pub struct World<'g> {
     pub joints: Vec<Joint<'g>>,
     /// Twists of the links, once all are there.
     pub twists: Vec<Spatial<'g>>,
+    /// By joint: its number, and the axes of its frame on the parent, in which its reactions are resolved.
+    pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
     /// Accelerations of the links, once all are there.
     pub accelerations: Vec<Spatial<'g>>,
 }
@@ -267,14 +271,16 @@ impl<'g> Scope<'_, 'g> {
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
     }
 
-    fn allowed(&self, needed: Level, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
+    /// Reports what may not stand here.
+    pub fn allowed(&self, needed: Level, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
         if self.level() >= needed {
             return true;
         }
         let only = match self.level() {
             Level::Constant => "only numbers and parameters",
             Level::Placement => "only numbers, parameters, coordinates and time",
-            _ => "no accelerations",
+            Level::Motion => "no accelerations",
+            _ => "no reactions",
         };
         cx.error(place.clone(), format!("{what} cannot stand here")).help(format!("this place takes {only}"));
         false

@@ -142,6 +142,7 @@ fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         freedom: _,
         inertances: _,
         outputs: _,
+        opened: _,
         units: _,
     } = model;
     for frame in frames {

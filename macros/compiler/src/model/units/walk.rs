@@ -2,7 +2,7 @@
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::ratio::Ratio;
-use super::si::{ACCELERATION, LENGTH, PLAIN, RATE, RATE_OF_RATE, SPEED, TIME};
+use super::si::{ACCELERATION, ENERGY, FORCE, LENGTH, PLAIN, RATE, RATE_OF_RATE, SPEED, TIME};
 use super::unify::Dimension;
 use super::value::{Value, product};
 use crate::expr::Function;
@@ -189,6 +189,8 @@ impl<'a> Inference<'a> {
                 other => other,
             },
             ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
+            ("reaction_force", _) => Value::quantity(FORCE),
+            ("reaction_torque", _) => Value::quantity(ENERGY),
             (_, [a]) => self.elementary(text, a),
             _ => Value::Unknown,
         }

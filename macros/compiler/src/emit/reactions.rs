@@ -1,0 +1,51 @@
+//! Outputs that name reactions of joints: the motion is solved first, then the reactions follow from its accelerations and
+//! multipliers.
+
+use super::constraints::Constraints;
+use super::function::{Argument, Function, Signature};
+use std::fmt::Write;
+
+/// What the hidden function of a reaction's output is called, after which the output is.
+pub const HIDDEN: &str = "__reaction_";
+
+/// Writes the outputs whose hidden functions are among these.
+pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
+    let by_velocity = functions
+        .iter()
+        .any(|f| f.name == "generalized_forces" && f.arguments.contains(&Argument::V));
+    let t = if s.time { "t, " } else { "" };
+    for f in functions {
+        let Some(name) = f.name.strip_prefix(HIDDEN) else { continue };
+        let mut arguments = vec![Argument::Q, Argument::V];
+        let mut pass = String::from("q, v, &a");
+        if s.nu > 0 {
+            arguments.push(Argument::U);
+            pass.push_str(", u");
+        }
+        let tau = match (s.nu > 0, by_velocity) {
+            (true, true) => format!("self.generalized_forces({t}q, v, u)"),
+            (true, false) => format!("self.generalized_forces({t}q, u)"),
+            _ => format!("<{}>::zeros()", s.vector(s.nv)),
+        };
+        let solve = match c.names.is_empty() {
+            true => format!("let a = self.forward_dynamics({t}q, v, &tau);"),
+            false => {
+                pass.push_str(", &lambda.data.0[0]");
+                format!("let (a, lambda) = self.constrained_dynamics({t}q, v, &tau);")
+            }
+        };
+        let _ = writeln!(
+            out,
+            "/// The output `{name}`, in the motion under the inputs: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots.
+            #[must_use]
+            pub fn {name}({}) -> {} {{
+                let tau = {tau};
+                {solve}
+                self.{}({t}{pass})
+            }}",
+            s.parameters(&s.timed(&arguments)),
+            s.shape(f.shape),
+            f.name
+        );
+    }
+}
