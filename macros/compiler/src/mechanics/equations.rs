@@ -4,7 +4,7 @@
 
 use super::crba::Matrix;
 use super::kinematics::Joint;
-use super::{accelerations, energy, forces, rnea, velocities};
+use super::{accelerations, constraints, energy, forces, rnea, velocities};
 use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
 use crate::expr::polynomial::{Polynomial, Rank, Ring};
@@ -33,9 +33,9 @@ pub struct Equations {
     pub ring: Ring,
     /// `L = T − U`.
     pub lagrangian: Polynomial,
-    /// `M v̇ + h`, by velocity.
+    /// `M v̇ + h`, by velocity; then what the constraints keep at zero.
     pub motion: Vec<Polynomial>,
-    /// What the inputs contribute, by velocity.
+    /// What the inputs and the multipliers contribute, by velocity; then zeros.
     pub forces: Vec<Polynomial>,
 }
 
@@ -67,7 +67,16 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let kinetic = kinetic(model, joints, mass, &v, &mut normal)?;
     let potential = normal.of(energy::potential_energy(model, joints))?;
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
-    let forces = normals(&mut normal, &forces::generalized_forces(model, joints))?;
+    let mut right = forces::generalized_forces(model, joints);
+    for (k, row) in constraints::jacobian(model).iter().enumerate() {
+        let lambda = Quantity::Given(k).expr(model.graph);
+        right.iter_mut().zip(row).for_each(|(force, entry)| *force += *entry * lambda);
+    }
+    let mut forces = normals(&mut normal, &right)?;
+    for c in &model.constraints {
+        motion.push(normal.of(c.residual.unwrap_or(c.rate))?);
+        forces.push(Polynomial::default());
+    }
     readable(normal.ring, lagrangian, motion, forces)
 }
 

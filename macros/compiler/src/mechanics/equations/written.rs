@@ -74,8 +74,9 @@ fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
 fn names(model: &Model<'_>) -> Names {
     let velocities = model.velocities.iter().map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
+    let multipliers: Vec<String> = (1..=model.constraints.len()).map(|k| format!("lambda{k}")).collect();
     let names = model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
-    Names::new(names.map(String::as_str))
+    Names::new(names.chain(&multipliers).map(String::as_str))
 }
 
 /// By velocity, whether it is the rate of a coordinate that has its name.
@@ -99,12 +100,17 @@ fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
         Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
         Quantity::Time => ("t".to_string(), 0),
         Quantity::Force(k) => (format!("tau{k}"), 0),
+        Quantity::Given(k) => (format!("lambda{}", k + 1), 0),
         _ => (format!("s{}", symbol.0), 0),
     }
 }
 
 fn legend(model: &Model<'_>, rates: &[bool]) -> String {
-    match rates.iter().position(|is_rate| *is_rate) {
+    let multipliers = match model.constraints.first() {
+        Some(first) => format!(" lambda1 is the multiplier of the constraint {}.", first.name),
+        None => String::new(),
+    };
+    let rates = match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {
             let x = &model.velocities[k].0;
             format!(
@@ -115,5 +121,6 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> String {
             let w = &model.velocities[0].0;
             format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
         }
-    }
+    };
+    rates + &multipliers
 }
