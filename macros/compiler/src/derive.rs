@@ -18,6 +18,7 @@ mod derivatives;
 mod dynamics;
 mod prepared;
 mod regressor;
+mod sensitivities;
 pub mod signatures;
 
 use regressor::Identification;
@@ -56,6 +57,10 @@ pub fn derive_with<'g>(
         return None;
     }
     let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
+    let mut names = identification.map_or_else(Vec::new, |i| i.names());
+    if requests.sensitivities {
+        names.push(signatures::parameters(&model.parameters));
+    }
     Some(Output {
         functions,
         links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
@@ -63,7 +68,7 @@ pub fn derive_with<'g>(
         charts: model.charts.clone(),
         equations: written(model),
         prepared,
-        names: identification.map_or_else(Vec::new, |i| i.names()),
+        names,
     })
 }
 
@@ -123,6 +128,9 @@ fn functions<'g>(
     }
     if let Some(identification) = identification {
         functions.extend(identification.functions(joints, stage));
+    }
+    if requests.sensitivities {
+        functions.extend(sensitivities::functions(model, passes, stage));
     }
     functions
 }

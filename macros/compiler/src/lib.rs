@@ -234,6 +234,12 @@ impl Source {
             functions.extend(signatures::regressor(&sizes, outline.bodies.len(), base.len()));
             names = signatures::names(outline.bodies, base);
         }
+        if requests.sensitivities {
+            let parameters: Vec<String> =
+                self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
+            functions.extend(signatures::sensitivities(&sizes, parameters.len()));
+            names.push(signatures::parameters(&parameters));
+        }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
                 // An output may have the wrong name.

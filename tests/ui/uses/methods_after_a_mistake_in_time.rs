@@ -1,6 +1,6 @@
 use linkwork::prelude::*;
 
-#[mechanism(gravity = -g * z, derivatives, regressor, prepare)]
+#[mechanism(gravity = -g * z, derivatives, regressor, sensitivities, prepare)]
 struct BeadOnSpinningHoop {
     g: f64,
     m: f64,
@@ -43,7 +43,8 @@ fn main() {
     let standard = hoop.standard_parameters();
     let _ = hoop.joint_torque_regressor(t, &q, &v, &a) * standard;
     let _ = hoop.base_regressor(t, &q, &v, &a) * hoop.base_parameters(&standard);
-    let _ = (BeadOnSpinningHoop::BODIES, BeadOnSpinningHoop::BASE_PARAMETERS);
+    let _ = hoop.inverse_dynamics_by_parameters(t, &q, &v, &a) + hoop.forward_dynamics_by_parameters(t, &q, &v, &tau);
+    let _ = (BeadOnSpinningHoop::PARAMETERS, BeadOnSpinningHoop::BODIES, BeadOnSpinningHoop::BASE_PARAMETERS);
     let prepared: PreparedBeadOnSpinningHoop = hoop.prepare();
     let _ = prepared.mass_matrix(t, &q) * prepared.sliding(t, &q, &v).norm();
     let _ = simulate(&hoop).from(q, v);

@@ -270,6 +270,33 @@ pub fn names(bodies: Vec<String>, base: Vec<String>) -> Vec<Names> {
     ]
 }
 
+/// The functions of the word `sensitivities`, for so many parameters.
+pub fn sensitivities(sizes: &Sizes, parameters: usize) -> Vec<Function> {
+    let shape = Shape::Matrix(sizes.nv, parameters);
+    vec![
+        sizes.function(
+            "inverse_dynamics_by_parameters",
+            &[Q, V, A],
+            shape,
+            &["`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`."],
+        ),
+        sizes.function(
+            "forward_dynamics_by_parameters",
+            &[Q, V, Tau],
+            shape,
+            &[
+                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+                "`∂v̇/∂p = −M⁻¹ ∂τ/∂p` at `a = v̇`.",
+            ],
+        ),
+    ]
+}
+
+/// The names of the parameters.
+pub fn parameters(list: &[String]) -> Names {
+    Names { name: "PARAMETERS", about: "every parameter of the struct", list: list.to_vec() }
+}
+
 /// The functions of the word `derivatives`.
 pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
     const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";

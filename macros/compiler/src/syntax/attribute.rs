@@ -31,6 +31,8 @@ pub struct Requests {
     pub centroidal: bool,
     /// The dynamics as linear functions of the mass properties.
     pub regressor: bool,
+    /// Derivatives of the dynamics by the parameters.
+    pub sensitivities: bool,
     /// A second struct that holds what depends on the parameters alone.
     pub prepare: bool,
     /// Functions of several states at once, in lanes.
@@ -73,7 +75,7 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 5] = ["derivatives", "centroidal", "regressor", "prepare", "batch"];
+const REQUESTS: [&str; 6] = ["derivatives", "centroidal", "regressor", "sensitivities", "prepare", "batch"];
 
 /// The options that have a value.
 const OPTIONS: [&str; 10] =
@@ -367,17 +369,20 @@ fn read_options(
 /// The words among the arguments.
 fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut Diagnostics) -> Requests {
     let mut asked = |word| arguments.word_given(word);
-    let prepare = asked("prepare");
+    let (sensitivities, prepare) = (asked("sensitivities"), asked("prepare"));
     let requests = Requests {
         derivatives: asked("derivatives").is_some(),
         centroidal: asked("centroidal").is_some(),
         regressor: asked("regressor").is_some(),
+        sensitivities: sensitivities.is_some(),
         prepare: prepare.is_some(),
         batch: asked("batch").is_some(),
     };
-    if let Some(place) = prepare.filter(|_| description.parameters.is_empty()) {
-        cx.error(place, "there is nothing to prepare: this mechanism has no parameters")
-            .help("remove `prepare`: all its numbers are computed at compile time");
+    for (place, word) in [(sensitivities, "sensitivities"), (prepare, "prepare")] {
+        if let Some(place) = place.filter(|_| description.parameters.is_empty()) {
+            cx.error(place, format!("`{word}` has no meaning here: this mechanism has no parameters"))
+                .help(format!("remove `{word}`: all numbers are known at compile time"));
+        }
     }
     for e in arguments.take_plain() {
         match e.name() {

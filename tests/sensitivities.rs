@@ -1,0 +1,164 @@
+//! Derivatives of the dynamics by parameters: against differences of the functions that they are the derivatives of.
+
+use linkwork::mechanism;
+use linkwork::nalgebra::{SMatrix, SVector};
+use support::compare::assert_similar;
+use support::random::Random;
+
+/// Differences.
+const TOLERANCE: f64 = 1e-7;
+
+/// An arm whose lengths, masses, angles and elements are parameters.
+#[mechanism(gravity = -g * z, sensitivities, prepare)]
+#[derive(Clone, Copy)]
+struct Arm {
+    g: f64,
+    m: f64,
+    l: f64,
+    tilt: f64,
+    stiffness: f64,
+    rest: f64,
+    damping: f64,
+    dry: f64,
+    _spare: f64,
+    #[body(mass = m, com = l / 2 * x + l / 9 * y, inertia = rod(m, l, x))]
+    upper: Body,
+    #[body(mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt)))]
+    lower: Body,
+    #[particle(mass = m / 5, at = lower.at(l / 3 * x))]
+    tool: Particle,
+    #[joint(ground.rotated(x(tilt)) -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(l * x + l / 8 * y).rotated(y(tilt)) -> lower)]
+    wrist: Ball,
+    #[acts(on = shoulder, stiffness = stiffness, free_angle = rest)]
+    spring: Spring,
+    #[acts(between = (ground, tool), stiffness = stiffness / (l * l), free_length = l / 2)]
+    rope: Spring,
+    #[acts(on = shoulder, damping = damping)]
+    dashpot: Dashpot,
+    #[acts(on = shoulder, coulomb = dry, speed = 1)]
+    friction: Friction,
+}
+
+/// A flying robot from a file, with a load and a spring.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, sensitivities)]
+#[derive(Clone, Copy)]
+struct Quadruped {
+    load: f64,
+    height: f64,
+    stiffness: f64,
+    #[particle(mass = load, at = base_link.at(height * z))]
+    pack: Particle,
+    #[acts(on = FL_KFE, stiffness = stiffness)]
+    spring: Spring,
+}
+
+/// A bead on a hoop that is driven about the vertical.
+#[mechanism(gravity = -g * z, sensitivities)]
+#[derive(Clone, Copy)]
+struct Hoop {
+    g: f64,
+    m: f64,
+    radius: f64,
+    spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t))]
+    hoop: Frame,
+    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
+    bead: Particle,
+}
+
+/// Derivative of a function of the mechanism by each parameter, by differences of the fourth order.
+fn slopes<M: Copy, const NV: usize, const NP: usize>(
+    at: M,
+    parameters: [fn(&mut M) -> &mut f64; NP],
+    f: impl Fn(&M) -> SVector<f64, NV>,
+) -> SMatrix<f64, NV, NP> {
+    SMatrix::from_columns(&parameters.map(|parameter| {
+        let h = 1e-3;
+        let moved = |s: f64| {
+            let mut other = at;
+            *parameter(&mut other) += s * h;
+            f(&other)
+        };
+        ((moved(1.0) - moved(-1.0)) * 8.0 - (moved(2.0) - moved(-2.0))) / (12.0 * h)
+    }))
+}
+
+#[test]
+fn arm() {
+    let arm = Arm {
+        g: 9.7,
+        m: 1.3,
+        l: 0.6,
+        tilt: 0.4,
+        stiffness: 3.0,
+        rest: 0.3,
+        damping: 0.7,
+        dry: 0.2,
+        _spare: 1.0,
+    };
+    let names = ["g", "m", "l", "tilt", "stiffness", "rest", "damping", "dry", "_spare"];
+    assert_eq!(Arm::PARAMETERS, names);
+    let parameters: [fn(&mut Arm) -> &mut f64; 9] = [
+        |arm| &mut arm.g,
+        |arm| &mut arm.m,
+        |arm| &mut arm.l,
+        |arm| &mut arm.tilt,
+        |arm| &mut arm.stiffness,
+        |arm| &mut arm.rest,
+        |arm| &mut arm.damping,
+        |arm| &mut arm.dry,
+        |arm| &mut arm._spare,
+    ];
+    let mut random = Random::new(31);
+    for _ in 0..5 {
+        let q = random.configuration(&arm);
+        let [v, a, tau] = [random.vector(2.0), random.vector(2.0), random.vector(5.0)];
+        let inverse = arm.inverse_dynamics_by_parameters(&q, &v, &a);
+        let expected = slopes(arm, parameters, |arm| arm.inverse_dynamics(&q, &v, &a));
+        assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
+        let forward = arm.forward_dynamics_by_parameters(&q, &v, &tau);
+        let expected = slopes(arm, parameters, |arm| arm.forward_dynamics(&q, &v, &tau));
+        assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
+        let prepared = arm.prepare();
+        let again = prepared.inverse_dynamics_by_parameters(&q, &v, &a);
+        assert_similar("prepared ∂τ/∂p", again.as_slice(), inverse.as_slice(), 1e-12);
+        let again = prepared.forward_dynamics_by_parameters(&q, &v, &tau);
+        assert_similar("prepared ∂v̇/∂p", again.as_slice(), forward.as_slice(), 1e-10);
+    }
+}
+
+#[test]
+fn robot_with_a_load() {
+    let robot = Quadruped { load: 0.7, height: 0.1, stiffness: 2.0 };
+    let parameters: [fn(&mut Quadruped) -> &mut f64; 3] =
+        [|robot| &mut robot.load, |robot| &mut robot.height, |robot| &mut robot.stiffness];
+    let mut random = Random::new(32);
+    let q = random.configuration(&robot);
+    let [v, a, tau] = [random.vector(2.0), random.vector(2.0), random.vector(5.0)];
+    let inverse = robot.inverse_dynamics_by_parameters(&q, &v, &a);
+    let expected = slopes(robot, parameters, |robot| robot.inverse_dynamics(&q, &v, &a));
+    assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
+    let forward = robot.forward_dynamics_by_parameters(&q, &v, &tau);
+    let expected = slopes(robot, parameters, |robot| robot.forward_dynamics(&q, &v, &tau));
+    assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
+}
+
+/// `m r² θ̈ = m r (r Ω² cos θ − g) sin θ`.
+#[test]
+fn driven_in_time() {
+    let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
+    let (q, v, tau) = ([0.5].into(), [2.0].into(), [0.02].into());
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let by = hoop.forward_dynamics_by_parameters(0.7, &q, &v, &tau);
+    let (m, r) = (hoop.m, hoop.radius);
+    let expected = [
+        -sin / r,
+        -0.02 / (m * m * r * r),
+        hoop.g * sin / (r * r) - 2.0 * 0.02 / (m * r * r * r),
+        2.0 * hoop.spin * sin * cos,
+    ];
+    assert_similar("∂v̇/∂p", by.as_slice(), &expected, 1e-12);
+}
