@@ -6,6 +6,11 @@ use linkwork_compiler::{compile, read};
 use std::path::Path;
 
 fn counts(arguments: &str, item: &str, functions: &[&str]) -> Vec<(usize, usize, usize)> {
+    counts_and_nodes(arguments, item, functions).0
+}
+
+/// Operations of functions, and how many expressions were made on the way.
+fn counts_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<(usize, usize, usize)>, usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -14,14 +19,12 @@ fn counts(arguments: &str, item: &str, functions: &[&str]) -> Vec<(usize, usize,
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    functions
-        .iter()
-        .map(|name| {
-            let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
-            let c = f.program.counts;
-            (c.mul, c.add, c.div)
-        })
-        .collect()
+    let count = |name: &&str| {
+        let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
+        let c = f.program.counts;
+        (c.mul, c.add, c.div)
+    };
+    (functions.iter().map(count).collect(), graph.len())
 }
 
 fn chain(n: usize, symbolic: bool) -> String {
@@ -86,6 +89,7 @@ fn chains() {
         (8, [446, 422, 388, 1122], [591, 558, 547, 1354]),
         (16, [990, 958, 1760, 2764], [1303, 1262, 2155, 3137]),
         (32, [2078, 2030, 7384, 6052], [2727, 2670, 8443, 6817]),
+        (64, [4254, 4174, 30152, 12628], [5575, 5486, 33307, 14177]),
     ] {
         let found = totals("gravity = -9.81 * z", &chain(n, false));
         assert_eq!(found, numbers, "{n} joints with numbers: {MAIN:?}");
@@ -103,5 +107,33 @@ fn chains() {
             );
         }
         before = Some(found);
+    }
+}
+
+/// From sixteen joints to sixty-four what inverse and forward dynamics cost is a straight line, and what the mass matrix
+/// and the derivatives cost a parabola: three lengths tell all others, up to a few operations. The expressions
+/// that the compiler makes for all functions together grow with the square at most.
+#[test]
+fn curves_of_growth() {
+    let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
+    let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
+    let all = [&lines[..], &parabolas].concat();
+    let at = |n: usize| {
+        let (counts, nodes) = counts_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
+        let mut totals: Vec<f64> = counts.iter().map(|c| (c.0 + c.1 + c.2) as f64).collect();
+        totals.push(nodes as f64);
+        totals
+    };
+    let [a, b, c] = [16, 20, 24].map(at);
+    for n in [32, 48, 64] {
+        let (found, s) = (at(n), (n as f64 - 16.0) / 4.0);
+        for (k, name) in all.iter().enumerate() {
+            let bend = c[k] - 2.0 * b[k] + a[k];
+            assert!(k >= lines.len() || bend == 0.0, "{name} is a line");
+            let expected = a[k] + s * (b[k] - a[k]) + s * (s - 1.0) / 2.0 * bend;
+            assert!((found[k] - expected).abs() <= 1e-3 * expected, "{name} of {n}: {}", found[k]);
+        }
+        let growth = found[all.len()] / a[all.len()];
+        assert!(growth < (n as f64 / 16.0).powi(2), "{n}: {growth} times the expressions of 16");
     }
 }

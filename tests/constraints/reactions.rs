@@ -62,7 +62,11 @@ fn reactions_balance_every_free_body() {
         let (on_rod, on_piston) = (slider.on_rod(&q, &v, &u), slider.on_piston(&q, &v, &u));
         let rod = |along: f64| {
             let turned = q[0] + q[1];
-            Vector3::new(0.2 * q[0].cos() + along * turned.cos(), 0.2 * q[0].sin() + along * turned.sin(), 0.0)
+            Vector3::new(
+                0.2 * q[0].cos() + along * turned.cos(),
+                0.2 * q[0].sin() + along * turned.sin(),
+                0.0,
+            )
         };
         let stretch = Vector3::new(0.0, 0.5, 0.0) - rod(0.2);
         let spring = stretch * (40.0 * (stretch.norm() - 0.3) / stretch.norm());
@@ -79,7 +83,8 @@ fn reactions_balance_every_free_body() {
         let moment = (rod(0.0) - rod(0.3)).cross(&on_rod) - (rod(0.6) - rod(0.3)).cross(&on_piston)
             + (rod(0.2) - rod(0.3)).cross(&spring);
         close(moment, Vector3::new(0.0, 0.0, 0.8 * 0.36 / 12.0 * (a[0] + a[1])));
-        let moment = slider.turning_crank(&q, &v, &u) - rod(0.0).cross(&on_rod) + (rod(0.0) * 0.5).cross(&(weight * 1.5));
+        let moment = slider.turning_crank(&q, &v, &u) - rod(0.0).cross(&on_rod)
+            + (rod(0.0) * 0.5).cross(&(weight * 1.5));
         close(moment, Vector3::new(0.0, 0.0, 1.5 * 0.04 / 3.0 * a[0]));
         // Other axes, other scalars.
         let turned = q[0] + q[1];

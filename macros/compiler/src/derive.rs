@@ -185,7 +185,8 @@ fn output_functions(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -
 
 /// The hidden function of an output that names reactions, for given accelerations and multipliers.
 fn reaction_function(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Function {
-    let mut f = signatures::reaction(&output.name, output.values.len(), &Sizes::of(model), model.constraints.len());
+    let mut f =
+        signatures::reaction(&output.name, output.values.len(), &Sizes::of(model), model.constraints.len());
     f.program = stage.program(&reactions::resolved(model, &output.values));
     f
 }

@@ -2,13 +2,13 @@
 
 use super::constants::write_constants;
 use super::constraints::{self, Constraints};
-use super::reactions;
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
 use super::lanes;
 use super::manifold::write_manifold;
 use super::prepared::{Content, Prepared, write_prepared};
+use super::reactions;
 use super::scalar::ScalarSpelling;
 use crate::expr::print::Written;
 use crate::model::Chart;

@@ -11,12 +11,12 @@ mod item;
 mod lanes;
 mod manifold;
 mod matrices;
-mod reactions;
 mod prepared;
+mod reactions;
 mod scalar;
 
 pub use constraints::Constraints;
-pub use reactions::HIDDEN as REACTION;
 pub use function::{Argument, Function, Shape};
 pub use item::{Emitted, Interface, Names, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;
+pub use reactions::HIDDEN as REACTION;

@@ -3,12 +3,12 @@
 
 use super::constants::write_sizes;
 use super::constraints;
-use super::reactions;
 use super::docs::operations;
 use super::function::{Function, Shape, Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
 use super::lanes;
 use super::manifold::write_manifold;
+use super::reactions;
 use crate::lower::Program;
 use crate::model::Chart;
 use quote::ToTokens;

@@ -10,9 +10,8 @@ pub const HIDDEN: &str = "__reaction_";
 
 /// Writes the outputs whose hidden functions are among these.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
-    let by_velocity = functions
-        .iter()
-        .any(|f| f.name == "generalized_forces" && f.arguments.contains(&Argument::V));
+    let by_velocity =
+        functions.iter().any(|f| f.name == "generalized_forces" && f.arguments.contains(&Argument::V));
     let t = if s.time { "t, " } else { "" };
     for f in functions {
         let Some(name) = f.name.strip_prefix(HIDDEN) else { continue };

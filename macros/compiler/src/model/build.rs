@@ -8,8 +8,8 @@ use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
 use super::world::{Level, Placed, PlacedKind, View, World};
 use super::{
-    Chart, Constraint, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion, NamedFrame,
-    Opened, Pose, Quantity, reaction,
+    Chart, Constraint, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion,
+    NamedFrame, Opened, Pose, Quantity, reaction,
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Sym3, Vec3};

@@ -137,7 +137,9 @@ fn uses(d: &Description, e: &Expr) -> Uses {
             ExprKind::Call(function, _) => match function.text.as_str() {
                 "v" | "omega" | "rate" => uses.velocities = true,
                 "a" | "alpha" => uses.accelerations = true,
-                "reaction_force" | "reaction_torque" => (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty()),
+                "reaction_force" | "reaction_torque" => {
+                    (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
+                }
                 _ => {}
             },
             ExprKind::Name(name) => uses.inputs |= d.inputs.iter().any(|input| input.text == *name),

@@ -72,8 +72,24 @@ const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 /// Functions of the language beside the elementary ones.
 const FUNCTIONS: [&str; 18] = [
-    "atan2", "pow", "min", "max", "dot", "cross", "norm", "unit", "r", "v", "a", "omega", "alpha", "rate",
-    "angle", "project", "reaction_force", "reaction_torque",
+    "atan2",
+    "pow",
+    "min",
+    "max",
+    "dot",
+    "cross",
+    "norm",
+    "unit",
+    "r",
+    "v",
+    "a",
+    "omega",
+    "alpha",
+    "rate",
+    "angle",
+    "project",
+    "reaction_force",
+    "reaction_torque",
 ];
 
 impl<'a, 'g> Scope<'a, 'g> {
