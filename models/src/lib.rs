@@ -61,7 +61,7 @@
 //! | [`RemotelyDrivenArm`] (geared, absolute angles) | 2 | mass matrix and bias forces |
 //! | [`Ur5`] | 6 | Denavit–Hartenberg parameters |
 //! | [`Panda`], [`PandaArm`], [`LoadedPanda`] | 8, 7, 7 | Denavit–Hartenberg parameters |
-//! | [`Solo12`] | 18 | free fall, leg kinematics |
+//! | [`Solo12`], [`AnymalB`] | 18 | free fall, leg kinematics |
 //! | [`SimpleHumanoid`] | 35 | free fall |
 //!
 //! | rolling bodies | freedom | closed form in the test |
@@ -185,7 +185,7 @@ pub use pendulum::Pendulum;
 pub use pendulum_chain::{QuintuplePendulum, TriplePendulum};
 pub use pendulum_on_collar::PendulumOnCollar;
 pub use planar_rotorcraft::PlanarRotorcraft;
-pub use quadruped::Solo12;
+pub use quadruped::{AnymalB, Solo12};
 pub use rate_gyroscope::RateGyroscope;
 pub use remotely_driven_arm::RemotelyDrivenArm;
 pub use rod_in_slot::RodInSlot;
