@@ -1,4 +1,4 @@
-//! Chains of pins of any length, as the text of a `#[mechanism]` struct.
+//! Chains of pins of any length: as the text of a `#[mechanism]` struct, and as a URDF file.
 
 use std::fmt::Write;
 
@@ -10,33 +10,87 @@ pub struct Source {
     pub item: String,
 }
 
-/// A chain of `n` links on pins about changing axes. `symbolic`: mass, length, centre of mass and inertia of each link
-/// are parameters; else they are numbers.
-pub fn chain(n: usize, symbolic: bool) -> Source {
-    let mut item = "pub struct Chain {\n".to_string();
+/// What the numbers of a link are called: mass, centre of mass, moments of inertia about it, length.
+const NUMBERS: [&str; 6] = ["m", "c", "a", "b", "e", "l"];
+/// Of what size they are: kg, m, kg·m², m.
+const SIZES: [f64; 6] = [2.0, 0.2, 0.03, 0.04, 0.02, 0.4];
+
+/// The numbers of link `k`, as they are written.
+fn numbers(k: usize) -> [String; 6] {
+    SIZES.map(|size| format!("{:.4}", size * (1.0 + 0.1 / k as f64)))
+}
+
+/// The names of the parameters of link `k` of `n`. The last link carries nothing, so its length is not used.
+fn names(k: usize, n: usize) -> impl Iterator<Item = String> {
+    let count = if k < n { 6 } else { 5 };
+    NUMBERS.into_iter().take(count).map(move |name| format!("{name}{k}"))
+}
+
+/// Which axis joint `k` turns about: x, y or z.
+fn axis(k: usize) -> usize {
+    [2, 1, 0][k % 3]
+}
+
+/// A chain of `n` links on pins about changing axes, in the struct `name`. `symbolic`: mass, length, centre of mass and
+/// inertia of each link are parameters; else they are numbers.
+pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
+    let mut item = format!("pub struct {name} {{\n");
     let mut parent = "ground".to_string();
     for k in 1..=n {
-        let number = |what: &str, value: f64| match symbolic {
-            true => format!("{what}{k}"),
-            false => format!("{:.4}", value * (1.0 + 0.1 / k as f64)),
-        };
-        let (mass, length, center) = (number("m", 2.0), number("l", 0.4), number("c", 0.2));
-        let inertia = [number("a", 0.03), number("b", 0.04), number("e", 0.02)];
+        let values = if symbolic { NUMBERS.map(|name| format!("{name}{k}")) } else { numbers(k) };
+        let [m, c, a, b, e, l] = values;
         if symbolic {
-            // The last link carries nothing, so its length is not used.
-            for what in ["m", "c", "a", "b", "e", "l"].into_iter().take(if k < n { 6 } else { 5 }) {
-                let _ = writeln!(item, "pub {what}{k}: f64,");
+            for parameter in names(k, n) {
+                let _ = writeln!(item, "pub {parameter}: f64,");
             }
         }
-        let axis = ["z", "y", "x"][k % 3];
+        let axis = ["x", "y", "z"][axis(k)];
         let _ = writeln!(
             item,
-            "#[body(mass = {mass}, com = {center} * z, inertia = diagonal({}))] link{k}: Body,",
-            inertia.join(", ")
+            "#[body(mass = {m}, com = {c} * z, inertia = diagonal({a}, {b}, {e}))] link{k}: Body,"
         );
         let _ = writeln!(item, "#[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,");
-        parent = format!("link{k}.at({length} * z)");
+        parent = format!("link{k}.at({l} * z)");
     }
     item.push('}');
     Source { arguments: "gravity = -9.81 * z".to_string(), item }
+}
+
+/// The expression that makes the struct of a chain with parameters the same robot as that with numbers.
+pub fn value(name: &str, n: usize) -> String {
+    let fields = (1..=n).flat_map(|k| names(k, n).zip(numbers(k)));
+    let fields: Vec<String> = fields.map(|(name, number)| format!("{name}: {number}")).collect();
+    format!("{name} {{ {} }}", fields.join(", "))
+}
+
+/// The same robot as a URDF file.
+pub fn urdf(n: usize) -> String {
+    let mut text = "<robot name=\"chain\">\n  <link name=\"link0\"/>\n".to_string();
+    let mut length = "0".to_string();
+    for k in 1..=n {
+        let [m, c, a, b, e, l] = numbers(k);
+        let axis = ["1 0 0", "0 1 0", "0 0 1"][axis(k)];
+        let _ = write!(
+            text,
+            r#"  <link name="link{k}">
+    <inertial>
+      <origin xyz="0 0 {c}"/>
+      <mass value="{m}"/>
+      <inertia ixx="{a}" ixy="0" ixz="0" iyy="{b}" iyz="0" izz="{e}"/>
+    </inertial>
+  </link>
+  <joint name="joint{k}" type="revolute">
+    <origin xyz="0 0 {length}"/>
+    <parent link="link{}"/>
+    <child link="link{k}"/>
+    <axis xyz="{axis}"/>
+    <limit lower="-3.2" upper="3.2" effort="1000" velocity="100"/>
+  </joint>
+"#,
+            k - 1
+        );
+        length = l;
+    }
+    text.push_str("</robot>\n");
+    text
 }

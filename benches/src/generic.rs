@@ -368,7 +368,7 @@ mod tests {
     fn generated_and_generic_code_agree() {
         for robot in pairs::robots() {
             for mut pair in robot.pairs {
-                let error = (0..pairs::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);
+                let error = (0..crate::states::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);
                 println!("{}, {}: {error:.1e}", robot.name, pair.function);
                 assert!(error <= 1e-9, "{}, {}: {error:e}", robot.name, pair.function);
             }

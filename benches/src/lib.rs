@@ -1,9 +1,5 @@
-//! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms, and the time that
-//! the compiler takes.
-//!
-//! - `cargo run --release -p linkwork-benches --bin ratios`: generated and generic side by side, in one table.
-//! - `cargo bench -p linkwork-benches`: the same with criterion.
-//! - `cargo run -p linkwork-benches --bin expansion`: time and memory of expanding mechanisms.
+//! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms and next to other
+//! libraries, and the time that the compiler takes. The README beside this package says how to run what.
 
 pub mod chains;
 pub mod generic;
@@ -11,3 +7,4 @@ pub mod operations;
 pub mod pairs;
 pub mod random;
 pub mod robots;
+pub mod states;

@@ -1,16 +1,14 @@
 //! Generated functions next to the generic implementation of the same, on the same random states.
 
-use crate::generic::{Data, Model, Motion, Options};
+use crate::generic::{Data, Model, Options};
 use crate::operations::{Operations, Size};
-use crate::random::Random;
-use crate::robots::{Humanoid, Panda, PandaArm, Solo12, Ur5};
+use crate::robots::Panda;
+use crate::states::{STATES, State, states};
 use linkwork::{Mechanism, frame};
+use linkwork_models::{PandaArm, SimpleHumanoid, Solo12, Ur5};
 use nalgebra::{DMatrix, DVector, Matrix6xX, SMatrix, SVector};
 use std::hint::black_box;
 use std::rc::Rc;
-
-/// Number of states that the calls go through, one after another.
-pub const STATES: usize = 256;
 
 /// A function of a robot, twice. The functions take the number of a state.
 pub struct Pair {
@@ -64,7 +62,7 @@ pub fn robots() -> Vec<Robot> {
         ),
         robot!("panda", Panda, "panda", ", mimic = independent", fixed, "panda_leftfinger"),
         robot!("solo12", Solo12, "solo12", ", base = free", free, "HR_FOOT"),
-        robot!("simple_humanoid", Humanoid, "simple_humanoid", ", base = free", free, "r_wrist"),
+        robot!("simple_humanoid", SimpleHumanoid, "simple_humanoid", ", base = free", free, "r_wrist"),
     ]
 }
 
@@ -78,25 +76,6 @@ struct Source {
     arguments: &'static str,
     /// The frame of the Jacobian.
     frame: &'static str,
-}
-
-/// What the functions take.
-struct State<const NQ: usize, const NV: usize> {
-    q: SVector<f64, NQ>,
-    v: SVector<f64, NV>,
-    a: SVector<f64, NV>,
-    tau: SVector<f64, NV>,
-}
-
-/// Random coordinates, unit quaternions; everything else of the order of one.
-fn random_state<const NQ: usize, const NV: usize>(model: &Model, random: &mut Random) -> State<NQ, NV> {
-    let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.within(3.0));
-    for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
-        let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
-        quaternion.normalize_mut();
-    }
-    let mut vector = || SVector::from_fn(|_, _| random.within(2.0));
-    State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
 }
 
 /// A generic model with all that its functions write to.
@@ -123,12 +102,9 @@ where
 {
     let model = Model::from_urdf(source.text, &source.options);
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
-    assert_eq!((model.nq, model.nv), (NQ, NV), "{}", source.name);
     let operations = Operations::of(source.arguments, "pub struct Robot;");
-    let mut random = Random::new(1);
-    let states: Vec<State<NQ, NV>> = (0..STATES).map(|_| random_state(&model, &mut random)).collect();
-    let bench =
-        Bench { frame: model.frame(source.frame).unwrap_or_default(), model, states: Rc::new(states) };
+    let states = Rc::new(states(&model));
+    let bench = Bench { frame: model.frame(source.frame).unwrap_or_default(), model, states };
     let pairs = vec![
         bench.pair(
             "mass matrix",

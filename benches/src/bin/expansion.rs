@@ -55,7 +55,7 @@ fn mechanisms() -> Vec<(String, &'static str, Source)> {
         list.push((name.to_string(), goal, Source { arguments, item }));
     }
     for (symbolic, what) in [(false, "numbers"), (true, "parameters")] {
-        list.extend(LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain(n, symbolic))));
+        list.extend(LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain("Chain", n, symbolic))));
     }
     list
 }

@@ -3,7 +3,8 @@
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the flag for the
 //! default target. Nanoseconds of one call: the least over many batches, in which both take turns.
 
-use linkwork_benches::pairs::{Pair, STATES, robots};
+use linkwork_benches::pairs::{Pair, robots};
+use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
 /// How long each function is measured.

@@ -1,0 +1,9 @@
+//! Time that this thread has run: other programs on the same processor do not count.
+
+use rustix::time::{ClockId, clock_gettime};
+
+/// Seconds.
+pub fn seconds() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}

@@ -1,0 +1,36 @@
+//! Generated functions next to other libraries, in one process, interleaved, on the same states.
+//!
+//! `benches/peers/run` does everything: it installs and builds the peers, and calls this program, first to write the
+//! robots for them, then to measure. By itself: `peers write FOLDER`, `peers measure FOLDER [--quick]`. A peer that is
+//! not in the folder is left out.
+
+mod clock;
+mod code;
+mod contender;
+#[expect(unsafe_code, reason = "the peers are shared libraries with C interfaces")]
+mod library;
+mod own;
+mod robots;
+mod table;
+mod write;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words.as_slice() {
+        ["write", folder] => write::write(Path::new(folder)).map_err(|error| error.to_string()),
+        ["measure", folder] => table::measure(Path::new(folder), false),
+        ["measure", folder, "--quick"] => table::measure(Path::new(folder), true),
+        _ => Err("expected `write FOLDER` or `measure FOLDER [--quick]`".to_string()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("peers: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The robots that are compared.
+
+use crate::contender::{Contender, Function, Owner};
+use crate::own::{Call, Flat, Own};
+use linkwork_benches::generic::{Model, Options};
+use linkwork_benches::robots::{Kinova, Panda};
+use linkwork_benches::states::{State, states};
+use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
+use std::rc::Rc;
+
+/// A generated function with what it computes.
+pub type Generated = (Function, Box<dyn Contender>);
+
+/// A robot with its generated functions.
+pub struct Robot {
+    /// Its name, and its folder's.
+    pub name: &'static str,
+    /// Its file.
+    pub urdf: String,
+    /// Joints of the file that do not move.
+    pub lock: &'static [&'static str],
+    /// Its root moves freely.
+    pub free: bool,
+    /// Its moving joints in order, without that of the root.
+    pub joints: &'static [&'static str],
+    /// Number of coordinates.
+    pub nq: usize,
+    /// Number of velocities.
+    pub nv: usize,
+    /// `q`, `v`, `a` and `τ` of every state, one after another.
+    pub numbers: Vec<f64>,
+    /// Its functions.
+    pub functions: Vec<Generated>,
+}
+
+/// A generated function as a contender.
+fn own<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
+    (owner, mechanism): (Owner, M),
+    states: &Rc<Vec<State<NQ, NV>>>,
+    function: Function,
+    call: Call<M, R, NQ, NV>,
+) -> Generated {
+    let states = states.clone();
+    (function, Box::new(Own { owner, mechanism, states, name: function.name(), call }))
+}
+
+/// The functions of a mechanism.
+macro_rules! functions {
+    ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
+        let from = (Owner::$owner, $value);
+        [
+            own(from, $states, Function::Inverse, |m: &$type, s| m.inverse_dynamics(&s.q, &s.v, &s.a)),
+            own(from, $states, Function::Mass, |m: &$type, s| m.mass_matrix(&s.q)),
+            own(from, $states, Function::Forward, |m: &$type, s| m.forward_dynamics(&s.q, &s.v, &s.tau)),
+        ]
+    }};
+}
+
+/// Their derivatives.
+macro_rules! derivatives {
+    ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
+        let from = (Owner::$owner, $value);
+        [
+            own(from, $states, Function::InverseDerivatives, |m: &$type, s| {
+                m.inverse_dynamics_derivatives(&s.q, &s.v, &s.a)
+            }),
+            own(from, $states, Function::ForwardDerivatives, |m: &$type, s| {
+                m.forward_dynamics_derivatives(&s.q, &s.v, &s.tau)
+            }),
+        ]
+    }};
+}
+
+/// A robot: its name, its file and how that is read, its type, and the functions of several of its values.
+macro_rules! robot {
+    ($name:literal, $urdf:expr, $options:expr, $type:ident, $($macro:ident!($of:ident, $value:expr, $owner:ident)),+) => {{
+        let (urdf, options): (String, Options<'static>) = ($urdf, $options);
+        let model = Model::from_urdf(&urdf, &options);
+        let model = model.unwrap_or_else(|message| panic!("{}: {message}", $name));
+        let states: Rc<Vec<State<{ $type::NQ }, { $type::NV }>>> = Rc::new(states(&model));
+        let joints = if options.free { 6 } else { 0 };
+        let mut functions: Vec<Generated> = Vec::new();
+        $(functions.extend($macro!($of, $value, $owner, &states));)+
+        Robot {
+            name: $name,
+            urdf,
+            lock: options.lock,
+            free: options.free,
+            joints: &const { $type::VELOCITIES }[joints..],
+            nq: $type::NQ,
+            nv: $type::NV,
+            numbers: states.iter().flat_map(State::numbers).collect(),
+            functions,
+        }
+    }};
+}
+
+/// A robot from a file.
+macro_rules! file {
+    ($name:literal, $file:literal, $options:expr, $type:ident) => {
+        robot!(
+            $name,
+            include_str!(concat!("../../../../models/urdf/", $file, ".urdf")).to_string(),
+            $options,
+            $type,
+            functions!($type, $type, Linkwork),
+            derivatives!($type, $type, Linkwork)
+        )
+    };
+}
+
+#[cfg(feature = "chains")]
+mod chains;
+
+/// All robots.
+pub fn robots() -> Vec<fn() -> Robot> {
+    const FIXED: Options<'static> = Options { free: false, lock: &[] };
+    const FREE: Options<'static> = Options { free: true, lock: &[] };
+    const LOCKED: Options<'static> =
+        Options { free: false, lock: &["panda_finger_joint1", "panda_finger_joint2"] };
+    let files: [fn() -> Robot; _] = [
+        || file!("ur5", "ur5", FIXED, Ur5),
+        || file!("panda_arm", "panda", LOCKED, PandaArm),
+        || file!("panda", "panda", FIXED, Panda),
+        || file!("kinova", "kinova", FIXED, Kinova),
+        || file!("solo12", "solo12", FREE, Solo12),
+        || file!("anymal_b", "anymal_b", FREE, AnymalB),
+        || file!("simple_humanoid", "simple_humanoid", FREE, SimpleHumanoid),
+    ];
+    #[cfg(feature = "chains")]
+    return files.into_iter().chain(chains::robots()).collect();
+    #[cfg(not(feature = "chains"))]
+    files.to_vec()
+}

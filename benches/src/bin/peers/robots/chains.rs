@@ -1,0 +1,33 @@
+//! Serial chains of any length, with numbers in the code and with parameters.
+
+use super::*;
+use linkwork_benches::chains;
+
+include!(concat!(env!("OUT_DIR"), "/chains.rs"));
+
+/// A chain with numbers, with parameters, and with parameters prepared.
+macro_rules! chain {
+    ($name:literal, $n:literal, $type:ident, $symbolic:ident, $prepared:ident, $($functions:ident)+) => {
+        robot!(
+            $name,
+            chains::urdf($n),
+            Options::default(),
+            $type,
+            $(
+                $functions!($type, $type {}, Linkwork),
+                $functions!($symbolic, $symbolic::numbers(), Parameters),
+                $functions!($prepared, $symbolic::numbers().prepare(), Prepared)
+            ),+
+        )
+    };
+}
+
+/// All chains.
+pub fn robots() -> Vec<fn() -> Robot> {
+    vec![
+        || chain!("chain_6", 6, Chain6, Chain6Parameters, PreparedChain6Parameters, functions derivatives),
+        || chain!("chain_16", 16, Chain16, Chain16Parameters, PreparedChain16Parameters, functions derivatives),
+        || chain!("chain_32", 32, Chain32, Chain32Parameters, PreparedChain32Parameters, functions),
+        || chain!("chain_64", 64, Chain64, Chain64Parameters, PreparedChain64Parameters, functions),
+    ]
+}

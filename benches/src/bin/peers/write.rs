@@ -1,0 +1,49 @@
+//! Robots as files for the peers.
+
+use crate::contender::Function;
+use crate::robots::{Robot, robots};
+use roxmltree::Document;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Writes a folder for every robot: `robot.urdf`; `joints`, the names of the moving ones
+/// in order; `free` if the root moves, `derivatives` if they are measured. Prints the folders.
+pub fn write(folder: &Path) -> io::Result<()> {
+    for make in robots() {
+        let robot = make();
+        let folder = folder.join(robot.name);
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join("robot.urdf"), as_meant(&robot)?)?;
+        fs::write(folder.join("joints"), robot.joints.join("\n"))?;
+        let derivatives =
+            robot.functions.iter().any(|(function, _)| *function == Function::InverseDerivatives);
+        for (name, is) in [("free", robot.free), ("derivatives", derivatives)] {
+            if is {
+                fs::write(folder.join(name), "")?;
+            }
+        }
+        writeln!(io::stdout(), "{}", folder.display())?;
+    }
+    Ok(())
+}
+
+/// The file as it is meant: locked joints fixed, no joint following another.
+fn as_meant(robot: &Robot) -> io::Result<String> {
+    let document = Document::parse(&robot.urdf).map_err(|error| io::Error::other(error.to_string()))?;
+    let joints = document.root_element().children().filter(|node| node.has_tag_name("joint"));
+    let mut changes = Vec::new();
+    for joint in joints {
+        let locked = joint.attribute("name").is_some_and(|name| robot.lock.contains(&name));
+        let kind = joint.attribute_node("type").filter(|_| locked);
+        changes.extend(kind.map(|kind| (kind.range_value(), "fixed")));
+        let mimic = joint.children().find(|node| node.has_tag_name("mimic"));
+        changes.extend(mimic.map(|mimic| (mimic.range(), "")));
+    }
+    let mut text = robot.urdf.clone();
+    changes.sort_by_key(|(place, _)| std::cmp::Reverse(place.start));
+    for (place, by) in changes {
+        text.replace_range(place, by);
+    }
+    Ok(text)
+}

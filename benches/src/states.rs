@@ -1,0 +1,46 @@
+//! Random states that are the same in every run.
+
+use crate::generic::{Model, Motion};
+use crate::random::Random;
+use nalgebra::SVector;
+
+/// Number of states that the calls go through, one after another.
+pub const STATES: usize = 256;
+
+/// What the functions take.
+#[derive(Clone, Copy, Debug)]
+pub struct State<const NQ: usize, const NV: usize> {
+    /// Configuration.
+    pub q: SVector<f64, NQ>,
+    /// Velocity.
+    pub v: SVector<f64, NV>,
+    /// Acceleration.
+    pub a: SVector<f64, NV>,
+    /// Generalized force.
+    pub tau: SVector<f64, NV>,
+}
+
+impl<const NQ: usize, const NV: usize> State<NQ, NV> {
+    /// Random coordinates, unit quaternions; everything else of the order of one.
+    fn random(model: &Model, random: &mut Random) -> State<NQ, NV> {
+        let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.within(3.0));
+        for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
+            let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
+            quaternion.normalize_mut();
+        }
+        let mut vector = || SVector::from_fn(|_, _| random.within(2.0));
+        State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
+    }
+
+    /// All numbers, one after another.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        [self.q.as_slice(), self.v.as_slice(), self.a.as_slice(), self.tau.as_slice()].concat().into_iter()
+    }
+}
+
+/// [`STATES`] of them. Panics if the model is of another size.
+pub fn states<const NQ: usize, const NV: usize>(model: &Model) -> Vec<State<NQ, NV>> {
+    assert_eq!((model.nq, model.nv), (NQ, NV), "size of the model");
+    let mut random = Random::new(1);
+    (0..STATES).map(|_| State::random(model, &mut random)).collect()
+}
