@@ -1,10 +1,11 @@
 //! Generated functions and integrators never allocate.
 #![expect(unsafe_code, reason = "a global allocator is unsafe to implement")]
 
+use linkwork::batch::{Rollout, unwatched};
 use linkwork::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
-use linkwork::{Mechanism, frame, mechanism, simulate};
+use linkwork::{Batch, Mechanism, frame, mechanism, simulate};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
@@ -145,4 +146,27 @@ fn derivatives() {
     assert_eq!(heap_calls(|| m.mass_matrix_inverse(q)), 0, "mass_matrix_inverse");
     assert_eq!(heap_calls(|| m.coriolis_matrix(q, v)), 0, "coriolis_matrix");
     assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
+}
+
+/// A robot for several states at once.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
+struct Solo12InLanes;
+
+#[test]
+fn batches() {
+    const COUNT: usize = 13;
+    let (m, mut random) = (Solo12InLanes, Random::new(19));
+    let mut q = [0.0; 19 * COUNT];
+    for k in 0..COUNT {
+        let state = random.configuration(&m);
+        (0..19).for_each(|i| q[i * COUNT + k] = state[i]);
+    }
+    let mut v = [0.1; 18 * COUNT];
+    let (mut tau, lanes) = ([0.0; 18 * COUNT], m.lanes::<8>());
+    let arrays = || lanes.inverse_dynamics_all(0.0, &q, &v, &v, &mut tau).is_ok();
+    assert_eq!(heap_calls(arrays), 0, "inverse_dynamics_all");
+    let rollout = Rollout::new(Rk4::step(1e-3), 3);
+    let none = |_, _, _: &_, _: &_| SVector::zeros();
+    let run = || assert_eq!(lanes.roll_out(&rollout, &mut q, &mut v, none, unwatched), Ok(()));
+    assert_eq!(heap_calls(run), 0, "roll_out");
 }

@@ -4,11 +4,22 @@
 //! `_lanes` behind its name, on vectors of [`Lanes`]; parameters are the same in all lanes. [`Batch`] is the trait for generic
 //! code, and [`Batch::lanes`] makes of the mechanism one whose scalars are lanes, for code that knows nothing of them.
 //!
+//! On top of that a [`Lanewise`] mechanism evaluates whole arrays of states (`inverse_dynamics_all` and its like), and
+//! [rolls out](Lanewise::roll_out) the motions of thousands, with the feature `rayon` on all processors.
+//!
 //! Each lane gives, bit for bit, what the function of a single state gives on the same machine.
 
+mod columns;
+mod error;
+mod evaluate;
 mod lanewise;
+#[cfg(feature = "rayon")]
+mod parallel;
+mod rollout;
 
+pub use error::Error;
 pub use lanewise::Lanewise;
+pub use rollout::{Lockstep, Progress, Rollout, unwatched};
 
 use crate::{Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};

@@ -21,12 +21,13 @@ use nalgebra::SVector;
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///
-/// It is a [`Real`](crate::Real), so that a generic mechanism can be instantiated with it. Two things are not from lane
-/// to lane:
+/// It is a [`Real`](crate::Real), so that a generic mechanism can be instantiated with it. These are not from lane to
+/// lane:
 ///
 /// - Comparisons ask for all lanes: `a < b` where it is so in every lane, and neither `a < b` nor `b < a` where lanes
 ///   differ. Algorithms that branch (factorisations with pivots, adaptive steps) are therefore not meant for lanes;
 ///   [`select`](Self::select) chooses lane by lane.
+/// - `is_finite` asks for any lane, since integrators stop where it is false: lanes that are not finite do not stop the others.
 /// - [`sum`](Self::sum) adds the lanes to one another, in a fixed order.
 ///
 /// The angles of [`sin_cos`](Self::sin_cos) may be of any size.

@@ -4,6 +4,7 @@ use super::Batch;
 use crate::lanes::{lane, lane_by_lane};
 use crate::{ConstraintError, Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
 
 /// A mechanism with `L` lanes for scalars, made by [`Batch::lanes`]: several states in one call. It is a
 /// [`Rheonomic`] mechanism itself, and at an instant ([`at`](crate::at())) a [`Mechanism`](crate::Mechanism).
@@ -53,25 +54,26 @@ where
         self.mechanism.neutral().map(Lanes::splat)
     }
 
-    #[inline]
+    /// Lane by lane; a lane without a state on its constraints is no number afterwards, and it is an error if all are so.
     fn project(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<(SVector<Self::Scalar, NQ>, SVector<Self::Scalar, NV>), ConstraintError> {
-        let mut result = Ok(());
-        let states = [(); L];
-        let mut k = 0;
-        let states = states.map(|()| {
-            let (t, q, v) = (t.0[k], lane(q, k), lane(v, k));
-            k += 1;
-            self.mechanism.project(t, &q, &v).unwrap_or_else(|error| {
-                result = Err(error);
-                (q, v)
-            })
-        });
-        result.map(|()| (lane_by_lane(|k| states[k].0), lane_by_lane(|k| states[k].1)))
+        let results: [_; L] =
+            core::array::from_fn(|k| self.mechanism.project(t.0[k], &lane(q, k), &lane(v, k)));
+        if let Some(Err(error)) = results.first()
+            && results.iter().all(Result::is_err)
+        {
+            return Err(*error);
+        }
+        let nothing = M::Scalar::zero() / M::Scalar::zero();
+        let state = |k: usize| match &results[k] {
+            Ok(state) => *state,
+            Err(_) => (SVector::repeat(nothing), SVector::repeat(nothing)),
+        };
+        Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
     }
 
     lanewise! {

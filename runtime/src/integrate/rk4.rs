@@ -19,6 +19,11 @@ impl<T: Real> Rk4<T> {
     pub fn step(step: T) -> Self {
         Self { step }
     }
+
+    /// The step.
+    pub(crate) fn length(&self) -> T {
+        self.step
+    }
 }
 
 /// `φ̇` and `v̇` at one stage.

@@ -18,6 +18,11 @@ impl<T: Real> SemiImplicitEuler<T> {
     pub fn step(step: T) -> Self {
         Self { step }
     }
+
+    /// The step.
+    pub(crate) fn length(&self) -> T {
+        self.step
+    }
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {

@@ -133,10 +133,10 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
         self.map(|x| x.powi(n))
     }
 
-    /// True if all lanes are finite.
+    /// True while any lane is finite: what one lane holds must not stop the others.
     #[inline(always)]
     fn is_finite(&self) -> bool {
-        self.0.iter().all(T::is_finite)
+        self.0.iter().any(T::is_finite)
     }
 
     /// Nothing if any lane has no square root.

@@ -7,10 +7,11 @@
 
 use core::hint::black_box;
 use core::panic::PanicInfo;
+use linkwork::batch::{Rollout, unwatched};
 use linkwork::frame;
 use linkwork::prelude::*;
 
-#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"])]
+#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch)]
 struct Arm;
 
 type Joints = SVector<f64, { Arm::NV }>;
@@ -40,6 +41,27 @@ fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
         && (velocity - Arm.frame_velocity(tool, q, v)).norm() < 1e-9
         && (Arm.generalized_momentum(q, v) - mass_matrix * v).norm() < 1e-9
         && Arm.momentum(q, v).norm() + Arm.momentum_rate(q, v).norm() + height + Arm.potential_energy(q) < 1e9
+}
+
+/// Whether arms side by side move as one alone.
+fn side_by_side(q: &Joints, v: &Joints) -> bool {
+    const COUNT: usize = 5;
+    let (mut qs, mut vs) = ([0.0; 7 * COUNT], [0.0; 7 * COUNT]);
+    let columns = qs.chunks_exact_mut(COUNT).zip(vs.chunks_exact_mut(COUNT));
+    for ((qs, vs), (q, v)) in columns.zip(q.iter().zip(v)) {
+        qs.fill(*q);
+        vs.fill(*v);
+    }
+    let rollout = Rollout::new(Rk4::step(1e-3), 2);
+    let push = |_, _, _: &_, v: &SVector<f64x4, 7>| *v * Lanes::splat(-1.0);
+    let done = Arm.lanes::<4>().roll_out(&rollout, &mut qs, &mut vs, push, unwatched);
+    let inputs = |_, _: &Joints, v: &Joints| -v;
+    let Ok(one) = simulate(&Arm).from(*q, *v).inputs(inputs).method(Rk4::step(1e-3)).duration(2e-3).finish()
+    else {
+        return false;
+    };
+    let same = |(numbers, x): (&[f64], &f64)| numbers.iter().all(|y| (x - y).abs() < 1e-12);
+    done.is_ok() && qs.chunks_exact(COUNT).zip(one.q.iter()).all(same)
 }
 
 /// A body in the air with a pendulum on a ball joint.
@@ -96,7 +118,7 @@ extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;
-    i32::from(!(sound && arrived && flies(black_box(0.5))))
+    i32::from(!(sound && arrived && side_by_side(&q, &v) && flies(black_box(0.5))))
 }
 
 #[panic_handler]

@@ -1,0 +1,129 @@
+//! Structures of arrays: for every entry of a vector, its numbers in all states one after another.
+
+use super::Error;
+use crate::{Lanes, Real};
+use nalgebra::SMatrix;
+
+/// Lanes on lines of the cache of their own.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Line<T>(pub(super) T);
+
+/// The numbers of many states to be read: entry `i` (column by column of a matrix) of state `k` is `numbers[i * count + k]`.
+#[derive(Clone, Copy)]
+pub(super) struct Input<'a, T, const R: usize> {
+    entries: [&'a [T]; R],
+}
+
+/// The same to be written.
+pub(super) struct Output<'a, T, const R: usize, const C: usize> {
+    entries: [[&'a mut [T]; R]; C],
+}
+
+/// The error for a slice of the wrong length.
+fn fits(name: &'static str, found: usize, entries: usize, count: usize) -> Result<(), Error> {
+    match entries.checked_mul(count) {
+        Some(expected) if expected == found => Ok(()),
+        expected => Err(Error::Length { name, expected: expected.unwrap_or(usize::MAX), found }),
+    }
+}
+
+/// How many states there are by the first argument; its length need not be a multiple.
+pub(super) fn count(numbers: usize, entries: usize) -> usize {
+    numbers.checked_div(entries).unwrap_or(0)
+}
+
+impl<'a, T: Real, const R: usize> Input<'a, T, R> {
+    pub(super) fn new(name: &'static str, numbers: &'a [T], count: usize) -> Result<Self, Error> {
+        fits(name, numbers.len(), R, count)?;
+        let mut rest = numbers;
+        let entries = core::array::from_fn(|_| {
+            let (entry, others) = rest.split_at_checked(count).unwrap_or((rest, &[]));
+            rest = others;
+            entry
+        });
+        Ok(Self { entries })
+    }
+
+    /// The states from `first` on; the last one stands in for those that there are not.
+    #[inline(always)]
+    pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
+        Line(SMatrix::from_fn(|i, _| load(self.entries[i], first)))
+    }
+}
+
+#[inline(always)]
+fn load<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
+    if let Some(full) = entry.get(first..first + L)
+        && let Ok(full) = full.try_into()
+    {
+        return Lanes(full);
+    }
+    Lanes::from_fn(|k| entry.get(first + k).or(entry.last()).copied().unwrap_or(T::zero()))
+}
+
+impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
+    pub(super) fn new(name: &'static str, numbers: &'a mut [T], count: usize) -> Result<Self, Error> {
+        fits(name, numbers.len(), R * C, count)?;
+        let mut rest = numbers;
+        let entries = core::array::from_fn(|_| {
+            core::array::from_fn(|_| {
+                let all = core::mem::take(&mut rest);
+                let (entry, others) = all.split_at_mut_checked(count).unwrap_or_default();
+                rest = others;
+                entry
+            })
+        });
+        Ok(Self { entries })
+    }
+
+    /// The states before `at` and those from there on.
+    #[cfg(feature = "rayon")]
+    pub(super) fn split(self, at: usize) -> (Self, Self) {
+        let none = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
+        let (mut before, mut after): ([[_; R]; C], [[_; R]; C]) = (none(), none());
+        let halves = before.iter_mut().flatten().zip(after.iter_mut().flatten());
+        for (all, (before, after)) in self.entries.into_iter().flatten().zip(halves) {
+            (*before, *after) = all.split_at_mut_checked(at).unwrap_or_default();
+        }
+        (Self { entries: before }, Self { entries: after })
+    }
+
+    /// Writes the states from `first` on, as many as there are.
+    #[inline(always)]
+    pub(super) fn store<const L: usize>(&mut self, first: usize, values: &SMatrix<Lanes<T, L>, R, C>) {
+        for (entries, values) in self.entries.iter_mut().zip(&values.data.0) {
+            for (entry, value) in entries.iter_mut().zip(values) {
+                if let Some(full) = entry.get_mut(first..first + L) {
+                    full.copy_from_slice(&value.0);
+                } else if let Some(rest) = entry.get_mut(first..) {
+                    for (to, from) in rest.iter_mut().zip(value.0) {
+                        *to = from;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<T: Real, const R: usize> Output<'_, T, R, 1> {
+    /// The states from `first` on; the last one stands in for those that there are not.
+    #[inline(always)]
+    pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
+        Line(SMatrix::from_fn(|i, _| load(self.entries[0][i], first)))
+    }
+
+    /// Writes a state from a lane.
+    pub(super) fn store_one<const L: usize>(
+        &mut self,
+        state: usize,
+        values: &SMatrix<Lanes<T, L>, R, 1>,
+        lane: usize,
+    ) {
+        for (entry, value) in self.entries[0].iter_mut().zip(&values.data.0[0]) {
+            if let (Some(to), Some(from)) = (entry.get_mut(state), value.0.get(lane)) {
+                *to = *from;
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The functions of a mechanism for many states, from arrays to arrays.
+
+use super::columns::{Input, Line, Output, count};
+use super::{Batch, Error, Lanewise};
+use crate::{Lanes, Rheonomic};
+use nalgebra::SMatrix;
+
+/// Writes the method of one function: arguments by name with their numbers of entries, result likewise.
+macro_rules! evaluations {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident = $function:ident[$($time:ident)?]($first:ident: $first_of:ident $(, $argument:ident: $of:ident)*)
+            -> $result:ident: $rows:tt x $columns:tt, $turn:expr;
+    )+) => {$(
+        $(#[$doc])*
+        pub fn $name<const NQ: usize, const NV: usize, const NU: usize>(
+            &self,
+            $($time: M::Scalar,)?
+            $first: &[M::Scalar],
+            $($argument: &[M::Scalar],)*
+            $result: &mut [M::Scalar],
+        ) -> Result<(), Error>
+        where
+            M: Batch<NQ, NV, NU>,
+        {
+            let count = count($first.len(), $first_of);
+            let $first = Input::<_, $first_of>::new(stringify!($first), $first, count)?;
+            $(let $argument = Input::<_, $of>::new(stringify!($argument), $argument, count)?;)*
+            let mut to = Output::<_, { $rows }, { $columns }>::new(stringify!($result), $result, count)?;
+            for state in (0..count).step_by(L.max(1)) {
+                let $first = $first.load::<L>(state);
+                $(let $argument = $argument.load::<L>(state);)*
+                let values = Line($turn(Rheonomic::$function(self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*)));
+                to.store(state, &values.0);
+            }
+            Ok(())
+        }
+    )+};
+}
+
+/// Many states, `L` at a time, in slices of the caller's: entry `i` of state `k` of `count` stands at `i * count + k` (a
+/// structure of arrays; matrices column by column), and the length of the first argument says how many states there
+/// are. Shapes, units and frames as in [`Rheonomic`]; `t` is the same for all states. Results do not depend on `L` or on
+/// how many states there are; nothing allocates.
+///
+/// Errors: [`Error::Length`] for a slice that does not fit; nothing is written then.
+impl<M, const L: usize> Lanewise<'_, M, L> {
+    evaluations! {
+        /// `q ⊕ dv` ([`Rheonomic::integrate`]).
+        integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector;
+        /// Mass matrices ([`Rheonomic::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
+        mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector;
+        /// Bias forces ([`Rheonomic::bias_forces`]).
+        bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector;
+        /// Inverse dynamics ([`Rheonomic::inverse_dynamics`]).
+        inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector;
+        /// Forward dynamics ([`Rheonomic::forward_dynamics`]).
+        forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector;
+        /// Generalized forces of inputs ([`Rheonomic::generalized_forces`]).
+        generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector;
+        /// Kinetic energies ([`Rheonomic::kinetic_energy`]), one number per state.
+        kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar;
+        /// Potential energies ([`Rheonomic::potential_energy`]), one number per state.
+        potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar;
+    }
+}
+
+#[inline(always)]
+fn vector<T>(values: T) -> T {
+    values
+}
+
+#[inline(always)]
+fn scalar<T: crate::Real, const L: usize>(value: Lanes<T, L>) -> SMatrix<Lanes<T, L>, 1, 1> {
+    SMatrix::from_element(value)
+}

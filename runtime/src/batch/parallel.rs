@@ -1,0 +1,97 @@
+//! Rollouts on all processors.
+
+use super::rollout::{Part, Tally};
+use super::{Batch, Error, Lanewise, Lockstep, Progress, Rollout};
+use crate::Lanes;
+use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use nalgebra::SVector;
+
+/// Groups of lanes that one thread takes in one go.
+const GRAIN: usize = 4;
+
+/// What all threads look at.
+struct Shared<W> {
+    watch: W,
+    done: AtomicUsize,
+    cancelled: AtomicBool,
+    count: usize,
+}
+
+impl<M, const L: usize> Lanewise<'_, M, L> {
+    /// [`roll_out`](Self::roll_out) on the threads of rayon's pool: the one that it is called in, or the global one. Results do not
+    /// depend on the number of threads.
+    ///
+    /// `control` and `watch` are called by several threads at once; cancelling takes effect after the group of states that
+    /// each thread has at hand.
+    ///
+    /// Errors: those of [`roll_out`](Self::roll_out); of several failures the first in the order of states.
+    pub fn roll_out_in_parallel<S, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        q: &mut [M::Scalar],
+        v: &mut [M::Scalar],
+        control: impl Fn(
+            usize,
+            Lanes<M::Scalar, L>,
+            &SVector<Lanes<M::Scalar, L>, NQ>,
+            &SVector<Lanes<M::Scalar, L>, NV>,
+        ) -> SVector<Lanes<M::Scalar, L>, NU>
+        + Sync,
+        watch: impl Fn(Progress) -> ControlFlow<()> + Sync,
+    ) -> Result<(), Error>
+    where
+        M: Batch<NQ, NV, NU> + Sync,
+        S: Lockstep<M::Scalar> + Sync,
+    {
+        let part = Part::all(rollout, q, v)?;
+        let shared =
+            Shared { watch, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false), count: part.count };
+        self.divide(rollout, part, &control, &shared).result()
+    }
+
+    /// Halves the states until they are few.
+    fn divide<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        mut part: Part<'_, M::Scalar, NQ, NV>,
+        control: &C,
+        shared: &Shared<W>,
+    ) -> Tally
+    where
+        M: Batch<NQ, NV, NU> + Sync,
+        S: Lockstep<M::Scalar> + Sync,
+        W: Fn(Progress) -> ControlFlow<()> + Sync,
+        C: Fn(
+                usize,
+                Lanes<M::Scalar, L>,
+                &SVector<Lanes<M::Scalar, L>, NQ>,
+                &SVector<Lanes<M::Scalar, L>, NV>,
+            ) -> SVector<Lanes<M::Scalar, L>, NU>
+            + Sync,
+    {
+        let groups = part.count.div_ceil(L.max(1));
+        if groups > GRAIN {
+            let (front, back) = part.split(groups / 2 * L);
+            let (front, back) = rayon::join(
+                || self.divide(rollout, front, control, shared),
+                || self.divide(rollout, back, control, shared),
+            );
+            return front.and(back);
+        }
+        if shared.cancelled.load(Ordering::Relaxed) {
+            return Tally { cancelled: true, ..Tally::default() };
+        }
+        let mut before = 0;
+        self.roll_out_part(rollout, &mut part, control, |here| {
+            let done = shared.done.fetch_add(here - before, Ordering::Relaxed) + (here - before);
+            before = here;
+            let stop = (shared.watch)(Progress { done, count: shared.count }).is_break();
+            if stop || shared.cancelled.load(Ordering::Relaxed) {
+                shared.cancelled.store(true, Ordering::Relaxed);
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        })
+    }
+}

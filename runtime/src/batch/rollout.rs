@@ -1,0 +1,275 @@
+//! The motions of many states over a fixed number of steps.
+
+use super::columns::{Output, count};
+use super::{Batch, Error, Lanewise};
+use crate::integrate::{self, Method, Rk4, SemiImplicitEuler, State, Steered, System};
+use crate::private::to_f64;
+use crate::{Lanes, Real};
+use core::ops::ControlFlow;
+use nalgebra::{ComplexField, SVector};
+
+/// A method that does the same operations whatever the numbers are, so that states can go through it side by side: one with fixed
+/// steps and nothing that is iterated.
+pub trait Lockstep<T: Real>: Method<T> {
+    /// The method with lanes for scalars.
+    type Wide<const L: usize>: Method<Lanes<T, L>>;
+
+    /// The same steps in all lanes.
+    fn wide<const L: usize>(&self) -> Self::Wide<L>;
+}
+
+impl<T: Real> Lockstep<T> for Rk4<T> {
+    type Wide<const L: usize> = Rk4<Lanes<T, L>>;
+
+    fn wide<const L: usize>(&self) -> Self::Wide<L> {
+        Rk4::step(Lanes::splat(self.length()))
+    }
+}
+
+impl<T: Real> Lockstep<T> for SemiImplicitEuler<T> {
+    type Wide<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
+
+    fn wide<const L: usize>(&self) -> Self::Wide<L> {
+        SemiImplicitEuler::step(Lanes::splat(self.length()))
+    }
+}
+
+/// How far and by which method states are rolled out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rollout<T, S> {
+    method: S,
+    steps: usize,
+    start: T,
+}
+
+impl<T: Real, S: Lockstep<T>> Rollout<T, S> {
+    /// So many steps of a method, from time zero: `Rollout::new(Rk4::step(1e-3), 500)`.
+    pub fn new(method: S, steps: usize) -> Self {
+        Self { method, steps, start: T::zero() }
+    }
+
+    /// Starts at the time `t`, s.
+    #[must_use]
+    pub fn from_time(self, t: T) -> Self {
+        Self { start: t, ..self }
+    }
+}
+
+/// How far a rollout is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// States that are done.
+    pub done: usize,
+    /// States in all.
+    pub count: usize,
+}
+
+/// For rollouts that nobody watches.
+pub fn unwatched(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// What became of a part of the states.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// States that are done, failed ones included.
+    pub(super) done: usize,
+    /// States that failed.
+    pub(super) failed: usize,
+    /// The first of them, and why.
+    pub(super) first: Option<(usize, integrate::Error)>,
+    /// The caller asked to stop.
+    pub(super) cancelled: bool,
+}
+
+impl Tally {
+    /// Together with that of the states behind these.
+    pub(super) fn and(self, behind: Tally) -> Tally {
+        Tally {
+            done: self.done + behind.done,
+            failed: self.failed + behind.failed,
+            first: self.first.or(behind.first),
+            cancelled: self.cancelled || behind.cancelled,
+        }
+    }
+
+    pub(super) fn result(self) -> Result<(), Error> {
+        match self.first {
+            _ if self.cancelled => Err(Error::Cancelled { done: self.done }),
+            Some((state, source)) => Err(Error::Motion { state, count: self.failed, source }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// States to be rolled out: a part of all.
+pub(super) struct Part<'a, T, const NQ: usize, const NV: usize> {
+    /// Index of the first among all states.
+    pub(super) first: usize,
+    pub(super) q: Output<'a, T, NQ, 1>,
+    pub(super) v: Output<'a, T, NV, 1>,
+    pub(super) count: usize,
+}
+
+impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
+    /// All states, if the slices fit and the method makes sense.
+    pub(super) fn all<S: Lockstep<T>>(
+        rollout: &Rollout<T, S>,
+        q: &'a mut [T],
+        v: &'a mut [T],
+    ) -> Result<Self, Error> {
+        let count = count(q.len(), NQ);
+        let (q, v) = (Output::new("q", q, count)?, Output::new("v", v, count)?);
+        rollout.method.check().map_err(Error::Method)?;
+        Ok(Self { first: 0, q, v, count })
+    }
+}
+
+#[cfg(feature = "rayon")]
+impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
+    /// The states before the one with index `at` and those from there on.
+    pub(super) fn split(self, at: usize) -> (Self, Self) {
+        let ((q, other_q), (v, other_v)) = (self.q.split(at), self.v.split(at));
+        let front = Self { first: self.first, q, v, count: at };
+        (front, Self { first: self.first + at, q: other_q, v: other_v, count: self.count - at })
+    }
+}
+
+/// One group of lanes after its last step, and the lanes that did not get there.
+struct Group<T, const L: usize, const NQ: usize, const NV: usize> {
+    end: State<Lanes<T, L>, NQ, NV>,
+    failures: [Option<integrate::Error>; L],
+}
+
+impl<M, const L: usize> Lanewise<'_, M, L> {
+    /// Rolls out many states: each goes so many steps of the method from where it is, and where it ends is written
+    /// in its place. Nothing allocates.
+    ///
+    /// - `q`, `v`: the states, a structure of arrays: entry `i` of state `k` of `count` stands at `i * count + k`.
+    /// - `control(k, t, q, v)`: the inputs `u` of the states in the lanes, of which the first has index `k` (at the end of
+    ///   the arrays the last state stands in the lanes that are left over); asked whenever the method evaluates the dynamics.
+    /// - `watch`: told after every group of states how many are done; `ControlFlow::Break(())` cancels. [`unwatched`] if
+    ///   nobody cares.
+    ///
+    /// What becomes of a state does not depend on the others, on their number or on `L`, as long as `control` keeps
+    /// lanes apart.
+    ///
+    /// Errors: [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion does not stay
+    /// finite or on its constraints; [`Error::Cancelled`].
+    pub fn roll_out<S, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        q: &mut [M::Scalar],
+        v: &mut [M::Scalar],
+        control: impl Fn(
+            usize,
+            Lanes<M::Scalar, L>,
+            &SVector<Lanes<M::Scalar, L>, NQ>,
+            &SVector<Lanes<M::Scalar, L>, NV>,
+        ) -> SVector<Lanes<M::Scalar, L>, NU>,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), Error>
+    where
+        M: Batch<NQ, NV, NU>,
+        S: Lockstep<M::Scalar>,
+    {
+        let mut part = Part::all(rollout, q, v)?;
+        let count = part.count;
+        self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count })).result()
+    }
+
+    /// One group of lanes after another; `watch` is told how many states of the part are done.
+    pub(super) fn roll_out_part<S, C, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        part: &mut Part<'_, M::Scalar, NQ, NV>,
+        control: &C,
+        mut watch: impl FnMut(usize) -> ControlFlow<()>,
+    ) -> Tally
+    where
+        M: Batch<NQ, NV, NU>,
+        S: Lockstep<M::Scalar>,
+        C: Fn(
+            usize,
+            Lanes<M::Scalar, L>,
+            &SVector<Lanes<M::Scalar, L>, NQ>,
+            &SVector<Lanes<M::Scalar, L>, NV>,
+        ) -> SVector<Lanes<M::Scalar, L>, NU>,
+    {
+        let mut tally = Tally::default();
+        for state in (0..part.count).step_by(L.max(1)) {
+            let (q, v) = (part.q.load::<L>(state), part.v.load::<L>(state));
+            let start = State { t: Lanes::splat(rollout.start), q: q.0, v: v.0 };
+            let group = self.roll_out_group(rollout, part.first + state, start, control);
+            let present = L.min(part.count - state);
+            for (k, failure) in group.failures.iter().enumerate().take(present) {
+                let failed = failure.map(|error| (part.first + state + k, error));
+                tally = tally.and(Tally {
+                    done: 1,
+                    failed: failed.iter().count(),
+                    first: failed,
+                    cancelled: false,
+                });
+                if failed.is_none() {
+                    part.q.store_one(state + k, &group.end.q, k);
+                    part.v.store_one(state + k, &group.end.v, k);
+                }
+            }
+            if watch(tally.done).is_break() {
+                // What is done already cannot be cancelled.
+                tally.cancelled = tally.done < part.count;
+                return tally;
+            }
+        }
+        tally
+    }
+
+    fn roll_out_group<S, C, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        first: usize,
+        start: State<Lanes<M::Scalar, L>, NQ, NV>,
+        control: &C,
+    ) -> Group<M::Scalar, L, NQ, NV>
+    where
+        M: Batch<NQ, NV, NU>,
+        S: Lockstep<M::Scalar>,
+        C: Fn(
+            usize,
+            Lanes<M::Scalar, L>,
+            &SVector<Lanes<M::Scalar, L>, NQ>,
+            &SVector<Lanes<M::Scalar, L>, NV>,
+        ) -> SVector<Lanes<M::Scalar, L>, NU>,
+    {
+        let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
+        let mut system: System<'_, Self, _, NU> = System { mechanism: self, inputs };
+        let method = rollout.method.wide::<L>();
+        let mut memory = method.memory();
+        let mut group = Group { end: start, failures: [None; L] };
+        for _ in 0..rollout.steps {
+            let begin = group.end;
+            match method.advance(&mut memory, &mut system, &begin, None, false) {
+                Ok(step) => group.end = step.end,
+                Err(error) => {
+                    // The step has failed for all that are left.
+                    group.failures = group.failures.map(|failure| failure.or(Some(error)));
+                    return group;
+                }
+            }
+            let lanes = lost(&group.end).0.into_iter().zip(begin.t.0);
+            for (failure, (lost, t)) in group.failures.iter_mut().zip(lanes) {
+                if failure.is_none() && !lost.is_finite() {
+                    *failure = Some(integrate::Error::NotFinite { t: to_f64(t) });
+                }
+            }
+        }
+        group
+    }
+}
+
+/// Zero in the lanes of a state that are finite, and not a number in the others.
+fn lost<T: Real, const L: usize, const NQ: usize, const NV: usize>(
+    state: &State<Lanes<T, L>, NQ, NV>,
+) -> Lanes<T, L> {
+    state.q.iter().chain(state.v.iter()).fold(Lanes::default(), |sum, x| sum + *x * T::zero())
+}
