@@ -20,6 +20,7 @@ use std::path::PathBuf;
 /// | `centroidal` | generates the centroidal momentum matrix and its bias too |
 /// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
 /// | `sensitivities` | generates the derivatives of the dynamics by the struct's parameters |
+/// | `packed` | generates the mass matrix without its zeros too |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |

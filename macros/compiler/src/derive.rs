@@ -48,8 +48,11 @@ pub fn derive_with<'g>(
         }
         return None;
     }
-    let identification = requests.regressor.then(|| Identification::new(model, &joints));
-    let all = |stage| functions(model, requests, passes, &joints, identification.as_ref(), stage);
+    let extras = Extras {
+        identification: requests.regressor.then(|| Identification::new(model, &joints)),
+        entries: requests.packed.then(|| entries(&mass)),
+    };
+    let all = |stage| functions(model, requests, passes, &joints, &extras, stage);
     let functions = all(Stage::Whole);
     if functions.iter().any(|f| !f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
@@ -57,9 +60,10 @@ pub fn derive_with<'g>(
         return None;
     }
     let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
-    let mut names = identification.map_or_else(Vec::new, |i| i.names());
+    let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
+    constants.extend(extras.entries.map(|entries| signatures::entries(&entries)));
     if requests.sensitivities {
-        names.push(signatures::parameters(&model.parameters));
+        constants.push(signatures::parameters(&model.parameters));
     }
     Some(Output {
         functions,
@@ -68,8 +72,23 @@ pub fn derive_with<'g>(
         charts: model.charts.clone(),
         equations: written(model),
         prepared,
-        names,
+        constants,
     })
+}
+
+/// What some words need beside the model.
+struct Extras<'a, 'g> {
+    /// For `regressor`.
+    identification: Option<Identification<'a, 'g>>,
+    /// For `packed`.
+    entries: Option<Vec<(usize, usize)>>,
+}
+
+/// Row and column of the entries of the lower triangle that are not always zero, column by column.
+fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
+    let n = mass.len();
+    let all = (0..n).flat_map(|j| (j..n).map(move |i| (i, j)));
+    all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
 }
 
 /// How the expressions of a function become its program.
@@ -97,7 +116,7 @@ fn functions<'g>(
     requests: Requests,
     passes: Passes,
     joints: &[Joint<'g>],
-    identification: Option<&Identification<'_, 'g>>,
+    extras: &Extras<'_, 'g>,
     stage: Stage,
 ) -> Vec<Function> {
     let sizes = Sizes::of(model);
@@ -126,11 +145,18 @@ fn functions<'g>(
     if requests.derivatives {
         functions.extend(derivatives::functions(model, passes, stage));
     }
-    if let Some(identification) = identification {
+    if let Some(identification) = &extras.identification {
         functions.extend(identification.functions(joints, stage));
     }
     if requests.sensitivities {
         functions.extend(sensitivities::functions(model, passes, stage));
+    }
+    if let Some(entries) = &extras.entries {
+        let at: Vec<usize> = entries.iter().map(|(i, j)| j * model.nv() + i).collect();
+        let program = dynamics.program("mass_matrix").map(|whole| whole.with_outputs(&at));
+        for f in signatures::packed(&sizes, entries.len()) {
+            functions.push(Function { program: program.clone().unwrap_or_default(), ..f });
+        }
     }
     functions
 }

@@ -227,18 +227,23 @@ impl Source {
         let mut functions = signatures::always(&sizes);
         let requests = self.mechanism.requests;
         functions.extend(signatures::requested(&sizes, requests));
-        let mut names = Vec::new();
+        let mut constants = Vec::new();
         if requests.regressor {
             // How many base parameters there are, only the equations could tell.
             let base = vec![String::new(); 7 * sizes.nv];
             functions.extend(signatures::regressor(&sizes, outline.bodies.len(), base.len()));
-            names = signatures::names(outline.bodies, base);
+            constants.extend(signatures::names(&outline.bodies, &base));
         }
         if requests.sensitivities {
             let parameters: Vec<String> =
                 self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
             functions.extend(signatures::sensitivities(&sizes, parameters.len()));
-            names.push(signatures::parameters(&parameters));
+            constants.push(signatures::parameters(&parameters));
+        }
+        if requests.packed {
+            let entries = vec![(0, 0); sizes.nv * (sizes.nv + 1) / 2];
+            functions.extend(signatures::packed(&sizes, entries.len()));
+            constants.push(signatures::entries(&entries));
         }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
@@ -257,7 +262,7 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
             ..self.bare_interface()
         };
-        emit_failed(&interface, &functions, &names, requests.prepare)
+        emit_failed(&interface, &functions, &constants, requests.prepare)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::Stage;
 use super::signatures::{self, Sizes};
-use crate::emit::{Function, Names};
+use crate::emit::{Constant, Function};
 use crate::expr::Expr;
 use crate::mechanics::independence::{Part, independent};
 use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
@@ -53,7 +53,7 @@ impl<'a, 'g> Identification<'a, 'g> {
     }
 
     /// Names of the bodies and of the base parameters.
-    pub(super) fn names(&self) -> Vec<Names> {
+    pub(super) fn names(&self) -> Vec<Constant> {
         let link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
             let moved = || mechanics::joints(self.model)[k].dofs.first().map(|d| d.index);
@@ -61,7 +61,8 @@ impl<'a, 'g> Identification<'a, 'g> {
             body.map_or_else(joint, |body| body.name.clone())
         };
         let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", link(*k), NAMES[*p]));
-        signatures::names(self.bodies.iter().map(|body| body.name.clone()).collect(), base.collect())
+        let bodies: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        signatures::names(&bodies, &base.collect::<Vec<String>>())
     }
 
     fn regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {

@@ -2,7 +2,7 @@
 //! has these alone.
 
 use crate::emit::Argument::{A, Q, T, Tau, U, V};
-use crate::emit::{Argument, Function, Names, REACTION, Shape};
+use crate::emit::{Argument, Constant, Function, REACTION, Shape};
 use crate::lower::Program;
 use crate::mechanics::regressor::COUNT;
 use crate::model::{Model, Uses};
@@ -255,19 +255,43 @@ pub fn regressor(sizes: &Sizes, bodies: usize, base: usize) -> Vec<Function> {
 }
 
 /// The lists of names that go with them.
-pub fn names(bodies: Vec<String>, base: Vec<String>) -> Vec<Names> {
+pub fn names(bodies: &[String], base: &[String]) -> Vec<Constant> {
     vec![
-        Names {
-            name: "BODIES",
-            about: "the body that every ten standard parameters belong to, with all that is fixed to it",
-            list: bodies,
-        },
-        Names {
-            name: "BASE_PARAMETERS",
-            about: "every base parameter: the parameter of a link, about the frame of its joint, that stands for the combination",
-            list: base,
-        },
+        strings(
+            "BODIES",
+            "Name of the body that every ten standard parameters belong to, with all that is fixed to it.",
+            bodies,
+        ),
+        strings(
+            "BASE_PARAMETERS",
+            "Name of every base parameter: the parameter of a link, about the frame of its joint, that stands for the combination.",
+            base,
+        ),
     ]
+}
+
+fn strings(name: &'static str, docs: &'static str, list: &[String]) -> Constant {
+    Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
+}
+
+/// The function of the word `packed`, for so many entries.
+pub fn packed(sizes: &Sizes, entries: usize) -> Vec<Function> {
+    vec![sizes.function(
+        "mass_matrix_packed",
+        &[Q],
+        Shape::Vector(entries),
+        &["The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: entry `k` stands at `MASS_MATRIX_ENTRIES[k]`, row first."],
+    )]
+}
+
+/// Where they stand.
+pub fn entries(list: &[(usize, usize)]) -> Constant {
+    Constant {
+        name: "MASS_MATRIX_ENTRIES",
+        docs: "Row and column of every entry of `mass_matrix_packed`.",
+        item: "(usize, usize)",
+        list: list.iter().map(|entry| format!("{entry:?}")).collect(),
+    }
 }
 
 /// The functions of the word `sensitivities`, for so many parameters.
@@ -293,8 +317,8 @@ pub fn sensitivities(sizes: &Sizes, parameters: usize) -> Vec<Function> {
 }
 
 /// The names of the parameters.
-pub fn parameters(list: &[String]) -> Names {
-    Names { name: "PARAMETERS", about: "every parameter of the struct", list: list.to_vec() }
+pub fn parameters(list: &[String]) -> Constant {
+    strings("PARAMETERS", "Name of every parameter of the struct.", list)
 }
 
 /// The functions of the word `derivatives`.

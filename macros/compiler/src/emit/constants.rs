@@ -1,6 +1,6 @@
 //! Associated constants of a mechanism.
 
-use super::item::{Interface, Names};
+use super::item::{Constant, Interface};
 use crate::expr::print::Written;
 use std::fmt::Write;
 
@@ -30,11 +30,12 @@ fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
 }
 
 /// Sizes, names, equations.
-pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, names: &[Names]) {
+pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, constants: &[Constant]) {
     write_sizes(out, i);
     write_names(out, "FRAMES", &i.frames, "every frame");
-    for names in names {
-        write_names(out, names.name, &names.list, names.about);
+    for Constant { name, docs, item, list } in constants {
+        let (n, list) = (list.len(), list.join(", "));
+        let _ = writeln!(out, "/// {docs}\npub const {name}: [{item}; {n}] = [{list}];");
     }
     let texts = [
         (

@@ -64,17 +64,19 @@ pub struct Output {
     pub equations: Written,
     /// The functions of numbers that are computed before, if they were asked for.
     pub prepared: Option<Prepared>,
-    /// Further lists of names.
-    pub names: Vec<Names>,
+    /// Further constants.
+    pub constants: Vec<Constant>,
 }
 
-/// A constant with names.
-pub struct Names {
-    /// Its own name.
+/// An associated constant: a list.
+pub struct Constant {
+    /// Its name.
     pub name: &'static str,
-    /// What they are the names of.
-    pub about: &'static str,
-    /// The names.
+    /// What it holds.
+    pub docs: &'static str,
+    /// The type of an item.
+    pub item: &'static str,
+    /// The items as they are written.
     pub list: Vec<String>,
 }
 
@@ -118,7 +120,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, &output.equations, &output.names);
+    write_constants(&mut methods, interface, &output.equations, &output.constants);
     for f in &output.functions {
         write_function(&mut methods, f, &s, false);
     }
@@ -160,13 +162,13 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
 pub fn emit_failed(
     interface: &Interface<'_>,
     functions: &[Function],
-    names: &[Names],
+    constants: &[Constant],
     prepare: bool,
 ) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, &Written::default(), names);
+    write_constants(&mut methods, interface, &Written::default(), constants);
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }

@@ -17,6 +17,6 @@ mod scalar;
 
 pub use constraints::Constraints;
 pub use function::{Argument, Function, Shape};
-pub use item::{Emitted, Interface, Names, Output, emit_failed, emit_mechanism};
+pub use item::{Constant, Emitted, Interface, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;
 pub use reactions::HIDDEN as REACTION;

@@ -204,6 +204,14 @@ fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
 }
 
 impl Program {
+    /// The same program with some of its outputs alone.
+    pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
+        self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
+        self.sweep();
+        self.counts = self.count();
+        self
+    }
+
     /// Drops instructions without use, renumbers the others and counts the uses.
     fn sweep(&mut self) {
         let n = self.instructions.len();

@@ -33,6 +33,8 @@ pub struct Requests {
     pub regressor: bool,
     /// Derivatives of the dynamics by the parameters.
     pub sensitivities: bool,
+    /// The mass matrix without its zeros.
+    pub packed: bool,
     /// A second struct that holds what depends on the parameters alone.
     pub prepare: bool,
     /// Functions of several states at once, in lanes.
@@ -75,7 +77,8 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 6] = ["derivatives", "centroidal", "regressor", "sensitivities", "prepare", "batch"];
+const REQUESTS: [&str; 7] =
+    ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
 
 /// The options that have a value.
 const OPTIONS: [&str; 10] =
@@ -375,6 +378,7 @@ fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut 
         centroidal: asked("centroidal").is_some(),
         regressor: asked("regressor").is_some(),
         sensitivities: sensitivities.is_some(),
+        packed: asked("packed").is_some(),
         prepare: prepare.is_some(),
         batch: asked("batch").is_some(),
     };
