@@ -1,6 +1,7 @@
 //! Mechanisms with constraints, held to published and recomputed results.
 
 mod bicycle;
+mod formulations;
 mod linkages;
 mod reactions;
 mod rolling;

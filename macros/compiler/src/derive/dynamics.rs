@@ -144,7 +144,12 @@ impl<'g> Forms<'g> {
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
         let force: Vec<Expr<'g>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
-        self.multipliers(&force, &constraints::biases(bias))
+        let biases = constraints::biases(bias);
+        let Some(pivots) = &bias.dependent else { return self.multipliers(&force, &biases) };
+        cheapest(self.plain().map(|model| {
+            let mass = crba::mass_matrix(model, &self.joints);
+            self.stage.program(&constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots))
+        }))
     }
 
     /// The same for forces and biases that are given.

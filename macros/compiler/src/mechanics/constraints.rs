@@ -78,6 +78,89 @@ pub fn solve<'g>(
     x
 }
 
+/// The same by independent speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985; the projection `Nᵀ M N`
+/// of Gibbs, Appell and Kane): the dependent velocities are solved for with the given pivots, `a = N s + a₀`, then
+/// `Nᵀ M N s = Nᵀ (τ − h − M a₀)`; the multipliers are what is left of the dependent equations.
+pub fn solve_by_speeds<'g>(
+    model: &Model<'g>,
+    mass: &Matrix<'g>,
+    force: &[Expr<'g>],
+    bias: Vec<Expr<'g>>,
+    pivots: &[(usize, usize)],
+) -> Vec<Expr<'g>> {
+    let (g, nv) = (model.graph, model.nv());
+    let rows = jacobian(model);
+    let free: Vec<usize> = (0..nv).filter(|k| pivots.iter().all(|(_, column)| column != k)).collect();
+    // Columns of N, and a₀ as the last.
+    let mut right: Matrix<'g> = rows.iter().map(|row| free.iter().map(|k| -row[*k]).collect()).collect();
+    right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
+    let (solved, sizes) = eliminate(rows.clone(), right, pivots);
+    let column = |c: usize| -> Vec<Expr<'g>> {
+        let own = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
+        let of = |k: usize| pivots.iter().find(|(_, j)| *j == k).map_or(own(k), |(row, _)| solved[*row][c]);
+        (0..nv).map(of).collect()
+    };
+    let columns: Matrix<'g> = (0..free.len()).map(column).collect();
+    let start = column(free.len());
+    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let times = |v: &[Expr<'g>]| -> Vec<Expr<'g>> { mass.iter().map(|row| dot(row, v)).collect() };
+    let carried: Matrix<'g> = columns.iter().map(|c| times(c)).collect();
+    let reduced: Matrix<'g> = columns.iter().map(|a| carried.iter().map(|b| dot(a, b)).collect()).collect();
+    let lacking: Vec<Expr<'g>> = force.iter().zip(times(&start)).map(|(f, m)| *f - m).collect();
+    let r = columns.iter().map(|c| dot(c, &lacking)).collect();
+    let order: Vec<usize> = (0..free.len()).rev().collect();
+    let s = solve_in(reduced, r, &order, 0).x;
+    let a: Vec<Expr<'g>> =
+        (0..nv).map(|k| columns.iter().zip(&s).fold(start[k], |sum, (c, s)| sum + c[k] * *s)).collect();
+    // J_dᵀ λ = (M a − f)_d, with the same pivots the other way round.
+    let left: Vec<Expr<'g>> = times(&a).iter().zip(force).map(|(m, f)| *m - *f).collect();
+    let transposed: Matrix<'g> = (0..nv).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
+    let backwards: Vec<(usize, usize)> = pivots.iter().map(|(row, column)| (*column, *row)).collect();
+    let (lambda, _) = eliminate(transposed, left.into_iter().map(|l| vec![l]).collect(), &backwards);
+    let mut out = a;
+    out.extend((0..rows.len()).map(|c| {
+        let at = backwards.iter().find(|(_, row)| *row == c);
+        at.map_or(g.zero(), |(k, _)| lambda[*k][0])
+    }));
+    out.extend(sizes.iter().map(|p| p.square()));
+    out.extend(model.constraints.iter().map(|own| {
+        let group = model.constraints.iter().zip(&rows).filter(|(c, _)| c.group == own.group);
+        group.fold(g.zero(), |sum, (_, row)| sum + dot(row, row))
+    }));
+    out
+}
+
+/// Gauss–Jordan elimination of the rows with given pivots, applied to right sides: those, solved, and the pivots by row.
+fn eliminate<'g>(
+    mut rows: Matrix<'g>,
+    mut right: Matrix<'g>,
+    pivots: &[(usize, usize)],
+) -> (Matrix<'g>, Vec<Expr<'g>>) {
+    let mut sizes: Vec<Expr<'g>> = rows.iter().filter_map(|row| row.first().map(|e| e.zero())).collect();
+    let involved: Vec<usize> = pivots.iter().map(|(row, _)| *row).collect();
+    for (step, &(row, column)) in pivots.iter().enumerate() {
+        sizes[row] = rows[row][column];
+        let inverse = rows[row][column].num(1.0) / rows[row][column];
+        right[row].iter_mut().for_each(|e| *e = *e * inverse);
+        let later: Vec<usize> = pivots[step + 1..].iter().map(|(_, j)| *j).collect();
+        for &j in &later {
+            rows[row][j] = rows[row][j] * inverse;
+        }
+        let (own, own_right) = (rows[row].clone(), right[row].clone());
+        for &i in involved.iter().filter(|i| **i != row) {
+            let factor = rows[i][column];
+            if factor.is_zero() {
+                continue;
+            }
+            for &j in &later {
+                rows[i][j] = rows[i][j] - factor * own[j];
+            }
+            right[i].iter_mut().zip(&own_right).for_each(|(x, o)| *x = *x - factor * *o);
+        }
+    }
+    (right, sizes)
+}
+
 /// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row.
 fn elimination_order(k: &Matrix<'_>, nv: usize) -> Vec<usize> {
     let n = k.len();

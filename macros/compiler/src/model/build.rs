@@ -196,6 +196,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             potentials: Vec::new(),
             dissipations: Vec::new(),
             constraints: Vec::new(),
+            dependent: None,
             freedom: [0; 2],
             loads: Vec::new(),
             inertances: Vec::new(),

@@ -12,7 +12,7 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::model::sample;
-use crate::syntax::{self, ConstraintKind};
+use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
 /// A scalar with its rate, and the rate of that at zero accelerations.
 pub struct Jet<'g> {
@@ -91,6 +91,11 @@ impl<'g> Builder<'_, 'g> {
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
         self.model.freedom = [self.model.nv(); 2];
+        if let (Formulation::Speeds(_, place), true) =
+            (&self.description.formulation, self.model.constraints.is_empty())
+        {
+            cx.error(place.clone(), "all speeds are independent: this mechanism has no constraint");
+        }
         if let Some((_, kept)) = self.opening {
             self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
             return;
@@ -102,6 +107,40 @@ impl<'g> Builder<'_, 'g> {
             let witnesses = mobility::witnesses(&self.model, cx);
             redundancy::prune(&mut self.model, &witnesses);
             self.model.freedom = mobility::degrees_of_freedom(&self.model, &witnesses, cx);
+            self.choose_speeds(&witnesses, cx);
+        }
+    }
+
+    /// Finds the velocities that follow from independent speeds, if those are asked for.
+    fn choose_speeds(&mut self, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
+        let Formulation::Speeds(names, place) = &self.description.formulation else { return };
+        let mut independent = Vec::new();
+        for e in names {
+            let name = match &e.kind {
+                ExprKind::Field(joint, member) => joint.name().map(|joint| format!("{joint}.{}", member.text)),
+                _ => e.name().map(str::to_string),
+            };
+            let known = || self.model.velocities.iter().map(|(name, _)| name.as_str());
+            match known().position(|v| Some(v) == name.as_deref()) {
+                Some(k) => independent.push(k),
+                None => {
+                    cx.error(e.place.clone(), "expected a velocity").suggest(name.as_deref().unwrap_or(""), known());
+                    return;
+                }
+            }
+        }
+        let free = self.model.freedom[1];
+        if !independent.is_empty() && independent.len() != free {
+            cx.error(place.clone(), format!("{} independent speeds for {free} degrees of freedom", independent.len()));
+            return;
+        }
+        if !cx.is_empty() {
+            return;
+        }
+        self.model.dependent = mobility::dependent(&self.model, witnesses, &independent);
+        if self.model.dependent.is_none() {
+            let diagnostic = cx.error(place.clone(), "the other velocities do not follow from independent speeds");
+            diagnostic.help("constraints are redundant, or these speeds depend on each other: use `formulation = multipliers`, or others");
         }
     }
 

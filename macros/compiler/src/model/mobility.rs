@@ -20,6 +20,9 @@ const CLOSED: f64 = 1e-11;
 /// Residuals above this, m or rad, are not closed by more steps.
 const OPEN: f64 = 1e-4;
 
+/// Pivots below this part of the largest entry count as zero.
+const SMALL_PIVOT: f64 = 1e-6;
+
 /// A configuration with the seed of the parameters that it belongs to.
 pub type Witness = (Vec<f64>, u64);
 
@@ -61,6 +64,38 @@ pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Dia
         ));
     }
     freedom
+}
+
+/// A pivot for each constraint, constraint and velocity, among the velocities that need not be independent, in the order of
+/// an elimination that is well conditioned at a witness. `None` if some constraint has none.
+pub fn dependent(
+    model: &Model<'_>,
+    witnesses: &[Witness],
+    independent: &[usize],
+) -> Option<Vec<(usize, usize)>> {
+    let (q, seed) = witnesses.first()?;
+    let mut rows = Rows::of(model).values(q, *seed);
+    let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    while pivots.len() < rows.len() {
+        let open = (0..rows.len()).filter(|i| pivots.iter().all(|(row, _)| row != i));
+        let all = open.flat_map(|i| (0..model.nv()).map(move |j| (i, j)));
+        let allowed = all.filter(|(_, j)| !independent.contains(j));
+        let (row, column) = allowed.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))?;
+        let pivot = rows[row][column];
+        if pivot.abs() <= SMALL_PIVOT * largest {
+            return None;
+        }
+        pivots.push((row, column));
+        let own = rows[row].clone();
+        for (i, other) in rows.iter_mut().enumerate() {
+            if i != row {
+                let factor = other[column] / pivot;
+                other.iter_mut().zip(&own).for_each(|(x, o)| *x -= factor * o);
+            }
+        }
+    }
+    Some(pivots)
 }
 
 /// Constraints as expressions to be evaluated.

@@ -388,6 +388,9 @@ pub struct Model<'g> {
     pub inertances: Vec<Inertance<'g>>,
     /// Scalar constraints; those on configurations first.
     pub constraints: Vec<Constraint<'g>>,
+    /// The pivots by which dependent velocities are solved for, constraint and velocity, where independent speeds are to
+    /// be used.
+    pub dependent: Option<Vec<(usize, usize)>>,
     /// Degrees of freedom: independent coordinates and independent velocities.
     pub freedom: [usize; 2],
     /// Outputs.

@@ -139,6 +139,7 @@ fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         dissipations: _,
         loads: _,
         constraints: _,
+        dependent: _,
         freedom: _,
         inertances: _,
         outputs: _,

@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
-use super::{Base, Description, Name, ScalarType, guard};
+use super::{Base, Description, Formulation, Name, ScalarType, guard};
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
@@ -81,8 +81,20 @@ const REQUESTS: [&str; 7] =
     ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
 
 /// The options that have a value.
-const OPTIONS: [&str; 10] =
-    ["gravity", "friction_speed", "scalar", "urdf", "base", "passive", "mimic", "inertia", "inputs", "lock"];
+const OPTIONS: [&str; 12] = [
+    "gravity",
+    "friction_speed",
+    "formulation",
+    "independent",
+    "scalar",
+    "urdf",
+    "base",
+    "passive",
+    "mimic",
+    "inertia",
+    "inputs",
+    "lock",
+];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
@@ -208,6 +220,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         energies: Vec::new(),
         dissipations: Vec::new(),
         constraints: Vec::new(),
+        formulation: Formulation::default(),
     }
 }
 
@@ -334,6 +347,7 @@ fn read_options(
     *requests = read_requests(&mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
+    description.formulation = read_formulation(&mut arguments, cx);
     if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
         let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
         unify_scalar(scalar, found, place, cx);
@@ -367,6 +381,23 @@ fn read_options(
         inputs: !no_inputs,
         lock,
     })
+}
+
+/// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.
+fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
+    let place = arguments.place_of("independent");
+    let independent = arguments.take_list("independent", cx);
+    let chosen = arguments.take_word("formulation", &["multipliers", "speeds"], cx);
+    match (chosen, place) {
+        (Some((word, at)), Some(_)) if word == "multipliers" => {
+            cx.error(at, "multipliers need no independent speeds")
+                .help("remove `independent`, or write `formulation = speeds`");
+            Formulation::Multipliers
+        }
+        (_, Some(place)) => Formulation::Speeds(independent, place),
+        (Some((word, place)), None) if word == "speeds" => Formulation::Speeds(Vec::new(), place),
+        _ => Formulation::Multipliers,
+    }
 }
 
 /// The words among the arguments.

@@ -173,6 +173,18 @@ pub struct Description {
     pub dissipations: Vec<(Name, Expr)>,
     /// Constraints beside those of joints that close loops.
     pub constraints: Vec<Constraint>,
+    /// How constrained motion is solved.
+    pub formulation: Formulation,
+}
+
+/// How the accelerations of a mechanism with constraints are found.
+#[derive(Clone, Debug, Default)]
+pub enum Formulation {
+    /// By Lagrange multipliers.
+    #[default]
+    Multipliers,
+    /// By independent speeds, of those velocities or of any.
+    Speeds(Vec<Expr>, Place),
 }
 
 /// What a constraint restricts.

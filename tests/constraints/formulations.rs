@@ -1,0 +1,174 @@
+//! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar and spatial
+//! joints, loops closed by every joint, and states on and off the constraints. The equations themselves are the judge.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::{Expr, Graph};
+use linkwork_compiler::mechanics::{self, constraints, crba, rnea};
+use linkwork_compiler::model::{Model, Quantity, build_model, random_configuration, sample};
+use linkwork_compiler::read;
+use proptest::prelude::*;
+use std::fmt::Write;
+use std::path::Path;
+use support::random::config;
+
+/// A chain of bodies from the ground and back, with the joint that closes it.
+#[derive(Clone, Debug)]
+struct Chain {
+    /// Directions of the joints, offsets and slides.
+    joints: Vec<([f64; 3], [f64; 3], bool)>,
+    closing: usize,
+    anchor: [f64; 3],
+    planar: bool,
+}
+
+/// Joints that close a loop, with what they need.
+const CLOSING: [(&str, &str); 7] = [
+    ("Pin", ", about = z"),
+    ("Ball", ""),
+    ("Universal", ", about = (x, y)"),
+    ("Sleeve", ", along = x"),
+    ("Collar", ", about = z"),
+    ("Slot", ", along = x, about = z"),
+    ("Planar", ", about = z"),
+];
+
+impl Chain {
+    fn source(&self, arguments: &str) -> (String, String) {
+        let vector = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
+        let mut item = String::from("struct Chain {\n");
+        let mut parent = "ground".to_string();
+        for (k, (axis, offset, slide)) in self.joints.iter().enumerate() {
+            let axis = match self.planar {
+                true => if *slide { "x" } else { "z" }.to_string(),
+                false => format!("unit({})", vector(axis)),
+            };
+            let offset = if self.planar { [offset[0], offset[1], 0.0] } else { *offset };
+            let (kind, key) = if *slide { ("Sleeve", "along") } else { ("Pin", "about") };
+            let _ = writeln!(
+                item,
+                "#[body(mass = 1.5, com = {}, inertia = diagonal(0.3, 0.4, 0.5))] b{k}: Body,
+                #[joint({parent}.at({}) -> b{k}, {key} = {axis})] j{k}: {kind},",
+                vector(&offset.map(|x| x / 2.0)),
+                vector(&offset)
+            );
+            parent = format!("b{k}");
+        }
+        let (kind, key) = CLOSING[if self.planar { 0 } else { self.closing % CLOSING.len() }];
+        let anchor = if self.planar { [self.anchor[0], self.anchor[1], 0.0] } else { self.anchor };
+        let _ = writeln!(
+            item,
+            "#[joint({parent}.at(0.4 * x) -> ground.at({}){key})] closing: {kind},\n}}",
+            vector(&anchor)
+        );
+        (format!("gravity = -9.81 * y{arguments}"), item)
+    }
+}
+
+fn chains() -> impl Strategy<Value = Chain> {
+    let direction = || prop::array::uniform3(-1.0..1.0_f64);
+    let joint = (direction(), direction(), prop::bool::weighted(0.2)).prop_filter(
+        "a direction needs a length",
+        |(axis, ..)| axis.iter().map(|x| x * x).sum::<f64>() > 0.1,
+    );
+    (prop::collection::vec(joint, 3..=6), any::<usize>(), prop::array::uniform3(0.2..1.0_f64), any::<bool>())
+        .prop_map(|(joints, closing, anchor, planar)| Chain { joints, closing, anchor, planar })
+}
+
+/// The model, unless the chain cannot move or its speeds depend on each other.
+fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
+    let (arguments, item) = chain.source(arguments);
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    match source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx)) {
+        Some(model) => check(&model),
+        None => {
+            let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
+            let all = cx.messages();
+            assert!(
+                all.iter().all(|m| known.iter().any(|k| m.contains(k))),
+                "{}\n{item}",
+                all.join("\n")
+            );
+        }
+    }
+}
+
+fn values(model: &Model<'_>, seed: u64, e: &[Expr<'_>]) -> Vec<f64> {
+    let q = random_configuration(model, seed);
+    eval(e, &|s| match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        _ => 4.0 * (sample(s, seed) - 1.0),
+    })
+}
+
+proptest! {
+    #![proptest_config(config(64))]
+
+    #[test]
+    fn both_formulations_fulfil_the_equations(chain in chains(), seed in 0..1000_u64) {
+        with_model(&chain, ", formulation = speeds", |model| {
+            let joints = mechanics::joints(model);
+            let v = mechanics::velocities(model);
+            let mass = crba::mass_matrix(model, &joints);
+            let h = rnea::inverse_dynamics(model, &joints, &v, None);
+            let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
+            let force: Vec<Expr<'_>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
+            let (rows, bias) = (constraints::jacobian(model), constraints::biases(model));
+            let by_multipliers = constraints::solve(model, &mass, &rows, force.clone(), bias.clone());
+            let pivots = model.dependent.as_ref().expect("speeds were asked for");
+            let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
+            let (nv, nc) = (model.nv(), rows.len());
+            let first = values(model, seed, &by_multipliers);
+            let second = values(model, seed, &by_speeds);
+            // Where the random configuration is close to a singular one, both say so.
+            let regular = |all: &[f64]| (0..nc).all(|k| all[nv + nc + k] > 1e-4 * all[nv + 2 * nc + k]);
+            if !regular(&first) || !regular(&second) {
+                return;
+            }
+            let m = values(model, seed, &mass.concat());
+            let j = values(model, seed, &rows.concat());
+            let (f, b) = (values(model, seed, &force), values(model, seed, &bias));
+            for (what, found) in [("multipliers", &first), ("speeds", &second)] {
+                let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
+                let scale = found[..nv + nc].iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+                for i in 0..nv {
+                    let motion: f64 = (0..nv).map(|k| m[i * nv + k] * a[k]).sum();
+                    let held: f64 = (0..nc).map(|c| j[c * nv + i] * lambda[c]).sum();
+                    assert!((motion - f[i] - held).abs() < 1e-9 * scale, "{what}: equation {i} of {chain:?}");
+                }
+                for c in 0..nc {
+                    let rate: f64 = (0..nv).map(|k| j[c * nv + k] * a[k]).sum();
+                    assert!((rate + b[c]).abs() < 1e-9 * scale, "{what}: constraint {c} of {chain:?}");
+                }
+            }
+        });
+    }
+
+    /// The rates are the derivatives of the residuals along the motion, and the biases those of the rates at constant `v`.
+    #[test]
+    fn rates_and_biases_are_derivatives(chain in chains(), seed in 0..1000_u64) {
+        with_model(&chain, "", |model| {
+            let q = random_configuration(model, seed);
+            let speed = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
+            let at = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::of(s) {
+                Quantity::Configuration(k) => q[k] + step * speed(k),
+                Quantity::Velocity(k) => speed(k),
+                _ => 0.0,
+            });
+            let slope = |e: &[Expr<'_>]| -> Vec<f64> {
+                let h = 1e-5;
+                at(e, h).iter().zip(at(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+            };
+            let (residuals, rates) = (constraints::residuals(model), constraints::rates(model));
+            let scale = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+            for (derivative, of) in [(at(&rates, 0.0), slope(&residuals)), (at(&constraints::biases(model), 0.0), slope(&rates))] {
+                for (d, o) in derivative.iter().zip(&of) {
+                    assert!((d - o).abs() < 1e-6 * scale(&derivative), "{d} and {o} of {chain:?}");
+                }
+            }
+        });
+    }
+}
