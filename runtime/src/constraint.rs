@@ -2,7 +2,8 @@
 //!
 //! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the residuals
 //! `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a configuration near a given
-//! one, [`Constrained::project_velocity`] the nearest velocity, and [`simulate`](crate::simulate()) keeps both.
+//! one, [`Constrained::project_velocity`] the nearest velocity, and [`simulate`](crate::simulate()) keeps both, or lets
+//! violations decay where a mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
@@ -12,12 +13,14 @@ use nalgebra::{SMatrix, SVector};
 mod assemble;
 mod linearize;
 mod solve;
+mod stabilized;
 
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, columns, constrained_derivatives};
 #[doc(hidden)]
 pub use solve::{least_multipliers, regular_solution};
+pub use stabilized::{Stabilized, stabilized};
 
 /// Newton steps of a projection; a state that has drifted needs one or two.
 const MOST_STEPS: usize = 20;

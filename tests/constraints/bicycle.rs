@@ -56,10 +56,10 @@ fn linear(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
 #[test]
 fn matrices_are_the_published_ones() {
     assert_eq!((Bicycle::NV, Bicycle::NC, Bicycle::NP, Bicycle::NS), (9, 6, 7, 3));
-    let m = Matrix2::new(80.817_22, 2.319_413_322_087_091, 2.319_413_322_087_091, 0.297_841_881_996_855_53);
+    let m = Matrix2::new(80.817_22, 2.319_413_322_087_091, 2.319_413_322_087_091, 0.297_841_881_996_855_5);
     let c1 = Matrix2::new(0.0, 33.866_413_914_924_94, -0.850_356_414_569_784_4, 1.685_403_973_975_596_7);
     let k0 = Matrix2::new(-80.95, -2.599_516_852_498_716, -2.599_516_852_498_716, -0.803_294_884_586_176_9);
-    let k2 = Matrix2::new(0.0, 76.597_345_895_732_22, 0.0, 2.654_315_237_946_040_3);
+    let k2 = Matrix2::new(0.0, 76.597_345_895_732_22, 0.0, 2.654_315_237_946_04);
     let close = |found: Matrix2<f64>, expected: Matrix2<f64>| {
         let worst = (found - expected).amax();
         assert!(worst <= 1e-11 * expected.amax().max(1.0), "{found} for {expected}");

@@ -192,3 +192,24 @@ fn windows_go_through_their_singular_positions() -> Result<(), Error> {
     assert!(windows.constraint_residuals(&run.q).amax() < 1e-10);
     Ok(())
 }
+
+/// States that do not fulfil the constraints are refused, and what cannot be assembled says why.
+#[test]
+fn states_off_the_constraints_are_errors() {
+    let squeezer = AndrewsSqueezer {};
+    let mut q = SVector::from(START);
+    q[2] += 0.01;
+    let run = simulate(&squeezer).from(q, [0.0; 7]).duration(0.001).finish();
+    assert!(matches!(run, Err(Error::OffConstraints { .. } | Error::Constraint { .. })), "{run:?}");
+    // From there it is assembled, the crank where it is.
+    let found = squeezer.assemble(&q, &[0]).expect("it is close");
+    assert!((found[0] - q[0]).abs() < 1e-15 && squeezer.constraint_residuals(&found).amax() < 1e-14);
+    // With all angles but one held it cannot be.
+    let held = squeezer.assemble(&q, &[0, 1, 2, 3, 4, 5]);
+    assert!(
+        matches!(held, Err(ConstraintError::Configuration { constraint, .. }) if constraint.starts_with('e')),
+        "{held:?}"
+    );
+    let lost = squeezer.assemble(&SVector::repeat(f64::NAN), &[]);
+    assert_eq!(lost, Err(ConstraintError::NotFinite));
+}

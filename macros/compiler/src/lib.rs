@@ -124,9 +124,13 @@ pub fn compile_with<'g>(
         .then_some((model, output))
 }
 
-/// Functions of every mechanism that are not derived but written as they are.
-const WRITTEN: [&str; 9] = [
+/// Functions that are not derived but written as they are, those of mechanisms with constraints included.
+const WRITTEN: [&str; 15] = [
+    "assemble",
+    "constrained_dynamics",
+    "constraint_correction",
     "difference",
+    "forward_dynamics",
     "frame_acceleration",
     "frame_index",
     "frame_jacobian",
@@ -134,6 +138,8 @@ const WRITTEN: [&str; 9] = [
     "frame_placements",
     "frame_velocity",
     "integrate",
+    "project_configuration",
+    "project_velocity",
     "tangent_rate",
 ];
 

@@ -23,6 +23,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
     units(&mut text, interface);
+    constraints(&mut text, interface);
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let _ = writeln!(text, "\n# Structure\n\n`M(q) v̇ + h(q, v) = τ`, too long to be written out.\n");
         for joint in &interface.structure {
@@ -42,13 +43,38 @@ pub fn operations(functions: &[Function]) -> String {
     let mut text = String::from(
         "\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n",
     );
-    for f in functions.iter().filter(|f| !f.docs.is_empty()) {
+    for f in functions.iter().filter(|f| !f.docs.is_empty() || f.name == "__constrained_dynamics") {
         let c = f.program.counts;
         if c.total() + c.calls > 0 {
-            let _ = writeln!(text, "| `{}` | {} | {} | {} | {} |", f.name, c.mul, c.add, c.div, c.calls);
+            let _ = writeln!(
+                text,
+                "| `{}` | {} | {} | {} | {} |",
+                f.name.trim_start_matches('_'),
+                c.mul,
+                c.add,
+                c.div,
+                c.calls
+            );
         }
     }
     text
+}
+
+/// The constraints, and what they leave free.
+fn constraints(text: &mut String, i: &Interface<'_>) {
+    let c = &i.constraints;
+    if c.names.is_empty() {
+        return;
+    }
+    let [coordinates, speeds] = c.freedom;
+    let _ = writeln!(
+        text,
+        "\n# Constraints\n\nThe coordinates are not independent: `NC` = {}, of which `NH` = {} are on configurations. Degrees of freedom: `NP` = {coordinates} of configurations, `NS` = {speeds} of velocities.\n",
+        c.names.len(),
+        c.holonomic
+    );
+    list(text, "On configurations", &c.names[..c.holonomic]);
+    list(text, "On velocities alone", &c.names[c.holonomic..]);
 }
 
 /// The unit of everything that has a name.

@@ -153,9 +153,9 @@ fn eliminate<'g>(
                 continue;
             }
             for &j in &later {
-                rows[i][j] = rows[i][j] - factor * own[j];
+                rows[i][j] -= factor * own[j];
             }
-            right[i].iter_mut().zip(&own_right).for_each(|(x, o)| *x = *x - factor * *o);
+            right[i].iter_mut().zip(&own_right).for_each(|(x, o)| *x -= factor * *o);
         }
     }
     (right, sizes)

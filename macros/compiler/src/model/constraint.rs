@@ -117,21 +117,27 @@ impl<'g> Builder<'_, 'g> {
         let mut independent = Vec::new();
         for e in names {
             let name = match &e.kind {
-                ExprKind::Field(joint, member) => joint.name().map(|joint| format!("{joint}.{}", member.text)),
+                ExprKind::Field(joint, member) => {
+                    joint.name().map(|joint| format!("{joint}.{}", member.text))
+                }
                 _ => e.name().map(str::to_string),
             };
             let known = || self.model.velocities.iter().map(|(name, _)| name.as_str());
             match known().position(|v| Some(v) == name.as_deref()) {
                 Some(k) => independent.push(k),
                 None => {
-                    cx.error(e.place.clone(), "expected a velocity").suggest(name.as_deref().unwrap_or(""), known());
+                    cx.error(e.place.clone(), "expected a velocity")
+                        .suggest(name.as_deref().unwrap_or(""), known());
                     return;
                 }
             }
         }
         let free = self.model.freedom[1];
         if !independent.is_empty() && independent.len() != free {
-            cx.error(place.clone(), format!("{} independent speeds for {free} degrees of freedom", independent.len()));
+            cx.error(
+                place.clone(),
+                format!("{} independent speeds for {free} degrees of freedom", independent.len()),
+            );
             return;
         }
         if !cx.is_empty() {
@@ -139,7 +145,8 @@ impl<'g> Builder<'_, 'g> {
         }
         self.model.dependent = mobility::dependent(&self.model, witnesses, &independent);
         if self.model.dependent.is_none() {
-            let diagnostic = cx.error(place.clone(), "the other velocities do not follow from independent speeds");
+            let diagnostic =
+                cx.error(place.clone(), "the other velocities do not follow from independent speeds");
             diagnostic.help("constraints are redundant, or these speeds depend on each other: use `formulation = multipliers`, or others");
         }
     }

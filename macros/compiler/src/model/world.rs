@@ -276,11 +276,15 @@ impl<'g> Scope<'_, 'g> {
         if self.level() >= needed {
             return true;
         }
+        if needed == Level::Reaction {
+            cx.error(place.clone(), format!("{what} cannot stand here"))
+                .help("reactions stand in outputs: `#[output(reaction_force(joint))]`");
+            return false;
+        }
         let only = match self.level() {
             Level::Constant => "only numbers and parameters",
             Level::Placement => "only numbers, parameters, coordinates and time",
-            Level::Motion => "no accelerations",
-            _ => "no reactions",
+            _ => "no accelerations",
         };
         cx.error(place.clone(), format!("{what} cannot stand here")).help(format!("this place takes {only}"));
         false
