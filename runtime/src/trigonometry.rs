@@ -61,7 +61,12 @@ fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
         small &= x.abs() <= LARGEST;
         (*s, *c) = small_angle(*x);
     }
-    if small { (s, c) } else { with_large(x) }
+    if small {
+        return (s, c);
+    }
+    // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
+    let copy = *x;
+    with_large(&copy)
 }
 
 /// Takes the library's values where angles are large: each result depends on its own angle alone.
