@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "a global allocator is unsafe to implement")]
 
 use linkwork::batch::{Rollout, unwatched};
-use linkwork::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
+use linkwork::integrate::{ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
 use linkwork::{Batch, Mechanism, frame, mechanism, simulate};
@@ -86,6 +86,7 @@ where
     assert_eq!(heap_calls(|| run().method(Rk4::step(2e-3)).finish()), 0, "Rk4");
     assert_eq!(heap_calls(|| run().method(ImplicitMidpoint::step(2e-3)).finish()), 0, "ImplicitMidpoint");
     assert_eq!(heap_calls(|| run().method(SemiImplicitEuler::step(2e-3)).finish()), 0, "SemiImplicitEuler");
+    assert_eq!(heap_calls(|| run().method(Rosenbrock::step(2e-3)).finish()), 0, "Rosenbrock");
     let driven = || {
         run().control_every(5e-3, |_, _, _| *u).sample_every(3e-3).event(Crossing::Either, |t, _, _| t - 4e-3)
     };

@@ -10,6 +10,7 @@
 //! | [`DormandPrince`] | 5 | adaptive | the default: accuracy on request, dense output |
 //! | [`Rk4`] | 4 | fixed | real time, a known cost per step |
 //! | [`ImplicitMidpoint`] | 2 | fixed | long runs: energy and momenta do not drift |
+//! | [`Rosenbrock`] | 2 | fixed | stiff springs and dashpots: stable with any step |
 //! | [`SemiImplicitEuler`] | 1 | fixed | games and learning: one evaluation per step |
 //!
 //! [`simulate`](crate::simulate()) is the way to use them; [`Method`] is what it needs of one.
@@ -19,6 +20,7 @@ mod error;
 mod implicit_midpoint;
 mod path;
 mod rk4;
+mod rosenbrock;
 mod semi_implicit_euler;
 mod system;
 
@@ -27,6 +29,7 @@ pub use error::Error;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use path::{Path, Step};
 pub use rk4::Rk4;
+pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use system::{Dynamics, Held, Inputs, NoInputs, Steered, System};
 

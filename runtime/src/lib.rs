@@ -48,7 +48,7 @@ mod trigonometry;
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
 pub mod prelude {
     pub use crate::elements::*;
-    pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, SemiImplicitEuler};
+    pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
     pub use crate::{Batch, Constrained, ConstraintError, Mechanism, Real, at, frame, mechanism};

@@ -251,6 +251,10 @@ impl Source {
             functions.extend(signatures::packed(&sizes, entries.len()));
             constants.push(signatures::entries(&entries));
         }
+        if outline.constrained {
+            functions.retain(|f| f.name != "forward_dynamics");
+            functions.extend(signatures::constrained(&sizes, 1, 1));
+        }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
                 // An output may have the wrong name.
@@ -266,6 +270,7 @@ impl Source {
             frames: outline.frames,
             time: outline.time,
             velocity_inputs: outline.velocity_inputs,
+            constraints: if outline.constrained { Constraints::unknown() } else { Constraints::default() },
             ..self.bare_interface()
         };
         emit_failed(&interface, &functions, &constants, requests.prepare)

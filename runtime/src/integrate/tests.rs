@@ -87,6 +87,7 @@ macro_rules! orders {
 orders! {
     semi_implicit_euler_has_order_one: SemiImplicitEuler::step, 1.0, 2.0 / 1024.0;
     implicit_midpoint_has_order_two: ImplicitMidpoint::step, 2.0, 2.0 / 128.0;
+    rosenbrock_has_order_two: Rosenbrock::step, 2.0, 2.0 / 512.0;
     rk4_has_order_four: Rk4::step, 4.0, 2.0 / 64.0;
     dormand_prince_has_order_five: equal_steps, 5.0, 2.0 / 32.0;
 }
@@ -257,4 +258,19 @@ fn failures_are_errors() {
     assert!(matches!(end, Err(Error::TooManySteps { t }) if t < 1.0), "{end:?}");
     let end = run.method(DormandPrince::new().min_step(0.1)).finish();
     assert!(matches!(end, Err(Error::StepTooSmall { .. })), "{end:?}");
+}
+
+/// A mass on a spring and a dashpot a million times faster than the force that moves it follows that force, with steps a
+/// thousand times longer than an explicit method survives.
+#[test]
+fn rosenbrock_is_stable_where_springs_are_stiff() {
+    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..oscillator() };
+    let run = simulate(&mechanism)
+        .from([1e-3], [0.0])
+        .inputs(|t: f64, _, _| SVector::from([t.sin()]))
+        .duration(3.0);
+    let end = run.clone().method(Rosenbrock::step(0.05)).finish().unwrap();
+    let slow = 3.0_f64.sin() / 1e8;
+    assert!((end.q[0] - slow).abs() < 0.01 * slow, "{} for {slow}", end.q[0]);
+    assert!(run.method(Rk4::step(0.05)).finish().is_err());
 }

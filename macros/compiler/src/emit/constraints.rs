@@ -19,6 +19,11 @@ pub struct Constraints {
 }
 
 impl Constraints {
+    /// One, where only the equations could tell how many there are.
+    pub fn unknown() -> Constraints {
+        Constraints { names: vec![String::new()], holonomic: 1, groups: vec![0], freedom: [0; 2] }
+    }
+
     /// Those of a model.
     pub fn of(model: &Model<'_>) -> Constraints {
         Constraints {

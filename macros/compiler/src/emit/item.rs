@@ -172,6 +172,7 @@ pub fn emit_failed(
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
+    constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
     write_manifold(&mut methods, None, &s);
     lanes::write_methods(&mut methods, interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));

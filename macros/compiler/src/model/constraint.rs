@@ -74,6 +74,7 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             for j in closing {
                 self.check_joint(&self.description.joints[*j], cx);
+                self.transmit(*j, None, &Rotation::identity(self.scope.graph));
             }
             return;
         }

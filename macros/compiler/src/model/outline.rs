@@ -22,6 +22,8 @@ pub struct Outline {
     pub time: bool,
     /// Inputs act by way of the velocity.
     pub velocity_inputs: bool,
+    /// Joints close loops, or constraints are declared.
+    pub constrained: bool,
     /// The outputs, in order.
     pub outputs: Vec<OutlinedOutput>,
 }
@@ -63,6 +65,7 @@ pub fn outline(d: &Description) -> Outline {
                 uses.inputs && (uses.velocities || names(e).contains("speed"))
             })
         }),
+        constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
         outputs: d.outputs.iter().map(|output| outlined(d, output)).collect(),
         frames: frames(d),
         bodies: bodies(d),

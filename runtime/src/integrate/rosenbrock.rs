@@ -1,0 +1,145 @@
+//! A linearly implicit method for stiff mechanisms.
+
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::{SMatrix, SVector};
+
+/// The Rosenbrock method ROS2 with fixed steps: order 2, and stable however stiff springs and dashpots are.
+///
+/// `(1 − γ h J) k₁ = f(y₀)`, `(1 − γ h J) k₂ = f(y₀ + h k₁) − 2 k₁`, `y₁ = y₀ + (3 k₁ + k₂) h / 2` with
+/// `γ = 1 + 1/√2`: L-stable, and of order 2 for any matrix `J`, so that differences of the accelerations serve as
+/// derivatives. A step costs `2 NV + 3` evaluations of the dynamics and one factorisation of a matrix of size `NV`;
+/// what is fast and stiff is damped away, and so is energy that is not. Constraints are kept as by the other methods.
+/// Source: Verwer, Spee, Blom and Hundsdorfer, *A second-order Rosenbrock method applied to photochemical dispersion
+/// problems*, SIAM J. Sci. Comput. 20 (1999).
+///
+/// [`Error::NotConverged`] tells that the matrix of a step is singular.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rosenbrock<T> {
+    step: T,
+}
+
+impl<T: Real> Rosenbrock<T> {
+    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    pub fn step(step: T) -> Self {
+        Self { step }
+    }
+}
+
+/// Derivatives of the acceleration by displacement, velocity and time, by differences.
+struct Slopes<T, const NV: usize> {
+    by_q: SMatrix<T, NV, NV>,
+    by_v: SMatrix<T, NV, NV>,
+    by_t: SVector<T, NV>,
+}
+
+fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    acceleration: &SVector<T, NV>,
+    h: T,
+) -> Slopes<T, NV> {
+    let mut out = Slopes::<T, NV> { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() };
+    let root = epsilon::<T>().sqrt();
+    for k in 0..NV {
+        let mut direction = SVector::<T, NV>::zeros();
+        direction[k] = root;
+        let q = system.integrate(&start.q, &direction);
+        let moved = system.acceleration(start.t, &q, &start.v);
+        out.by_q.set_column(k, &((moved - acceleration) / root));
+        let size = root * start.v[k].abs().max(T::one());
+        let mut v = start.v;
+        v[k] += size;
+        let moved = system.acceleration(start.t, &start.q, &v);
+        out.by_v.set_column(k, &((moved - acceleration) / size));
+    }
+    let later = h * constant(1e-3);
+    let moved = system.acceleration(start.t + later, &start.q, &start.v);
+    out.by_t = (moved - acceleration) / later;
+    out
+}
+
+/// `x` with `m x = b` by Gaussian elimination with row pivots; `None` for a singular matrix.
+fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>) -> Option<SVector<T, N>> {
+    for k in 0..N {
+        let best = (k..N).max_by(|i, j| {
+            let order = m[(*i, k)].abs().partial_cmp(&m[(*j, k)].abs());
+            order.unwrap_or(core::cmp::Ordering::Equal)
+        })?;
+        m.swap_rows(k, best);
+        b.swap_rows(k, best);
+        let pivot = m[(k, k)];
+        if !pivot.is_finite() || pivot == T::zero() {
+            return None;
+        }
+        for i in k + 1..N {
+            let factor = m[(i, k)] / pivot;
+            for j in k..N {
+                let own = m[(k, j)];
+                m[(i, j)] -= factor * own;
+            }
+            let own = b[k];
+            b[i] -= factor * own;
+        }
+    }
+    for k in (0..N).rev() {
+        let rest = (k + 1..N).fold(b[k], |sum, j| sum - m[(k, j)] * b[j]);
+        b[k] = rest / m[(k, k)];
+    }
+    Some(b)
+}
+
+impl<T: Real> Method<T> for Rosenbrock<T> {
+    type Memory<const NV: usize> = ();
+
+    const FIXED: bool = true;
+
+    fn check(&self) -> Result<(), Error> {
+        positive("the step", self.step)
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {}
+
+    fn disturb<const NV: usize>(&self, (): &mut (), _jump: Jump) {}
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        (): &mut (),
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        let (h, t) = equal_step(self.step, start.t, until)?;
+        let before = system.acceleration(start.t, &start.q, &start.v);
+        let slopes = slopes(system, start, &before, h);
+        let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);
+        let part = gamma * h;
+        // Of (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv]: kφ = a + γh kv, and one system for kv.
+        let matrix = SMatrix::identity() - slopes.by_v * part - slopes.by_q * (part * part);
+        let stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
+            let kv = solve(matrix, b + slopes.by_q * a * part)?;
+            Some((a + kv * part, kv))
+        };
+        let singular = Error::NotConverged { t: to_f64(start.t), iterations: 0 };
+        let first = stage(start.v, before + slopes.by_t * part).ok_or(singular)?;
+        let (moved, v) = (first.0 * h, start.v + first.1 * h);
+        let q = system.integrate(&start.q, &moved);
+        let two = constant::<T>(2.0);
+        let rate = system.tangent_rate(&moved, &v) - first.0 * two;
+        let force = system.acceleration(t, &q, &v) - slopes.by_t * part - first.1 * two;
+        let second = stage(rate, force).ok_or(singular)?;
+        let (three, half) = (constant::<T>(3.0), h * constant(0.5));
+        let displacement = (first.0 * three + second.0) * half;
+        let v = start.v + (first.1 * three + second.1) * half;
+        let end = State { t, q: system.integrate(&start.q, &displacement), v };
+        let end = settled(system, end, start.t)?;
+        let step = Step::linear(*start, end, displacement);
+        if !dense {
+            return Ok(step);
+        }
+        let after = system.acceleration(end.t, &end.q, &end.v);
+        Ok(step.cubic(system, &displacement, [before, after]))
+    }
+}
