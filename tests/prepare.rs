@@ -198,17 +198,21 @@ fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
 }
 
 /// A 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986), and bodies without any symmetry;
-/// their mass properties are numbers or parameters.
-fn puma(parameters: bool) -> String {
+/// their mass properties are numbers or parameters, and so are the lengths.
+fn puma(lengths: bool, parameters: bool) -> String {
+    let [a2, a3, d3, d4] = match lengths {
+        true => ["a2", "a3", "d3", "d4"],
+        false => ["0.4318", "0.0203", "0.15005", "0.4318"],
+    };
     let places = [
         "ground",
         "b0.rotated(x(-pi / 2))",
-        "b1.at(0.4318 * x + 0.15005 * z)",
-        "b2.at(0.0203 * x - 0.4318 * y).rotated(x(-pi / 2))",
+        &format!("b1.at({a2} * x + {d3} * z)"),
+        &format!("b2.at({a3} * x - {d4} * y).rotated(x(-pi / 2))"),
         "b3.rotated(x(pi / 2))",
         "b4.rotated(x(-pi / 2))",
     ];
-    let mut fields = String::new();
+    let mut fields = String::from(if lengths { "a2: f64, a3: f64, d3: f64, d4: f64, " } else { "" });
     for (k, place) in places.iter().enumerate() {
         let names = ["m", "cx", "cy", "cz", "xx", "yy", "zz", "xy", "xz", "yz"];
         let numbers = [3.1, 0.11, -0.07, 0.05, 0.31, 0.37, 0.29, 0.011, -0.013, 0.017];
@@ -255,7 +259,8 @@ fn chain(n: usize, parameters: bool) -> String {
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [
-        ("puma", puma(false), puma(true), [497, 467, 264, 893]),
+        ("puma, masses", puma(false, false), puma(false, true), [497, 467, 264, 893]),
+        ("puma, lengths too", puma(false, false), puma(true, true), [497, 467, 268, 897]),
         ("chain of 4", chain(4, false), chain(4, true), [177, 158, 70, 278]),
         ("chain of 8", chain(8, false), chain(8, true), [473, 450, 422, 1184]),
     ] {

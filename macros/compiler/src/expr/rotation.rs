@@ -30,7 +30,8 @@ impl<'g> Rotation<'g> {
     /// A rotation about coordinate axis `axis` by `angle`.
     pub fn about_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
         let graph = angle.graph();
-        let step = Step::Axis { axis, sin: angle.sin(), cos: angle.cos() };
+        let step =
+            Step::Axis { axis, sin: without_rounding(angle.sin()), cos: without_rounding(angle.cos()) };
         let mut rotation = Rotation::identity(graph);
         rotation.push(step);
         rotation
@@ -136,6 +137,14 @@ impl<'g> Rotation<'g> {
     pub fn matrix(&self) -> Mat3<'g> {
         let columns: [Vec3<'g>; 3] = std::array::from_fn(|k| self.to_parent(Vec3::axis(self.graph, k)));
         Mat3::from_fn(|i, j| columns[j][i])
+    }
+}
+
+/// The sine of π and the cosine of π / 2 are not zero in floating point, but zero is what is meant.
+fn without_rounding(e: Expr<'_>) -> Expr<'_> {
+    match e.value() {
+        Some(x) if x.abs() <= 4.0 * f64::EPSILON => e.zero(),
+        _ => e,
     }
 }
 
