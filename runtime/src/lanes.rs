@@ -67,6 +67,14 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
         Self(core::array::from_fn(f))
     }
 
+    /// The first `M` lanes. Does not compile if there are fewer.
+    #[inline(always)]
+    #[must_use]
+    pub fn first<const M: usize>(self) -> Lanes<T, M> {
+        const { assert!(M <= N, "there are not so many lanes") };
+        Lanes::from_fn(|k| self.0[k])
+    }
+
     /// A function of each lane.
     #[inline(always)]
     #[must_use]

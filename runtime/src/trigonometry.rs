@@ -158,8 +158,12 @@ fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
 
 #[inline(always)]
 fn horner<T: Real>(z: T, coefficients: [f64; 6]) -> T {
-    let [a, b, c, d, e, f] = coefficients.map(constant::<T>);
-    mul_add(mul_add(mul_add(mul_add(mul_add(a, z, b), z, c), z, d), z, e), z, f)
+    let [first, rest @ ..] = coefficients;
+    let mut sum = constant(first);
+    for c in rest {
+        sum = mul_add(sum, z, constant(c));
+    }
+    sum
 }
 
 #[cfg(test)]

@@ -36,7 +36,9 @@ macro_rules! angles {
             let mut c = [Lanes([0.0; $lanes]); N];
             if !small.all() {
                 for (x, c) in x.iter_mut().zip(&mut c) {
-                    (x.0, c.0) = with_large(&x.0);
+                    // A copy, so that the angles themselves need not be in memory.
+                    let angles = x.0;
+                    (x.0, c.0) = with_large(&angles);
                 }
                 return c;
             }
