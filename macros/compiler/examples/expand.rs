@@ -9,7 +9,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Expr, Graph};
-use linkwork_compiler::lower::{Counts, Program, lower};
+use linkwork_compiler::lower::{Counts, Op, Program, lower};
 use linkwork_compiler::mechanics::{
     self, aba, crba, energy, forces, frames, ldl, momentum, regularity, rnea,
 };
@@ -147,6 +147,9 @@ fn counts(input: &Input) -> Result<(), Failure> {
     );
     for f in &output.functions {
         row(&f.name, [&f.program]);
+        if let Some(program) = &f.program.in_lanes {
+            row("  with limbs as lanes", [&**program]);
+        }
     }
     let links = &output.links;
     row("links: placement", links.iter().map(|l| &l.placement));
@@ -171,7 +174,7 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
             div: sum.div + c.div,
             calls: sum.calls + c.calls,
         };
-        instructions += program.instructions.len();
+        instructions += program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..))).count();
     }
     println!(
         "{name:24}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}",

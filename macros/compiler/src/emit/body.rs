@@ -1,10 +1,11 @@
 //! The straight-line body of a generated function. Values with one use are written where they are used; the others are
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
+use super::angles::{Angles, Calls, WIDTH};
 use super::function::{Argument, Function, Shape, Signature};
 use super::matrices;
 use super::scalar::ScalarSpelling;
-use crate::expr::{Function as Elementary, Symbol};
+use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
 use crate::model::Quantity;
 use std::fmt::Write;
@@ -13,68 +14,6 @@ use std::fmt::Write;
 const BLOCK: usize = 200;
 /// Longest expression that is not bound.
 const LINE: usize = 72;
-
-/// Sine and cosine of one angle: the instructions that compute them.
-struct Angle {
-    angle: Operand,
-    sine: Option<usize>,
-    cosine: Option<usize>,
-}
-
-/// The angles that can be evaluated together at the start: arithmetic of the arguments.
-struct Angles {
-    list: Vec<Angle>,
-    /// By instruction: it is one of their sines or cosines.
-    covered: Vec<bool>,
-    /// By instruction: an angle needs it.
-    before: Vec<bool>,
-}
-
-impl Angles {
-    fn find(program: &Program) -> Angles {
-        let n = program.instructions.len();
-        let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
-        let mut plain = vec![false; n];
-        for (k, op) in program.instructions.iter().enumerate() {
-            let mut all = true;
-            op.operands(|o| all &= !matches!(o, Operand::Value(j) if !plain[j]));
-            plain[k] = all && !matches!(op, Op::Call(..) | Op::Atan2(..) | Op::Pow(..));
-            if let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = *op
-                && all
-            {
-                angles.covered[k] = true;
-                angles.add(f, angle, k);
-            }
-        }
-        for angle in &angles.list {
-            if let Operand::Value(j) = angle.angle {
-                angles.before[j] = true;
-            }
-        }
-        for k in (0..n).rev().filter(|k| plain[*k]) {
-            if angles.before[k] {
-                program.instructions[k].operands(|o| {
-                    if let Operand::Value(j) = o {
-                        angles.before[j] = true;
-                    }
-                });
-            }
-        }
-        angles
-    }
-
-    fn add(&mut self, f: Elementary, angle: Operand, k: usize) {
-        let known = self.list.iter().position(|a| a.angle == angle);
-        let at = known.unwrap_or_else(|| {
-            self.list.push(Angle { angle, sine: None, cosine: None });
-            self.list.len() - 1
-        });
-        match f {
-            Elementary::Sin => self.list[at].sine = Some(k),
-            _ => self.list[at].cosine = Some(k),
-        }
-    }
-}
 
 /// A binding, or an output without a name.
 struct Statement {
@@ -99,6 +38,8 @@ struct Piece {
 
 struct Writer<'a> {
     program: &'a Program,
+    /// By value: how many lanes it has, one for none.
+    lanes: Vec<usize>,
     scalar: &'a ScalarSpelling,
     arguments: &'a [Argument],
     statements: Vec<Statement>,
@@ -106,25 +47,47 @@ struct Writer<'a> {
     pieces: Vec<Option<Piece>>,
     /// Functions of the runtime that are called.
     helpers: Vec<&'static str>,
+    /// How many statements end with the angles, and the arguments that these need.
+    head: usize,
+    early: Vec<Argument>,
 }
 
 /// Writes everything between the braces.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
+    // Several states fill the lanes by themselves.
+    let in_lanes = f.program.in_lanes.as_deref().filter(|_| !s.scalar.is_in_lanes());
+    let program = in_lanes.unwrap_or(&f.program);
     let mut w = Writer {
-        program: &f.program,
+        program,
+        lanes: program.lanes(),
         scalar: s.scalar,
         arguments: &f.arguments,
         statements: Vec::new(),
-        pieces: vec![None; f.program.instructions.len()],
+        pieces: vec![None; program.instructions.len()],
         helpers: Vec::new(),
+        head: 0,
+        early: Vec::new(),
     };
     w.write_instructions();
-    let outputs: Vec<Piece> = f.program.outputs.iter().map(|o| w.operand(*o)).collect();
+    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand(*o)).collect();
     for helper in s.scalar.helpers() {
         w.helper(helper);
     }
-    write_prelude(out, f, s, &w);
-    write_statements(out, &w.statements, &outputs);
+    if !program.gathers.is_empty() {
+        w.helper("Lanes");
+    }
+    if !w.helpers.is_empty() {
+        let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", w.helpers.join(", "));
+    }
+    // What the angles do not need is read when they are done: it would wait in memory, not in registers.
+    let head = if w.head <= BLOCK { w.head } else { 0 };
+    let (early, late): (Vec<Argument>, Vec<Argument>) =
+        f.arguments.iter().partition(|a| head == 0 || w.early.contains(a));
+    write_prepared_numbers(out, program, s.prepared);
+    write_inputs(out, &early, s, &w);
+    w.statements[..head].iter().for_each(|statement| write_let(out, statement));
+    write_inputs(out, &late, s, &w);
+    write_statements(out, &w.statements[head..], &outputs);
     write_result(out, f.shape, &outputs, s);
 }
 
@@ -144,6 +107,10 @@ impl Writer<'_> {
             }
         }
         self.write_angles(&angles);
+        if !angles.list.is_empty() {
+            self.head = self.statements.len();
+            self.early = self.arguments_of(&angles);
+        }
         for k in 0..self.program.instructions.len() {
             if !angles.before[k] && !angles.covered[k] {
                 self.write_instruction(k);
@@ -152,56 +119,111 @@ impl Writer<'_> {
     }
 
     fn write_instruction(&mut self, k: usize) {
-        let piece = self.instruction(self.program.instructions[k]);
+        let piece = self.instruction(self.program.instructions[k], self.lanes[k]);
         if self.program.uses[k] == 1 && piece.text.len() <= LINE {
             self.pieces[k] = Some(piece);
         } else {
-            self.statements.push(Statement {
-                names: vec![k],
-                pattern: format!("t{k}"),
-                text: piece.text,
-                needs: piece.needs,
-            });
+            self.bind(k, piece);
         }
     }
 
-    /// One call for the sines and cosines of all angles, padded to the width of vector registers.
-    fn write_angles(&mut self, angles: &Angles) {
-        let name = |k: &Option<usize>| k.map_or("_".to_string(), |k| format!("t{k}"));
-        let mut needs = Vec::new();
-        let mut arguments = Vec::new();
-        for angle in &angles.list {
-            let piece = self.operand(angle.angle);
-            needs.extend(piece.needs);
-            arguments.push(piece.text);
-        }
-        let mut sines: Vec<String> = angles.list.iter().map(|a| name(&a.sine)).collect();
-        let mut cosines: Vec<String> = angles.list.iter().map(|a| name(&a.cosine)).collect();
-        let names = angles.list.iter().flat_map(|a| [a.sine, a.cosine]).flatten().collect();
-        let (pattern, text) = match arguments.as_slice() {
-            [] => return,
-            [one] => {
-                let helper = self.helper("sin_cos");
-                (format!("({}, {})", sines[0], cosines[0]), format!("{helper}({one})"))
-            }
-            _ => {
-                // Lanes fill the registers by themselves.
-                let width = match arguments.len() {
-                    _ if self.scalar.is_in_lanes() => 1,
-                    0..=4 => 4,
-                    _ => 8,
-                };
-                while arguments.len() % width != 0 {
-                    arguments.push(self.constant(0.0));
-                    sines.push("_".to_string());
-                    cosines.push("_".to_string());
-                }
-                let helper = self.helper("sin_cos_all");
-                let pattern = format!("([{}], [{}])", sines.join(", "), cosines.join(", "));
-                (pattern, format!("{helper}([{}])", arguments.join(", ")))
-            }
+    fn bind(&mut self, k: usize, piece: Piece) {
+        self.statements.push(Statement {
+            names: vec![k],
+            pattern: format!("t{k}"),
+            text: piece.text,
+            needs: piece.needs,
+        });
+    }
+
+    /// The arguments that angles depend on.
+    fn arguments_of(&self, angles: &Angles) -> Vec<Argument> {
+        let mut symbols = Vec::new();
+        let mut note = |o: Operand| match o {
+            Operand::Symbol(s) => symbols.push(s),
+            Operand::Gather(k) => symbols.extend(&self.program.gathers[k]),
+            _ => {}
         };
-        self.statements.push(Statement { names, pattern, text, needs });
+        angles.list.iter().for_each(|angle| note(angle.angle));
+        for (op, before) in self.program.instructions.iter().zip(&angles.before) {
+            if *before {
+                op.operands(&mut note);
+            }
+        }
+        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+        self.arguments.iter().copied().filter(is_needed).collect()
+    }
+
+    /// The sines and cosines of all angles.
+    fn write_angles(&mut self, angles: &Angles) {
+        let mut calls = Calls::new(!self.program.gathers.is_empty(), !self.scalar.is_in_lanes());
+        let mut needs = Vec::new();
+        for angle in angles.widest_first(|o| self.width(o)) {
+            let texts = self.angle(angle.angle, &mut needs);
+            calls.add(angle, texts, self.width(angle.angle) == WIDTH);
+        }
+        if calls.names.is_empty() {
+            return;
+        }
+        self.helper(calls.helper());
+        let (names, text) = calls.text(&self.constant(0.0));
+        let list: Vec<String> = names.iter().map(|k| format!("t{k}")).collect();
+        self.statements.push(Statement { pattern: format!("({},)", list.join(", ")), names, text, needs });
+    }
+
+    /// The texts of an angle's lanes; of four the text of all together.
+    fn angle(&mut self, angle: Operand, needs: &mut Vec<usize>) -> Vec<String> {
+        let lanes = self.width(angle);
+        if let Operand::Gather(g) = angle
+            && lanes != WIDTH
+        {
+            return self.program.gathers[g].iter().map(|s| self.symbol(*s)).collect();
+        }
+        if let Operand::Value(k) = angle
+            && !(lanes == 1 || lanes == WIDTH)
+            && let Some(piece) = self.pieces[k].take()
+        {
+            self.bind(k, piece);
+        }
+        let piece = self.operand(angle);
+        needs.extend(piece.needs);
+        match lanes {
+            1 | WIDTH => vec![piece.text],
+            _ => (0..lanes).map(|k| format!("{}.0[{k}]", piece.text)).collect(),
+        }
+    }
+
+    /// The text of a value from those of its lanes.
+    fn in_lanes(&mut self, lanes: &[String]) -> String {
+        match lanes {
+            [one] => one.clone(),
+            _ => format!("{}([{}])", self.helper("Lanes"), lanes.join(", ")),
+        }
+    }
+
+    fn gathered(&self, gather: &[Symbol]) -> String {
+        let symbols: Vec<String> = gather.iter().map(|s| self.symbol(*s)).collect();
+        format!("Lanes([{}])", symbols.join(", "))
+    }
+
+    fn width(&self, o: Operand) -> usize {
+        match o {
+            Operand::Const(_) | Operand::Symbol(_) => 1,
+            Operand::Value(k) => self.lanes[k],
+            Operand::Tuple(k) => self.program.tuples[k].len(),
+            Operand::Gather(k) => self.program.gathers[k].len(),
+        }
+    }
+
+    /// An operand of an operation on so many lanes.
+    fn widened(&mut self, o: Operand, lanes: usize) -> Piece {
+        let own = self.width(o);
+        let piece = self.operand(o);
+        if own == lanes {
+            return piece;
+        }
+        let helper = self.helper("splat");
+        Piece { text: format!("{helper}::<_, {lanes}>({})", piece.text), needs: piece.needs, level: 3 }
     }
 
     fn operand(&mut self, o: Operand) -> Piece {
@@ -209,6 +231,20 @@ impl Writer<'_> {
         match o {
             Operand::Const(c) => plain(self.constant(c)),
             Operand::Symbol(s) => plain(self.symbol(s)),
+            Operand::Tuple(k) => {
+                let tuple: Vec<String> =
+                    self.program.tuples[k].iter().map(|c| self.scalar.constant(*c)).collect();
+                plain(self.in_lanes(&tuple))
+            }
+            Operand::Gather(k) => {
+                let gather = &self.program.gathers[k];
+                let is_input = |a: &Argument| gather.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+                // Parameters of the lanes are no arguments.
+                plain(match self.arguments.iter().any(is_input) {
+                    true => format!("lanes{k}"),
+                    false => self.gathered(gather),
+                })
+            }
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
@@ -238,40 +274,49 @@ impl Writer<'_> {
             .unwrap_or_else(|| "missing".to_string())
     }
 
-    fn instruction(&mut self, op: Op) -> Piece {
+    /// The text of an instruction whose result has so many lanes.
+    fn instruction(&mut self, op: Op, lanes: usize) -> Piece {
         match op {
             Op::Neg(a) => {
                 let a = self.operand(a);
                 let text = format!("-{}", wrap(&a, 3));
                 Piece { text, needs: a.needs, level: 2 }
             }
-            Op::Add(a, b) => self.infix(a, "+", b, 1, 2),
-            Op::Sub(a, b) => self.infix(a, "-", b, 1, 2),
-            Op::Mul(a, b) => self.infix(a, "*", b, 2, 3),
-            Op::Div(a, b) => self.infix(a, "/", b, 2, 3),
-            Op::MulAdd(a, b, c) => self.call("mul_add", &[a, b, c]),
-            Op::MulSub(a, b, c) => self.call("mul_sub", &[a, b, c]),
-            Op::NegMulAdd(a, b, c) => self.call("neg_mul_add", &[a, b, c]),
-            Op::Call(f, a) => self.call(f.name(), &[a]),
-            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
-            Op::Pow(a, b) => self.call("powf", &[a, b]),
+            Op::Add(a, b) => self.infix([a, b], "+", lanes, (1, 2)),
+            Op::Sub(a, b) => self.infix([a, b], "-", lanes, (1, 2)),
+            Op::Mul(a, b) => self.infix([a, b], "*", lanes, (2, 3)),
+            Op::Div(a, b) => self.infix([a, b], "/", lanes, (2, 3)),
+            Op::MulAdd(a, b, c) => self.call("mul_add", &[a, b, c], lanes),
+            Op::MulSub(a, b, c) => self.call("mul_sub", &[a, b, c], lanes),
+            Op::NegMulAdd(a, b, c) => self.call("neg_mul_add", &[a, b, c], lanes),
+            Op::Call(f, a) => self.call(f.name(), &[a], lanes),
+            Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
+            Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
+            Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
+            Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
+            Op::Lane(k, a) => self.suffix(a, &format!(".0[{k}]")),
         }
     }
 
-    fn infix(&mut self, a: Operand, op: &str, b: Operand, level: u8, right: u8) -> Piece {
-        let (a, b) = (self.operand(a), self.operand(b));
+    fn suffix(&mut self, a: Operand, suffix: &str) -> Piece {
+        let a = self.operand(a);
+        Piece { text: format!("{}{suffix}", wrap(&a, 3)), needs: a.needs, level: 3 }
+    }
+
+    fn infix(&mut self, [a, b]: [Operand; 2], op: &str, lanes: usize, (level, right): (u8, u8)) -> Piece {
+        let (a, b) = (self.widened(a, lanes), self.widened(b, lanes));
         let text = format!("{} {op} {}", wrap(&a, level), wrap(&b, right));
         let mut needs = a.needs;
         needs.extend(b.needs);
         Piece { text, needs, level }
     }
 
-    fn call(&mut self, helper: &'static str, arguments: &[Operand]) -> Piece {
+    fn call(&mut self, helper: &'static str, arguments: &[Operand], lanes: usize) -> Piece {
         let helper = self.helper(helper);
         let mut needs = Vec::new();
         let mut list = Vec::new();
         for argument in arguments {
-            let piece = self.operand(*argument);
+            let piece = self.widened(*argument, lanes);
             needs.extend(piece.needs);
             list.push(piece.text);
         }
@@ -305,13 +350,9 @@ fn write_prepared_numbers(out: &mut String, program: &Program, count: usize) {
     }
 }
 
-/// Imports and the numbers of the arguments.
-fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'_>) {
-    if !w.helpers.is_empty() {
-        let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", w.helpers.join(", "));
-    }
-    write_prepared_numbers(out, &f.program, s.prepared);
-    for argument in &f.arguments {
+/// The numbers of arguments, and those of them that are lanes.
+fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
+    for argument in arguments {
         let (n, given) = match argument {
             Argument::T => continue,
             Argument::Q => (s.nq, false),
@@ -331,6 +372,11 @@ fn write_prelude(out: &mut String, f: &Function, s: &Signature<'_>, w: &Writer<'
         } else {
             writeln!(out, "let [[{list}]] = {name}.data.0;")
         };
+        for (k, gather) in w.program.gathers.iter().enumerate() {
+            if gather.iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
+                let _ = writeln!(out, "let lanes{k} = {};", w.gathered(gather));
+            }
+        }
     }
 }
 

@@ -2,6 +2,9 @@
 
 use super::function::Function;
 use super::item::{Interface, Output};
+use crate::expr::Symbol;
+use crate::lower::Program;
+use crate::model::Quantity;
 use std::fmt::Write;
 
 /// Paragraphs for the struct's rustdoc.
@@ -35,6 +38,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
             writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
     }
     text.push_str(&operations(&output.functions));
+    lanes(&mut text, interface, output);
     text
 }
 
@@ -56,6 +60,10 @@ pub fn operations(functions: &[Function]) -> String {
                 c.calls
             );
         }
+        if let Some(program) = &f.program.in_lanes {
+            let c = program.counts;
+            let _ = writeln!(text, "| the same in lanes | {} | {} | {} | {} |", c.mul, c.add, c.div, c.calls);
+        }
     }
     text
 }
@@ -75,6 +83,33 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     );
     list(text, "On configurations", &c.names[..c.holonomic]);
     list(text, "On velocities alone", &c.names[c.holonomic..]);
+}
+
+/// Which functions evaluate alike limbs as the lanes of vectors, and which coordinates those are.
+fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
+    let in_lanes: Vec<(&str, &Program)> = output
+        .functions
+        .iter()
+        .filter_map(|f| Some((f.name.as_str(), f.program.in_lanes.as_deref()?)))
+        .collect();
+    let Some((_, first)) = in_lanes.first() else { return };
+    let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let _ = writeln!(
+        text,
+        "\n# Limbs as lanes\n\nAlike limbs are evaluated side by side, as the lanes of vectors, by {}. Operations on all lanes count once. The coordinates that go together:\n",
+        names.join(", ")
+    );
+    for gather in &first.gathers {
+        let name = |s: &Symbol| match Quantity::of(*s) {
+            Quantity::Configuration(k) => i.configuration.get(k).map(|name| format!("`{name}`")),
+            _ => None,
+        };
+        let mut names: Vec<String> = gather.iter().filter_map(name).collect();
+        names.dedup();
+        if !names.is_empty() {
+            let _ = writeln!(text, "- {}", names.join(", "));
+        }
+    }
 }
 
 /// The unit of everything that has a name.

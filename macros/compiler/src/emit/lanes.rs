@@ -25,7 +25,11 @@ pub fn write_methods(
         _ => !f.docs.is_empty() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
-        let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, bit for bit.", f.name)];
+        let exact = match f.program.in_lanes {
+            None => "bit for bit",
+            Some(_) => "up to rounding: for a single state the lanes are alike limbs",
+        };
+        let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let twin = Function {
             name: f.name.clone(),
             docs: if f.docs.is_empty() { Vec::new() } else { docs },

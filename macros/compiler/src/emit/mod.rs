@@ -1,6 +1,7 @@
 //! Lowered programs → Rust: the struct without its elements, the generated functions with their documentation, and the
 //! implementation of the trait. Emission never simplifies.
 
+mod angles;
 mod body;
 mod constants;
 mod constraints;

@@ -58,7 +58,10 @@ impl<'g> Derivative<'g> {
         let at = |id: Id| self.graph.expr(id);
         let d = |id: Id| self.derived(id);
         match self.graph.node(id) {
-            Node::Const(_) => self.graph.zero(),
+            // Derivatives are taken before the inputs of lanes are gathered.
+            Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),
+            Node::Sum(n, a) => d(a).lane_sum(n.into()),
+            Node::Lane(k, a) => d(a).lane(k.into()),
             Node::Symbol(s) => self
                 .rates
                 .iter()

@@ -1,6 +1,7 @@
 //! Evaluation of expressions with numbers: the oracle of the tests and of the checks of a model.
 
-use super::graph::Expr;
+use super::graph::{Expr, Graph};
+use super::lanes::MOST;
 use super::node::{Node, Symbol};
 
 /// The values of several expressions of one graph, given the value of every symbol.
@@ -16,13 +17,40 @@ pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
     for id in (0..nodes.len()).rev().filter(|id| needed[*id]).collect::<Vec<_>>() {
         mark(&nodes, id, &mut needed);
     }
-    let mut values = vec![0.0_f64; nodes.len()];
-    for id in 0..nodes.len() {
-        if needed[id] {
-            values[id] = step(nodes[id], &values, symbol);
-        }
+    let graph = first.graph();
+    let all = |id: &usize| needed[*id];
+    let is_lane =
+        |id: usize| matches!(nodes[id], Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..));
+    match (0..nodes.len()).filter(all).any(is_lane) {
+        true => values::<MOST>(graph, &nodes, &needed, symbol, roots),
+        false => values::<1>(graph, &nodes, &needed, symbol, roots),
     }
-    roots.iter().map(|r| values[r.id() as usize]).collect()
+}
+
+/// The values of `roots` (their first lanes), all needed nodes computed in so many lanes.
+fn values<const N: usize>(
+    graph: &Graph,
+    nodes: &[Node],
+    needed: &[bool],
+    symbol: &dyn Fn(Symbol) -> f64,
+    roots: &[Expr<'_>],
+) -> Vec<f64> {
+    let mut values = vec![[0.0_f64; N]; nodes.len()];
+    for id in (0..nodes.len()).filter(|id| needed[*id]) {
+        let at = |a: u32| &values[a as usize];
+        values[id] = match nodes[id] {
+            Node::Tuple(k) => padded(&graph.tuple(k)),
+            Node::Gather(k) => padded(&graph.gather(k).into_iter().map(symbol).collect::<Vec<_>>()),
+            Node::Sum(n, a) => [at(a)[..usize::from(n)].iter().sum(); N],
+            Node::Lane(k, a) => [at(a)[usize::from(k)]; N],
+            node => std::array::from_fn(|lane| step(node, &|a| at(a)[lane], symbol)),
+        };
+    }
+    roots.iter().map(|r| values[r.id() as usize][0]).collect()
+}
+
+fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
+    std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN))
 }
 
 /// The value of one expression.
@@ -42,8 +70,7 @@ fn mark(nodes: &[Node], root: usize, needed: &mut [bool]) {
     }
 }
 
-fn step(node: Node, values: &[f64], symbol: &dyn Fn(Symbol) -> f64) -> f64 {
-    let at = |id: u32| values[id as usize];
+fn step(node: Node, at: &dyn Fn(u32) -> f64, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
     match node {
         Node::Const(c) => c,
         Node::Symbol(s) => symbol(s),
@@ -55,5 +82,6 @@ fn step(node: Node, values: &[f64], symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         Node::Call(f, a) => f.apply(at(a)),
         Node::Atan2(a, b) => at(a).atan2(at(b)),
         Node::Pow(a, b) => at(a).powf(at(b)),
+        Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) => f64::NAN,
     }
 }

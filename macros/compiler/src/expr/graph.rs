@@ -4,8 +4,9 @@
 //! products, quotients, differences and odd functions, and absorbed by sums, so that `a − b` and `b − a` share one
 //! node; the operands of commutative operations stand in order of their ids; constants that meet
 //! in a product or in a sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since
-//! `2 x` may be used again.
+//! `2 x` may be used again. A constant of each lane counts as a constant.
 
+use super::lanes::Tables;
 use super::node::{Function, Id, Node, Symbol};
 use std::cell::{RefCell, RefMut};
 use std::fmt;
@@ -61,6 +62,8 @@ pub struct Graph {
     store: RefCell<Store>,
     /// A number for every node, zero between uses.
     table: RefCell<Vec<u32>>,
+    /// What the lanes of nodes hold.
+    pub(super) lanes: RefCell<Tables>,
 }
 
 impl Default for Graph {
@@ -94,7 +97,7 @@ impl fmt::Debug for Expr<'_> {
     }
 }
 
-const ZERO: Id = 0;
+pub(super) const ZERO: Id = 0;
 const ONE: Id = 1;
 
 impl Graph {
@@ -103,7 +106,7 @@ impl Graph {
         let mut store = Store { nodes: Vec::new(), table: vec![EMPTY; 1024] };
         store.intern(Node::Const(0.0));
         store.intern(Node::Const(1.0));
-        Graph { store: RefCell::new(store), table: RefCell::new(Vec::new()) }
+        Graph { store: RefCell::new(store), table: RefCell::default(), lanes: RefCell::default() }
     }
 
     /// Number of nodes made so far.
@@ -158,11 +161,11 @@ impl Graph {
         self.expr(self.intern(Node::Symbol(symbol)))
     }
 
-    fn intern(&self, node: Node) -> Id {
+    pub(super) fn intern(&self, node: Node) -> Id {
         self.store.borrow_mut().intern(node)
     }
 
-    fn constant(&self, value: f64) -> Id {
+    pub(super) fn constant(&self, value: f64) -> Id {
         // Minus zero is zero: the sign of zero carries no meaning here.
         self.intern(Node::Const(if value == 0.0 { 0.0 } else { value }))
     }
@@ -174,22 +177,38 @@ impl Graph {
         }
     }
 
+    /// True for a constant, of all lanes or of each.
+    pub(super) fn is_constant(&self, id: Id) -> bool {
+        matches!(self.node(id), Node::Const(_) | Node::Tuple(_))
+    }
+
+    /// `f` of two constants; `None` if one is not.
+    fn fold(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
+        match (self.node(a), self.node(b)) {
+            (Node::Const(x), Node::Const(y)) => Some(self.constant(f(x, y))),
+            (Node::Const(_) | Node::Tuple(_), Node::Const(_) | Node::Tuple(_)) => self.fold_lanes(a, b, f),
+            _ => None,
+        }
+    }
+
     /// `±a` without its sign: the sign is kept apart so that it can be lifted.
-    fn unsigned(&self, id: Id) -> (bool, Id) {
+    pub(super) fn unsigned(&self, id: Id) -> (bool, Id) {
         match self.node(id) {
             Node::Neg(a) => (true, a),
             Node::Const(c) if c < 0.0 => (true, self.constant(-c)),
+            Node::Tuple(k) if self.starts_negative(k) => (true, self.neg(id)),
             _ => (false, id),
         }
     }
 
-    fn signed(&self, negative: bool, id: Id) -> Id {
+    pub(super) fn signed(&self, negative: bool, id: Id) -> Id {
         if negative { self.neg(id) } else { id }
     }
 
     fn neg(&self, a: Id) -> Id {
         match self.node(a) {
             Node::Const(c) => self.constant(-c),
+            Node::Tuple(_) => self.map_lanes(a, |x| -x),
             Node::Neg(a) => a,
             _ => self.intern(Node::Neg(a)),
         }
@@ -202,8 +221,8 @@ impl Graph {
         if b == ZERO {
             return a;
         }
-        if let (Some(x), Some(y)) = (self.value(a), self.value(b)) {
-            return self.constant(x + y);
+        if let Some(sum) = self.fold(a, b, |x, y| x + y) {
+            return sum;
         }
         if let Some(sum) = self.constant_sum(a, b).or_else(|| self.constant_sum(b, a)) {
             return sum;
@@ -218,25 +237,20 @@ impl Graph {
     }
 
     /// The sum of a constant and a sum or difference with another constant.
-    fn constant_sum(&self, a: Id, b: Id) -> Option<Id> {
-        let c = self.value(a)?;
+    fn constant_sum(&self, c: Id, b: Id) -> Option<Id> {
+        if !self.is_constant(c) {
+            return None;
+        }
         let (negative, b) = self.unsigned(b);
-        let sign = if negative { -1.0 } else { 1.0 };
-        let (d, rest, rest_negative) = match self.node(b) {
-            Node::Add(x, y) => match (self.value(x), self.value(y)) {
-                (Some(d), None) => (d, y, false),
-                (None, Some(d)) => (d, x, false),
-                _ => return None,
-            },
-            Node::Sub(x, y) => match (self.value(x), self.value(y)) {
-                (Some(d), None) => (d, y, true),
-                (None, Some(d)) => (-d, x, false),
-                _ => return None,
-            },
+        let (Node::Add(x, y) | Node::Sub(x, y)) = self.node(b) else { return None };
+        let difference = matches!(self.node(b), Node::Sub(..));
+        let (d, d_negative, rest, rest_negative) = match (self.is_constant(x), self.is_constant(y)) {
+            (true, false) => (x, false, y, difference),
+            (false, true) => (y, difference, x, false),
             _ => return None,
         };
-        let rest = self.signed(negative != rest_negative, rest);
-        Some(self.add(self.constant(c + sign * d), rest))
+        let sum = self.add(c, self.signed(negative != d_negative, d));
+        Some(self.add(sum, self.signed(negative != rest_negative, rest)))
     }
 
     fn plain_sum(&self, a: Id, b: Id) -> Id {
@@ -298,37 +312,41 @@ impl Graph {
 
     /// The product of two operands without signs.
     fn plain_product(&self, a: Id, b: Id) -> Id {
-        match (self.value(a), self.value(b)) {
-            (Some(x), Some(y)) => self.constant(x * y),
-            (Some(x), None) => self.scaled(x, a, b),
-            (None, Some(y)) => self.scaled(y, b, a),
-            (None, None) => self.variable_product(a, b),
+        if let Some(product) = self.fold(a, b, |x, y| x * y) {
+            return product;
+        }
+        match (self.is_constant(a), self.is_constant(b)) {
+            (true, _) => self.scaled(a, b),
+            (_, true) => self.scaled(b, a),
+            _ => self.variable_product(a, b),
         }
     }
 
-    /// A constant (its value and id, positive) times something that is not constant.
-    fn scaled(&self, c: f64, c_id: Id, b: Id) -> Id {
-        if c == 1.0 {
+    /// A constant without sign times something that is not constant.
+    fn scaled(&self, c: Id, b: Id) -> Id {
+        if c == ONE {
             return b;
         }
         match self.node(b) {
             Node::Mul(x, y) => {
-                if let Some(d) = self.value(x) {
-                    return self.mul(self.constant(c * d), y);
+                if let Some(product) = self.fold(c, x, |c, d| c * d) {
+                    return self.mul(product, y);
                 }
             }
             Node::Div(x, y) => {
                 // Another division would cost more than a product with an inverse that is shared.
-                if let Some(d) = self.value(x).filter(|d| *d != 1.0) {
-                    return self.intern(Node::Div(self.constant(c * d), y));
+                if x != ONE
+                    && let Some(product) = self.fold(c, x, |c, d| c * d)
+                {
+                    return self.intern(Node::Div(product, y));
                 }
-                if let Some(d) = self.value(y) {
-                    return self.mul(self.constant(c / d), x);
+                if let Some(quotient) = self.fold(c, y, |c, d| c / d) {
+                    return self.mul(quotient, x);
                 }
             }
             _ => {}
         }
-        self.intern(Node::Mul(c_id, b))
+        self.intern(Node::Mul(c, b))
     }
 
     fn variable_product(&self, a: Id, b: Id) -> Id {
@@ -345,19 +363,33 @@ impl Graph {
         if a == b && b != ZERO {
             return ONE;
         }
-        if let (Some(x), Some(y)) = (self.value(a), self.value(b)) {
-            return self.constant(x / y);
+        if let Some(quotient) = self.fold(a, b, |x, y| x / y) {
+            return quotient;
         }
         let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
-        let magnitude = match self.value(b) {
+        let magnitude = match self.inverse(b) {
             // A division by a constant is a product; exact for powers of two, else within half an ulp.
-            Some(y) if y != 0.0 && (1.0 / y).is_finite() => self.mul(self.constant(1.0 / y), a),
-            _ => self.intern(Node::Div(a, b)),
+            Some(inverse) => self.mul(inverse, a),
+            None => self.intern(Node::Div(a, b)),
         };
         self.signed(na != nb, magnitude)
     }
 
+    /// The inverse of a constant, where it is finite.
+    fn inverse(&self, b: Id) -> Option<Id> {
+        match self.node(b) {
+            Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.constant(1.0 / y)),
+            Node::Tuple(_) => self.finite_lanes(b, |y| 1.0 / y),
+            _ => None,
+        }
+    }
+
     fn call(&self, f: Function, a: Id) -> Id {
+        if let Node::Tuple(_) = self.node(a)
+            && let Some(result) = self.finite_lanes(a, |x| f.apply(x))
+        {
+            return result;
+        }
         if let Some(x) = self.value(a) {
             let y = f.apply(x);
             if y.is_finite() {
@@ -403,8 +435,8 @@ impl<'g> Expr<'g> {
     pub fn is_multiple(self) -> bool {
         let (_, id) = self.graph.unsigned(self.id);
         match self.graph.node(id) {
-            Node::Mul(a, _) => self.graph.value(a).is_some(),
-            node => matches!(node, Node::Const(_)),
+            Node::Mul(a, _) => self.graph.is_constant(a),
+            node => matches!(node, Node::Const(_) | Node::Tuple(_)),
         }
     }
 

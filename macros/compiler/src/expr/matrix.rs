@@ -220,6 +220,11 @@ impl<'g> Sym3<'g> {
         Sym3 { diagonal: [m[0][0], m[1][1], m[2][2]], off: [m[0][1], m[0][2], m[1][2]] }
     }
 
+    /// All entries with a function applied.
+    pub fn map(self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Sym3<'g> {
+        Sym3 { diagonal: self.diagonal.map(&mut f), off: self.off.map(f) }
+    }
+
     /// Entry (i, j).
     pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
         if i == j { self.diagonal[i] } else { self.off[i + j - 1] }

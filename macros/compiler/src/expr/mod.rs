@@ -5,6 +5,7 @@ pub mod diff;
 pub mod eval;
 pub mod factor;
 pub mod graph;
+pub mod lanes;
 pub mod matrix;
 pub mod node;
 pub mod normal;

@@ -104,14 +104,22 @@ pub enum Node {
     Atan2(Id, Id),
     /// `a` to the power `b`.
     Pow(Id, Id),
+    /// A constant of each lane: an index of the graph's tuples.
+    Tuple(u32),
+    /// An input of each lane: an index of the graph's gathers.
+    Gather(u32),
+    /// The sum of so many lanes of `a`.
+    Sum(u8, Id),
+    /// One lane of `a`.
+    Lane(u8, Id),
 }
 
 impl Node {
     /// Calls `f` with every operand.
     pub fn operands(self, mut f: impl FnMut(Id)) {
         match self {
-            Node::Const(_) | Node::Symbol(_) => {}
-            Node::Neg(a) | Node::Call(_, a) => f(a),
+            Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => {}
+            Node::Neg(a) | Node::Call(_, a) | Node::Sum(_, a) | Node::Lane(_, a) => f(a),
             Node::Add(a, b)
             | Node::Sub(a, b)
             | Node::Mul(a, b)
@@ -135,6 +143,10 @@ impl Node {
             Node::Div(a, b) => (7, a.into(), b.into()),
             Node::Atan2(a, b) => (8, a.into(), b.into()),
             Node::Pow(a, b) => (9, a.into(), b.into()),
+            Node::Tuple(k) => (32, k.into(), 0),
+            Node::Gather(k) => (33, k.into(), 0),
+            Node::Sum(n, a) => (34, a.into(), n.into()),
+            Node::Lane(k, a) => (35, a.into(), k.into()),
             Node::Call(f, a) => (10 + f as u64, a.into(), 0),
         };
         let mut h = (a ^ tag.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xFF51_AFD7_ED55_8CCD);

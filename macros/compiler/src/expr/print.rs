@@ -30,6 +30,13 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     let (text, own) = match e.node() {
         Node::Const(c) => (format!("{c}"), if c < 0.0 { 1 } else { 4 }),
         Node::Symbol(s) => (name(s), 4),
+        Node::Tuple(k) => (format!("{:?}", e.graph().tuple(k)), 4),
+        Node::Gather(k) => {
+            let names: Vec<String> = e.graph().gather(k).into_iter().map(name).collect();
+            (format!("[{}]", names.join(", ")), 4)
+        }
+        Node::Sum(_, a) => (format!("sum({})", at(a, 0)), 4),
+        Node::Lane(k, a) => (format!("{}[{k}]", at(a, 4)), 4),
         Node::Neg(a) => (format!("-{}", at(a, 2)), 1),
         Node::Add(a, b) => (format!("{} + {}", at(a, 1), at(b, 1)), 1),
         Node::Sub(a, b) => (format!("{} - {}", at(a, 1), at(b, 2)), 1),

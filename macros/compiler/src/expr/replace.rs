@@ -50,7 +50,9 @@ fn rebuilt<'g>(
 ) -> Expr<'g> {
     let at = |a: Id| graph.expr(known[a as usize].unwrap_or(a));
     match graph.node(id) {
-        Node::Const(_) => graph.expr(id),
+        Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
+        Node::Sum(n, a) => at(a).lane_sum(n.into()),
+        Node::Lane(k, a) => at(a).lane(k.into()),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
         Node::Neg(a) => -at(a),
         Node::Add(a, b) => at(a) + at(b),

@@ -133,6 +133,37 @@ impl<'g> Rotation<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.apply_mat(x))
     }
 
+    /// Rotations as the lanes of one, given what makes one expression of those of the lanes. `None` if it cannot.
+    pub fn side_by_side(
+        lanes: &[&Rotation<'g>],
+        merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
+    ) -> Option<Rotation<'g>> {
+        let first = lanes.first()?;
+        let mut rotation = Rotation::identity(first.graph);
+        // As many steps as are of one kind in all lanes, from the last; what is before them becomes one matrix.
+        let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
+        let alike = |k: &usize| {
+            let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.kind()));
+            let mut kinds = all.collect::<Vec<_>>();
+            kinds.dedup();
+            kinds.len() == 1 && kinds[0].is_some()
+        };
+        let common = (0..first.steps.len()).take_while(alike).count();
+        let rest = |r: &Rotation<'g>| {
+            let steps = r.steps[..r.steps.len() - common].to_vec();
+            Rotation { steps, graph: r.graph }
+        };
+        if lanes.iter().any(|r| r.steps.len() > common) {
+            let matrices: Vec<Mat3<'g>> = lanes.iter().map(|r| rest(r).matrix()).collect();
+            rotation.steps.push(Step::Matrix(merged_matrix(&matrices, merge)?));
+        }
+        for k in (0..common).rev() {
+            let steps: Vec<Step<'g>> = lanes.iter().filter_map(|r| from_end(r, k)).collect();
+            rotation.steps.push(Step::side_by_side(&steps, merge)?);
+        }
+        Some(rotation)
+    }
+
     /// The whole matrix: columns are the child's axes in the parent's frame.
     pub fn matrix(&self) -> Mat3<'g> {
         let columns: [Vec3<'g>; 3] = std::array::from_fn(|k| self.to_parent(Vec3::axis(self.graph, k)));
@@ -146,6 +177,19 @@ fn without_rounding(e: Expr<'_>) -> Expr<'_> {
         Some(x) if x.abs() <= 4.0 * f64::EPSILON => e.zero(),
         _ => e,
     }
+}
+
+fn merged_matrix<'g>(
+    lanes: &[Mat3<'g>],
+    merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
+) -> Option<Mat3<'g>> {
+    let mut matrix = *lanes.first()?;
+    for i in 0..3 {
+        for j in 0..3 {
+            matrix.0[i][j] = merge(&lanes.iter().map(|m| m.0[i][j]).collect::<Vec<_>>())?;
+        }
+    }
+    Some(matrix)
 }
 
 /// A constant rotation as one by right angles and up to two about coordinate axes, if it has a zero entry.
@@ -212,6 +256,33 @@ impl<'g> Rotation<'g> {
 }
 
 impl<'g> Step<'g> {
+    /// The axis; 3 for a matrix.
+    fn kind(&self) -> usize {
+        match self {
+            Step::Axis { axis, .. } => *axis,
+            Step::Matrix(_) => 3,
+        }
+    }
+
+    /// Steps of one kind as the lanes of one.
+    fn side_by_side(
+        lanes: &[Step<'g>],
+        merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
+    ) -> Option<Step<'g>> {
+        let Step::Axis { axis, .. } = *lanes.first()? else {
+            let matrices: Vec<Mat3<'g>> = lanes.iter().map(Step::matrix).collect();
+            return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
+        };
+        let part = |sine: bool| {
+            let of = |step: &Step<'g>| match *step {
+                Step::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
+                Step::Matrix(_) => None,
+            };
+            lanes.iter().map(of).collect::<Option<Vec<_>>>()
+        };
+        Some(Step::Axis { axis, sin: merge(&part(true)?)?, cos: merge(&part(false)?)? })
+    }
+
     fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         match *self {
             Step::Axis { axis, sin, cos } => {

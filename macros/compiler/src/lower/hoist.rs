@@ -39,9 +39,9 @@ pub(super) fn operand(id: Id) -> Operand {
 /// True for a number that is known before.
 pub(super) fn is_known(o: Operand) -> bool {
     match o {
-        Operand::Const(_) => true,
+        Operand::Const(_) | Operand::Tuple(_) => true,
         Operand::Symbol(s) => hoisted(s).is_some(),
-        Operand::Value(_) => false,
+        Operand::Value(_) | Operand::Gather(_) => false,
     }
 }
 
@@ -50,7 +50,7 @@ pub(super) fn negated(o: Operand) -> Operand {
     match o {
         Operand::Const(c) => Operand::Const(-c),
         Operand::Symbol(Symbol(s)) => Operand::Symbol(Symbol(s ^ MINUS)),
-        Operand::Value(_) => o,
+        Operand::Value(_) | Operand::Tuple(_) | Operand::Gather(_) => o,
     }
 }
 
@@ -63,7 +63,7 @@ pub(super) fn known_before(
     let mut before: Vec<bool> = Vec::with_capacity(nodes.len());
     for node in nodes {
         before.push(match node {
-            Node::Const(_) => false,
+            Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => false,
             Node::Symbol(s) => known(*s),
             _ => {
                 let mut all = true;

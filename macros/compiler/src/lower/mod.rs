@@ -1,10 +1,12 @@
 //! Expressions → a straight-line program: only what the outputs need, in an order in which every value is computed
 //! before it is used, with operations counted. Knows no mechanics.
 
+use crate::expr::lanes::MOST;
 use crate::expr::{Expr, Function, Id, Node, Symbol};
 
 mod fuse;
 mod hoist;
+mod lanes;
 mod signs;
 
 pub use hoist::{hoisted, place_hoisted};
@@ -18,6 +20,10 @@ pub enum Operand {
     Symbol(Symbol),
     /// The result of an earlier instruction.
     Value(usize),
+    /// A constant of each lane: an index of the program's tuples.
+    Tuple(usize),
+    /// An input of each lane: an index of the program's gathers.
+    Gather(usize),
 }
 
 /// What an instruction computes.
@@ -45,13 +51,17 @@ pub enum Op {
     Atan2(Operand, Operand),
     /// `a` to the power `b`
     Pow(Operand, Operand),
+    /// The sum of so many lanes.
+    Sum(usize, Operand),
+    /// One lane.
+    Lane(usize, Operand),
 }
 
 impl Op {
     /// Calls `f` with every operand.
     pub fn operands(&self, mut f: impl FnMut(Operand)) {
         match *self {
-            Op::Neg(a) | Op::Call(_, a) => f(a),
+            Op::Neg(a) | Op::Call(_, a) | Op::Sum(_, a) | Op::Lane(_, a) => f(a),
             Op::Add(a, b)
             | Op::Sub(a, b)
             | Op::Mul(a, b)
@@ -79,8 +89,14 @@ pub struct Program {
     pub uses: Vec<u32>,
     /// The results.
     pub outputs: Vec<Operand>,
-    /// Operations before fusing.
+    /// Operations before fusing; one on all lanes of a value counts once.
     pub counts: Counts,
+    /// Constants of lanes.
+    pub tuples: Vec<Vec<f64>>,
+    /// Inputs of lanes.
+    pub gathers: Vec<Vec<Symbol>>,
+    /// The same with alike limbs side by side as lanes, where that is cheaper.
+    pub in_lanes: Option<Box<Program>>,
 }
 
 /// Operations of a program: one for every arithmetic instruction, a negation counted as an addition.
@@ -131,6 +147,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     }
     let mut program = Program::default();
     let mut values: Vec<Operand> = Vec::with_capacity(order.len());
+    let mut lanes = lanes::Lanes::default();
     for (k, node) in nodes.iter().enumerate() {
         let at = |a: Id| values[place(a)];
         if before[k] {
@@ -140,15 +157,14 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
             });
             continue;
         }
+        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &at) {
+            values.push(leaf);
+            continue;
+        }
         let op = match *node {
-            Node::Const(c) => {
-                values.push(Operand::Const(c));
-                continue;
-            }
-            Node::Symbol(s) => {
-                values.push(Operand::Symbol(s));
-                continue;
-            }
+            Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => continue,
+            Node::Sum(n, a) => lanes.sum(n.into(), at(a)),
+            Node::Lane(k, a) => Op::Lane(k.into(), at(a)),
             Node::Neg(a) => match nodes[place(a)] {
                 // −(a − b) is b − a where nothing else wants a − b.
                 Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(at(y), at(x)),
@@ -163,6 +179,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
             Node::Pow(a, b) => Op::Pow(at(a), at(b)),
         };
         values.push(Operand::Value(program.instructions.len()));
+        lanes.push(&op);
         program.instructions.push(op);
     }
     program.outputs = outputs.iter().map(|o| values[place(o.id())]).collect();
@@ -209,6 +226,7 @@ impl Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
         self.sweep();
         self.counts = self.count();
+        self.in_lanes = self.in_lanes.map(|program| Box::new(program.with_outputs(chosen)));
         self
     }
 
@@ -260,7 +278,7 @@ impl Program {
         let mut counts = Counts::default();
         for op in &self.instructions {
             match op {
-                Op::Neg(_) | Op::Add(..) | Op::Sub(..) => counts.add += 1,
+                Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Sum(..) => counts.add += 1,
                 Op::Mul(..) => counts.mul += 1,
                 Op::Div(..) => counts.div += 1,
                 Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => {
@@ -268,6 +286,7 @@ impl Program {
                     counts.add += 1;
                 }
                 Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => counts.calls += 1,
+                Op::Lane(..) => {}
             }
         }
         counts
@@ -281,39 +300,62 @@ impl Program {
             op.operands(&mut check);
         }
         self.outputs.iter().for_each(|o| check(*o));
-        finite
+        finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
     /// The values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        let mut values: Vec<f64> = Vec::with_capacity(self.instructions.len());
-        let at = |values: &[f64], o: Operand| match o {
-            Operand::Const(c) => c,
-            Operand::Symbol(s) => symbol(s),
+        match self.tuples.is_empty() && self.gathers.is_empty() {
+            true => self.run_lanes::<1>(symbol),
+            false => self.run_lanes::<MOST>(symbol),
+        }
+    }
+
+    fn run_lanes<const N: usize>(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        let each = |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
+        let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
+        let at = |values: &[[f64; N]], o: Operand| match o {
+            Operand::Const(c) => [c; N],
+            Operand::Symbol(s) => [symbol(s); N],
             Operand::Value(k) => values[k],
+            Operand::Tuple(k) => each(self.tuples[k].clone()),
+            Operand::Gather(k) => each(self.gathers[k].iter().map(|s| symbol(*s)).collect()),
         };
         for op in &self.instructions {
-            let get = |o| at(&values, o);
             let result = match *op {
-                Op::Neg(a) => -get(a),
-                Op::Add(a, b) => get(a) + get(b),
-                Op::Sub(a, b) => get(a) - get(b),
-                Op::Mul(a, b) => get(a) * get(b),
-                Op::Div(a, b) => get(a) / get(b),
-                Op::MulAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
-                Op::MulSub(a, b, c) => get(a).mul_add(get(b), -get(c)),
-                Op::NegMulAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
-                Op::Call(f, a) => f.apply(get(a)),
-                Op::Atan2(a, b) => get(a).atan2(get(b)),
-                Op::Pow(a, b) => get(a).powf(get(b)),
+                Op::Sum(n, a) => [at(&values, a)[..n].iter().sum(); N],
+                Op::Lane(k, a) => [at(&values, a)[k]; N],
+                op => {
+                    let mut operands = Vec::with_capacity(3);
+                    op.operands(|o| operands.push(at(&values, o)));
+                    std::array::from_fn(|lane| op.apply(|k| operands[k][lane]))
+                }
             };
             values.push(result);
         }
-        self.outputs.iter().map(|o| at(&values, *o)).collect()
+        self.outputs.iter().map(|o| at(&values, *o)[0]).collect()
     }
 }
 
 impl Op {
+    /// The result in one lane, given the operands by number.
+    fn apply(self, get: impl Fn(usize) -> f64) -> f64 {
+        match self {
+            Op::Neg(_) => -get(0),
+            Op::Add(..) => get(0) + get(1),
+            Op::Sub(..) => get(0) - get(1),
+            Op::Mul(..) => get(0) * get(1),
+            Op::Div(..) => get(0) / get(1),
+            Op::MulAdd(..) => get(0).mul_add(get(1), get(2)),
+            Op::MulSub(..) => get(0).mul_add(get(1), -get(2)),
+            Op::NegMulAdd(..) => (-get(0)).mul_add(get(1), get(2)),
+            Op::Call(f, _) => f.apply(get(0)),
+            Op::Atan2(..) => get(0).atan2(get(1)),
+            Op::Pow(..) => get(0).powf(get(1)),
+            Op::Sum(..) | Op::Lane(..) => get(0),
+        }
+    }
+
     fn renumbered(self, number: &[usize]) -> Op {
         self.mapped(|o| renumber(o, number))
     }
@@ -332,6 +374,8 @@ impl Op {
             Op::Call(f, a) => Op::Call(f, n(a)),
             Op::Atan2(a, b) => Op::Atan2(n(a), n(b)),
             Op::Pow(a, b) => Op::Pow(n(a), n(b)),
+            Op::Sum(count, a) => Op::Sum(count, n(a)),
+            Op::Lane(k, a) => Op::Lane(k, n(a)),
         }
     }
 }

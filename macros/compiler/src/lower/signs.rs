@@ -5,7 +5,7 @@
 //! are free, those of all else follow; what leaves the program must be positive, and costs a negation if not. Starting
 //! from all free signs positive, single signs are changed as long as that saves negations.
 
-use super::hoist::{is_known as is_constant, negated};
+use super::hoist::{self, is_known as is_constant};
 use super::{Op, Operand, Program};
 use crate::expr::Function;
 use std::collections::BTreeSet;
@@ -83,6 +83,7 @@ impl<'a> Signs<'a> {
                 false => self.of(a) != self.of(b),
             },
             Op::Call(f, a) => is_odd(f) && self.of(a),
+            Op::Sum(_, a) => self.of(a),
             _ => false,
         }
     }
@@ -180,13 +181,24 @@ impl<'a> Signs<'a> {
     }
 
     fn rewrite(&self) -> Program {
-        let mut out =
-            Rewrite { signs: self, instructions: Vec::new(), stored: Vec::new(), positive: Vec::new() };
+        let mut out = Rewrite {
+            signs: self,
+            instructions: Vec::new(),
+            tuples: self.program.tuples.clone(),
+            stored: Vec::new(),
+            positive: Vec::new(),
+        };
         for k in 0..self.negative.len() {
             out.add(k);
         }
         let outputs = self.program.outputs.iter().map(|o| out.positive(*o)).collect();
-        let mut program = Program { instructions: out.instructions, outputs, ..Program::default() };
+        let mut program = Program {
+            instructions: out.instructions,
+            outputs,
+            tuples: out.tuples,
+            gathers: self.program.gathers.clone(),
+            ..Program::default()
+        };
         program.sweep();
         program
     }
@@ -195,6 +207,7 @@ impl<'a> Signs<'a> {
 struct Rewrite<'a> {
     signs: &'a Signs<'a>,
     instructions: Vec<Op>,
+    tuples: Vec<Vec<f64>>,
     /// Where each value is stored, with its sign.
     stored: Vec<Operand>,
     /// Where each value is stored positive, if it is.
@@ -244,6 +257,10 @@ impl Rewrite<'_> {
                 let a = self.stored(a);
                 self.push(Op::Call(f, a))
             }
+            Op::Sum(n, a) => {
+                let a = self.stored(a);
+                self.push(Op::Sum(n, a))
+            }
             op => {
                 let op = op.mapped(|o| self.positive(o));
                 self.push(op)
@@ -260,20 +277,33 @@ impl Rewrite<'_> {
             (false, false) => Op::Add(x, y),
             (false, true) => Op::Sub(x, y),
             (true, false) => Op::Sub(y, x),
-            (true, true) => match (x, y) {
-                (x, y) if is_constant(x) => Op::Sub(negated(x), y),
-                (x, y) => Op::Sub(negated(y), x),
-            },
+            (true, true) if is_constant(x) => Op::Sub(self.negated(x), y),
+            (true, true) => Op::Sub(self.negated(y), x),
         };
         self.push(op)
     }
 
-    fn factors(&self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
+    fn factors(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
         let (a, b) = (self.stored(a), self.stored(b));
         match (negate, is_constant(a)) {
             (false, _) => (a, b),
-            (true, true) => (negated(a), b),
-            (true, false) => (a, negated(b)),
+            (true, true) => (self.negated(a), b),
+            (true, false) => (a, self.negated(b)),
+        }
+    }
+
+    /// The negative of a constant.
+    fn negated(&mut self, o: Operand) -> Operand {
+        match o {
+            Operand::Tuple(k) => {
+                let negative: Vec<f64> = self.tuples[k].iter().map(|x| -x).collect();
+                let known = self.tuples.iter().position(|t| *t == negative);
+                Operand::Tuple(known.unwrap_or_else(|| {
+                    self.tuples.push(negative);
+                    self.tuples.len() - 1
+                }))
+            }
+            known => hoist::negated(known),
         }
     }
 }
@@ -281,7 +311,7 @@ impl Rewrite<'_> {
 /// True for operations whose operands may be stored with either sign.
 fn keeps_signs(op: &Op) -> bool {
     match op {
-        Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) => true,
+        Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::Sum(..) => true,
         Op::Call(f, _) => is_odd(*f),
         _ => false,
     }

@@ -1,0 +1,178 @@
+//! Sines and cosines: those of all angles that are known from the start are evaluated by one call, several at a time.
+
+use crate::expr::Function as Elementary;
+use crate::lower::{Op, Operand, Program};
+use std::cmp::Reverse;
+use std::fmt::Write;
+
+/// Lanes of the vectors in which the angles of a program with lanes are evaluated.
+pub const WIDTH: usize = 4;
+
+/// Sine and cosine of one angle: the instructions that compute them.
+pub struct Angle {
+    /// The angle.
+    pub angle: Operand,
+    sine: Option<usize>,
+    cosine: Option<usize>,
+}
+
+/// The angles that can be evaluated together at the start: arithmetic of the arguments.
+pub struct Angles {
+    /// The angles.
+    pub list: Vec<Angle>,
+    /// By instruction: it is one of their sines or cosines.
+    pub covered: Vec<bool>,
+    /// By instruction: an angle needs it.
+    pub before: Vec<bool>,
+}
+
+impl Angles {
+    /// Those of a program.
+    pub fn find(program: &Program) -> Angles {
+        let n = program.instructions.len();
+        let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
+        let mut plain = vec![false; n];
+        for (k, op) in program.instructions.iter().enumerate() {
+            let mut all = true;
+            op.operands(|o| all &= !matches!(o, Operand::Value(j) if !plain[j]));
+            plain[k] = all && !matches!(op, Op::Call(..) | Op::Atan2(..) | Op::Pow(..));
+            if let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = *op
+                && all
+            {
+                angles.covered[k] = true;
+                angles.add(f, angle, k);
+            }
+        }
+        for angle in &angles.list {
+            if let Operand::Value(j) = angle.angle {
+                angles.before[j] = true;
+            }
+        }
+        for k in (0..n).rev().filter(|k| plain[*k]) {
+            if angles.before[k] {
+                program.instructions[k].operands(|o| {
+                    if let Operand::Value(j) = o {
+                        angles.before[j] = true;
+                    }
+                });
+            }
+        }
+        angles
+    }
+
+    fn add(&mut self, f: Elementary, angle: Operand, k: usize) {
+        let known = self.list.iter().position(|a| a.angle == angle);
+        let at = known.unwrap_or_else(|| {
+            self.list.push(Angle { angle, sine: None, cosine: None });
+            self.list.len() - 1
+        });
+        match f {
+            Elementary::Sin => self.list[at].sine = Some(k),
+            _ => self.list[at].cosine = Some(k),
+        }
+    }
+}
+
+impl Angles {
+    /// The angles, those with most lanes first.
+    pub fn widest_first(&self, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
+        let mut list: Vec<&Angle> = self.list.iter().collect();
+        list.sort_by_key(|angle| Reverse(lanes(angle.angle)));
+        list
+    }
+}
+
+/// The calls for sines and cosines as they are written down: one of all numbers, or one of each vector.
+#[derive(Default)]
+pub struct Calls {
+    /// The values that they compute.
+    pub names: Vec<usize>,
+    /// Text of each value.
+    results: Vec<String>,
+    /// Text of each number or vector, and the numbers of what its results are bound to.
+    arguments: Vec<(String, Vec<usize>)>,
+    /// Numbers that wait for a vector to be full.
+    loose: Vec<(String, usize)>,
+    in_vectors: bool,
+    /// A call of numbers is padded to the width of vector registers.
+    padded: bool,
+    bound: usize,
+}
+
+impl Calls {
+    /// Of vectors or of numbers; of these as many as fill registers, if they do not fill some by themselves.
+    pub fn new(in_vectors: bool, padded: bool) -> Calls {
+        Calls { in_vectors, padded, ..Calls::default() }
+    }
+
+    /// Adds an angle by the texts of its lanes, or the text of a whole vector.
+    pub fn add(&mut self, angle: &Angle, texts: Vec<String>, is_vector: bool) {
+        let first = self.bound;
+        self.bound += texts.len();
+        for (value, letter) in [(angle.sine, 's'), (angle.cosine, 'c')] {
+            let Some(value) = value else { continue };
+            self.results.push(bundle(letter, &(first..self.bound).collect::<Vec<_>>()));
+            self.names.push(value);
+        }
+        for (k, text) in texts.into_iter().enumerate() {
+            match is_vector || !self.in_vectors {
+                true => self.arguments.push((text, vec![first])),
+                false => self.push_loose(text, first + k),
+            }
+        }
+    }
+
+    fn push_loose(&mut self, text: String, number: usize) {
+        self.loose.push((text, number));
+        if self.loose.len() == WIDTH {
+            let (texts, numbers): (Vec<String>, Vec<usize>) = self.loose.drain(..).unzip();
+            self.arguments.push((format!("Lanes([{}])", texts.join(", ")), numbers));
+        }
+    }
+
+    /// The function that is called.
+    pub fn helper(&self) -> &'static str {
+        if self.in_vectors || self.bound == 1 { "sin_cos" } else { "sin_cos_all" }
+    }
+
+    /// The text of all values as a tuple.
+    pub fn text(mut self, zero: &str) -> (Vec<usize>, String) {
+        let helper = self.helper();
+        let mut text = String::from("{ ");
+        if helper == "sin_cos" {
+            while !self.loose.is_empty() {
+                self.bound += 1;
+                self.push_loose(zero.to_string(), self.bound - 1);
+            }
+            for (argument, numbers) in &self.arguments {
+                let (s, c) = (bundle('s', numbers), bundle('c', numbers));
+                let _ = write!(text, "let ({s}, {c}) = sin_cos({argument}); ");
+            }
+        } else {
+            let width = match self.arguments.len() {
+                _ if !self.padded => 1,
+                0..=4 => 4,
+                _ => 8,
+            };
+            while !self.arguments.len().is_multiple_of(width) {
+                self.arguments.push((zero.to_string(), vec![self.arguments.len()]));
+            }
+            let list =
+                |letter| self.arguments.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
+            let angles: Vec<&str> = self.arguments.iter().map(|(text, _)| text.as_str()).collect();
+            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+            let _ = write!(text, "let ([{sines}], [{cosines}]) = sin_cos_all([{angles}]); ");
+        }
+        let _ = write!(text, "({},) }}", self.results.join(", "));
+        (self.names, text)
+    }
+}
+
+/// One name, or the lanes of a vector.
+fn bundle(letter: char, numbers: &[usize]) -> String {
+    let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
+    match names.as_slice() {
+        [one] => one.clone(),
+        names => format!("Lanes([{}])", names.join(", ")),
+    }
+}

@@ -1,0 +1,184 @@
+//! Lanes: expressions with a value for each of several alike parts of a mechanism. All operations act lane by lane; what
+//! has no lanes has the same value in each. Lanes begin with constants and inputs that differ from lane to lane and end
+//! with a sum over the lanes or with one of them.
+
+use super::graph::{Expr, Graph, ZERO};
+use super::node::{Id, Node, Symbol};
+use std::collections::BTreeMap;
+
+/// Most lanes of an expression.
+pub const MOST: usize = 8;
+
+/// Constants and inputs of each lane, every combination once.
+#[derive(Default)]
+pub struct Tables {
+    tuples: Vec<Vec<f64>>,
+    /// Index of a tuple by its bits.
+    known: BTreeMap<Vec<u64>, u32>,
+    gathers: Vec<Vec<Symbol>>,
+}
+
+impl Graph {
+    /// A constant of each lane; of all lanes, if they are equal.
+    pub fn lane_constants(&self, values: &[f64]) -> Expr<'_> {
+        self.expr(self.lane_constant(values.to_vec()))
+    }
+
+    /// An input of each lane; of all lanes, if they are the same.
+    pub fn lane_symbols(&self, symbols: &[Symbol]) -> Expr<'_> {
+        if let Some(first) = symbols.first().filter(|first| symbols.iter().all(|s| s == *first)) {
+            return self.symbol(*first);
+        }
+        let mut tables = self.lanes.borrow_mut();
+        let known = tables.gathers.iter().position(|g| g == symbols);
+        let k = known.unwrap_or_else(|| {
+            tables.gathers.push(symbols.to_vec());
+            tables.gathers.len() - 1
+        });
+        self.expr(self.intern(Node::Gather(k as u32)))
+    }
+
+    /// The constants of a tuple.
+    pub fn tuple(&self, k: u32) -> Vec<f64> {
+        self.lanes.borrow().tuples[k as usize].clone()
+    }
+
+    /// The symbols of a gather.
+    pub fn gather(&self, k: u32) -> Vec<Symbol> {
+        self.lanes.borrow().gathers[k as usize].clone()
+    }
+
+    fn lane_constant(&self, mut values: Vec<f64>) -> Id {
+        for x in &mut values {
+            // Minus zero is zero.
+            *x += 0.0;
+        }
+        let bits: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
+        if bits.iter().all(|b| *b == bits[0]) {
+            return values.first().map_or(ZERO, |x| self.constant(*x));
+        }
+        let mut tables = self.lanes.borrow_mut();
+        let next = tables.tuples.len() as u32;
+        let k = *tables.known.entry(bits).or_insert(next);
+        if k == next {
+            tables.tuples.push(values);
+        }
+        drop(tables);
+        self.intern(Node::Tuple(k))
+    }
+
+    /// A tuple with a function applied to each constant.
+    pub(super) fn map_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Id {
+        match self.node(id) {
+            Node::Tuple(k) => self.lane_constant(self.tuple(k).into_iter().map(f).collect()),
+            _ => id,
+        }
+    }
+
+    /// The same, if all results are finite.
+    pub(super) fn finite_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
+        let Node::Tuple(k) = self.node(id) else { return None };
+        let values: Vec<f64> = self.tuple(k).into_iter().map(f).collect();
+        values.iter().all(|x| x.is_finite()).then(|| self.lane_constant(values))
+    }
+
+    /// `f` of two constants of which one at least is a tuple.
+    pub(super) fn fold_lanes(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
+        let values: Vec<f64> = match (self.node(a), self.node(b)) {
+            (Node::Tuple(x), Node::Tuple(y)) => {
+                self.tuple(x).into_iter().zip(self.tuple(y)).map(|(x, y)| f(x, y)).collect()
+            }
+            (Node::Tuple(x), Node::Const(y)) => self.tuple(x).into_iter().map(|x| f(x, y)).collect(),
+            (Node::Const(x), Node::Tuple(y)) => self.tuple(y).into_iter().map(|y| f(x, y)).collect(),
+            _ => return None,
+        };
+        Some(self.lane_constant(values))
+    }
+
+    /// True if the first constant of a tuple that is not zero is negative: of a tuple and its negative one is.
+    pub(super) fn starts_negative(&self, k: u32) -> bool {
+        let tables = self.lanes.borrow();
+        tables.tuples[k as usize].iter().find(|x| **x != 0.0).is_some_and(|x| *x < 0.0)
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The constants of its lanes (`n` of a constant of all lanes), if it is constant.
+    pub fn lane_values(self, n: usize) -> Option<Vec<f64>> {
+        match self.node() {
+            Node::Const(c) => Some(vec![c; n]),
+            Node::Tuple(k) => Some(self.graph().tuple(k)),
+            _ => None,
+        }
+    }
+
+    /// True for a constant, of all lanes or of each.
+    pub fn is_constant(self) -> bool {
+        self.graph().is_constant(self.id())
+    }
+
+    /// True for a constant whose size is in no lane above a bound, which is constant too.
+    pub fn is_within(self, bound: Expr<'g>) -> bool {
+        match (self.lane_values(MOST), bound.lane_values(MOST)) {
+            (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
+            _ => false,
+        }
+    }
+
+    /// The sum of its first `n` lanes.
+    pub fn lane_sum(self, n: usize) -> Expr<'g> {
+        let g = self.graph();
+        if let Some(values) = self.lane_values(n) {
+            return g.num(values.iter().take(n).sum());
+        }
+        let (negative, id) = g.unsigned(self.id());
+        g.expr(g.signed(negative, g.intern(Node::Sum(n as u8, id))))
+    }
+
+    /// Its value in lane `k`.
+    pub fn lane(self, k: usize) -> Expr<'g> {
+        let g = self.graph();
+        match self.node() {
+            Node::Const(_) | Node::Symbol(_) => return self,
+            Node::Tuple(t) => return g.num(g.tuple(t)[k]),
+            Node::Gather(t) => return g.symbol(g.gather(t)[k]),
+            _ => {}
+        }
+        // The sign stays inside: all lanes are negated at once.
+        g.expr(g.intern(Node::Lane(k as u8, self.id())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::eval::eval;
+
+    #[test]
+    fn constants_of_lanes_fold() {
+        let g = Graph::new();
+        let t = |values: [f64; 3]| g.lane_constants(&values);
+        let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
+        assert_eq!(t([2.0; 3]), g.num(2.0));
+        assert_eq!(t([1.0, 2.0, 3.0]) - t([1.0, 2.0, 3.0]), g.zero());
+        assert_eq!(t([1.0, 2.0, 4.0]) * t([4.0, 2.0, 1.0]), g.num(4.0));
+        assert_eq!((t([1.0, 2.0, 3.0]) * x) * g.num(2.0), t([2.0, 4.0, 6.0]) * x);
+        assert_eq!((t([1.0, 2.0, 3.0]) + x) - g.num(1.0), t([0.0, 1.0, 2.0]) + x);
+        assert_eq!(t([-1.0, 2.0, 3.0]) * x, -(t([1.0, -2.0, -3.0]) * x));
+        assert_eq!(x / t([1.0, 2.0, 4.0]), t([1.0, 0.5, 0.25]) * x);
+        assert_eq!(t([1.0, 2.0, 3.0]).lane_sum(3), g.num(6.0));
+        assert_eq!(g.num(2.0).lane_sum(3), g.num(6.0));
+        assert_eq!((-x).lane_sum(3), -x.lane_sum(3));
+        assert_eq!(x.lane(1), g.symbol(Symbol(1)));
+    }
+
+    #[test]
+    fn evaluation_goes_lane_by_lane() {
+        let g = Graph::new();
+        let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
+        let y = g.symbol(Symbol(3));
+        let e = g.lane_constants(&[1.0, -2.0, 3.0]) * x.square() + y;
+        let values = eval(&[e.lane_sum(3), e.lane(2), e.lane_sum(3) * y], &|s| f64::from(s.0) + 1.0);
+        assert_eq!(values, [1.0 - 8.0 + 27.0 + 12.0, 31.0, 32.0 * 4.0]);
+    }
+}

@@ -1,0 +1,114 @@
+//! Programs with lanes: which values have some, and what a program costs with them and without.
+
+use super::{Op, Operand, Program};
+use crate::expr::{Graph, Id, Node};
+
+/// Lanes of the values of a program that is being written.
+#[derive(Default)]
+pub(super) struct Lanes {
+    /// By value: how many, one for none.
+    widths: Vec<usize>,
+    gathers: Vec<usize>,
+    tuples: Vec<usize>,
+}
+
+impl Lanes {
+    /// The operand that a node is without an instruction of its own.
+    pub(super) fn leaf(
+        &mut self,
+        graph: &Graph,
+        node: Node,
+        program: &mut Program,
+        at: &dyn Fn(Id) -> Operand,
+    ) -> Option<Operand> {
+        Some(match node {
+            Node::Const(c) => Operand::Const(c),
+            Node::Symbol(s) => Operand::Symbol(s),
+            Node::Tuple(k) => {
+                program.tuples.push(graph.tuple(k));
+                self.tuples.push(graph.tuple(k).len());
+                Operand::Tuple(program.tuples.len() - 1)
+            }
+            Node::Gather(k) => {
+                program.gathers.push(graph.gather(k));
+                self.gathers.push(graph.gather(k).len());
+                Operand::Gather(program.gathers.len() - 1)
+            }
+            Node::Lane(_, a) if self.width(at(a)) == 1 => at(a),
+            _ => return None,
+        })
+    }
+
+    /// The sum of `n` lanes of an operand.
+    pub(super) fn sum(&self, n: usize, a: Operand) -> Op {
+        match self.width(a) {
+            1 => Op::Mul(Operand::Const(n as f64), a),
+            _ => Op::Sum(n, a),
+        }
+    }
+
+    /// Notes what the next instruction has.
+    pub(super) fn push(&mut self, op: &Op) {
+        let width = self.width_of(op);
+        self.widths.push(width);
+    }
+
+    fn width_of(&self, op: &Op) -> usize {
+        let mut width = 1;
+        if !matches!(op, Op::Sum(..) | Op::Lane(..)) {
+            op.operands(|o| width = width.max(self.width(o)));
+        }
+        width
+    }
+
+    fn width(&self, o: Operand) -> usize {
+        match o {
+            Operand::Const(_) | Operand::Symbol(_) => 1,
+            Operand::Value(k) => self.widths[k],
+            Operand::Tuple(k) => self.tuples[k],
+            Operand::Gather(k) => self.gathers[k],
+        }
+    }
+}
+
+impl Program {
+    /// The same with the cheapest of some programs that compute it with lanes, if that is cheaper.
+    pub fn or_in_lanes(mut self, candidates: impl Iterator<Item = Program>) -> Program {
+        let best = candidates.min_by_key(Program::cost);
+        self.in_lanes = best.filter(|best| best.cost() < self.cost()).map(Box::new);
+        self
+    }
+
+    /// What it costs, roughly, in tenths of an instruction of one lane.
+    pub fn cost(&self) -> usize {
+        let lanes = self.lanes();
+        let gathers: usize = self.gathers.iter().map(|g| 8 * g.len()).sum();
+        gathers
+            + self
+                .instructions
+                .iter()
+                .zip(lanes)
+                .map(|(op, lanes)| match op {
+                    Op::Lane(..) => 5,
+                    Op::Sum(n, _) => 10 * n,
+                    Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 20 * lanes,
+                    _ if lanes > 4 => 30,
+                    _ if lanes > 2 => 15,
+                    _ => 10,
+                })
+                .sum::<usize>()
+    }
+
+    /// By value: how many lanes it has, one for none.
+    pub fn lanes(&self) -> Vec<usize> {
+        let mut lanes = Lanes {
+            widths: Vec::new(),
+            gathers: self.gathers.iter().map(Vec::len).collect(),
+            tuples: self.tuples.iter().map(Vec::len).collect(),
+        };
+        for op in &self.instructions {
+            lanes.push(op);
+        }
+        lanes.widths
+    }
+}
