@@ -2,15 +2,17 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
+use linkwork_compiler::lower::{Op, Program};
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
-fn counts(arguments: &str, item: &str, functions: &[&str]) -> Vec<(usize, usize, usize)> {
-    counts_and_nodes(arguments, item, functions).0
+/// The programs of some functions.
+fn programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
+    programs_and_nodes(arguments, item, functions).0
 }
 
-/// Operations of functions, and how many expressions were made on the way.
-fn counts_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<(usize, usize, usize)>, usize) {
+/// The programs of some functions, and how many expressions were made on the way.
+fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -19,12 +21,11 @@ fn counts_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<(us
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let count = |name: &&str| {
+    let find = |name: &&str| {
         let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
-        let c = f.program.counts;
-        (c.mul, c.add, c.div)
+        f.program.clone()
     };
-    (functions.iter().map(count).collect(), graph.len())
+    (functions.iter().map(find).collect(), graph.len())
 }
 
 fn chain(n: usize, symbolic: bool) -> String {
@@ -54,8 +55,22 @@ fn chain(n: usize, symbolic: bool) -> String {
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
 fn totals(arguments: &str, item: &str) -> [usize; 4] {
-    let all = counts(arguments, item, &MAIN);
-    std::array::from_fn(|k| all[k].0 + all[k].1 + all[k].2)
+    let all = programs(arguments, item, &MAIN);
+    std::array::from_fn(|k| all[k].counts.total())
+}
+
+/// Instructions that are left when products are fused into sums, each on all lanes of alike limbs at once: operations on
+/// numbers and on vectors, and sums over lanes. Sines and cosines apart.
+#[test]
+fn robots_in_lanes() {
+    for (name, expected) in [("solo12", [226, 202, 110, 551]), ("simple_humanoid", [757, 712, 869, 1938])] {
+        let arguments = format!("urdf = \"../models/urdf/{name}.urdf\", base = free");
+        let found = programs(&arguments, "pub struct Robot;", &MAIN).into_iter().map(|program| {
+            let lanes = program.in_lanes.expect("its limbs are alike");
+            lanes.instructions.iter().filter(|op| !matches!(op, Op::Lane(..))).count() - lanes.counts.calls
+        });
+        assert_eq!(found.collect::<Vec<_>>(), expected, "{name}: {MAIN:?}");
+    }
 }
 
 /// Multiplications, additions and divisions together; sines and cosines apart.
@@ -119,8 +134,9 @@ fn curves_of_growth() {
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
     let at = |n: usize| {
-        let (counts, nodes) = counts_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
-        let mut totals: Vec<f64> = counts.iter().map(|c| (c.0 + c.1 + c.2) as f64).collect();
+        let (programs, nodes) =
+            programs_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
+        let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total() as f64).collect();
         totals.push(nodes as f64);
         totals
     };

@@ -1,20 +1,24 @@
 //! Model passes change no function: every form of a model has the same equations, energies, momenta and frames as the
 //! model itself, on random trees of every joint and on the robots.
 
+mod random_limbs;
 mod random_tree;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::emit::{Output, Prepared};
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
+use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::model::random_configuration;
 use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::passes::limbs::{Limbs, find};
 use linkwork_compiler::passes::{Passes, forms};
 use linkwork_compiler::syntax::Requests;
-use linkwork_compiler::{compile_with, derive_with, read};
+use linkwork_compiler::{compile_with, derive_with, in_lanes, read};
 use proptest::prelude::*;
-use random_tree::{Tree, trees};
+use random_limbs::creatures;
+use random_tree::trees;
 use std::path::Path;
 use support::random::config;
 
@@ -22,14 +26,13 @@ use support::random::config;
 const TOLERANCE: f64 = 1e-10;
 
 const CHOICES: [Passes; 4] = [
-    Passes { frames: true, regroup: false, free_parameters: false },
-    Passes { frames: false, regroup: true, free_parameters: false },
-    Passes { frames: true, regroup: true, free_parameters: false },
-    Passes { frames: true, regroup: true, free_parameters: true },
+    Passes { frames: true, regroup: false, lanes: true, free_parameters: false },
+    Passes { frames: false, regroup: true, lanes: true, free_parameters: false },
+    Passes { frames: true, regroup: true, lanes: true, free_parameters: false },
+    Passes { frames: true, regroup: true, lanes: true, free_parameters: true },
 ];
 
-fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
-    let (arguments, item) = tree.source();
+fn with_model((arguments, item): (String, String), check: impl FnOnce(&Model<'_>)) {
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
@@ -137,6 +140,9 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
         for (new, old) in new.functions.iter().zip(&old.functions) {
             let (a, b) = (new.program.run(&at), old.program.run(&at));
             assert_near(&format!("{name}: {}", new.name), seed, tolerance, &a, &b);
+            if let Some(lanes) = &new.program.in_lanes {
+                assert_near(&format!("{name}: {} in lanes", new.name), seed, tolerance, &lanes.run(&at), &b);
+            }
         }
     }
     if let Some(prepared) = &new.prepared {
@@ -150,7 +156,7 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
     }
 }
 
-const OFF: Passes = Passes { frames: false, regroup: false, free_parameters: false };
+const OFF: Passes = Passes { frames: false, regroup: false, lanes: false, free_parameters: false };
 
 /// Functions of numbers that were computed from the parameters before compute the same.
 fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
@@ -198,18 +204,67 @@ fn robots_move_as_without_passes() {
     }
 }
 
+/// With alike limbs as lanes every form of a model has its functions.
+fn check_limbs(model: &Model<'_>, seed: u64) {
+    const TOLERANCE: f64 = 1e-11;
+    let at = symbols(model, seed);
+    let joints = &mechanics::joints(model);
+    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let mass = eval(&crba::mass_matrix(model, joints).concat(), &at);
+    let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
+    let tau = eval(&rnea::inverse_dynamics(model, joints, &v, Some(&a)), &at);
+    let expected = eval(&a, &at);
+    let with_tau = |s| match Quantity::of(s) {
+        Quantity::Force(k) => tau[k],
+        _ => at(s),
+    };
+    for form in CHOICES.into_iter().flat_map(|passes| forms(model, passes)) {
+        let joints = mechanics::joints(&form.model);
+        let groups = find(&form.model, &joints);
+        assert!(!groups.is_empty(), "the limbs are alike");
+        let Some(limbs) = Limbs::of(&form.model, &joints, &groups) else {
+            // Of numbers lanes can be made always; expressions of parameters may be built differently.
+            assert!(!model.parameters.is_empty(), "limbs become lanes");
+            continue;
+        };
+        assert!(limbs.joints.len() < joints.len());
+        assert_near(
+            "inverse dynamics",
+            seed,
+            TOLERANCE,
+            &eval(&in_lanes::inverse_dynamics(&limbs, true), &at),
+            &tau,
+        );
+        assert_near("bias", seed, TOLERANCE, &eval(&in_lanes::inverse_dynamics(&limbs, false), &at), &bias);
+        if form.anchored {
+            continue;
+        }
+        assert_near("mass matrix", seed, TOLERANCE, &eval(&in_lanes::mass_matrix(&limbs), &at), &mass);
+        let found = in_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
+        assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
+        // The same after lowering.
+        let program = lower(&in_lanes::inverse_dynamics(&limbs, true)).fused();
+        assert_near("program", seed, TOLERANCE, &program.run(&at), &tau);
+    }
+}
+
 proptest! {
     #![proptest_config(config(40))]
 
     #[test]
+    fn alike_limbs_as_lanes_are_the_same_mechanism(creature in creatures(3), seed in 0_u64..1000) {
+        with_model(creature.source(), |model| check_limbs(model, seed));
+    }
+
+    #[test]
     fn forms_are_the_same_mechanism(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree, |model| check_forms(model, seed));
+        with_model(tree.source(), |model| check_forms(model, seed));
     }
 
     #[test]
     fn programs_are_the_same_functions(tree in trees(6), seed in 0_u64..1000) {
         let _ = seed;
-        with_model(&tree, |model| {
+        with_model(tree.source(), |model| {
             let mut cx = Diagnostics::new();
             let prepare = Requests { prepare: true, ..Requests::default() };
             let new = derive_with(model, prepare, Passes::default(), &mut cx);

@@ -7,7 +7,8 @@
 //! On top of that a [`Lanewise`] mechanism evaluates whole arrays of states (`inverse_dynamics_all` and its like), and
 //! [rolls out](Lanewise::roll_out) the motions of thousands, with the feature `rayon` on all processors.
 //!
-//! Each lane gives, bit for bit, what the function of a single state gives on the same machine.
+//! Each lane gives, bit for bit, what the function of a single state gives on the same machine; up to rounding where a single
+//! state has lanes of its own, one for each of several alike limbs.
 
 mod columns;
 mod error;

@@ -16,6 +16,7 @@ use crate::syntax::Requests;
 mod constraints;
 mod derivatives;
 mod dynamics;
+pub mod in_lanes;
 mod prepared;
 mod regressor;
 mod sensitivities;

@@ -20,6 +20,7 @@ use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 use syntax::{Description, Mechanism};
 
+pub use derive::in_lanes;
 pub use derive::{derive, derive_with, equations, equations_latex};
 
 /// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.

@@ -1,11 +1,12 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::Stage;
+use super::{Stage, done, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::mechanics::{self, Joint, aba, constraints, crba, energy, frames, ldl, momentum, rnea};
 use crate::model::{Model, Quantity};
+use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
 
 /// Up to how many velocities both frames, and both algorithms of forward dynamics, are derived and compared.
@@ -72,13 +73,20 @@ struct Forms<'g> {
     all: Vec<Form<'g>>,
     joints: Vec<Joint<'g>>,
     stage: Stage,
+    /// The forms with alike limbs as lanes, and whether they are anchored; none if there are no such limbs.
+    limbs: Vec<(Limbs<'g>, bool)>,
 }
 
 impl<'g> Forms<'g> {
     fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Forms<'g> {
         let all = passes::forms(model, passes);
         let joints = all.first().map_or(Vec::new(), |form| mechanics::joints(&form.model));
-        Forms { all, joints, stage }
+        let groups = match all.first() {
+            Some(form) if passes.lanes && stage == Stage::Whole => limbs::find(&form.model, &joints),
+            _ => Vec::new(),
+        };
+        let in_lanes = |form: &Form<'g>| Some((Limbs::of(&form.model, &joints, &groups)?, form.anchored));
+        Forms { limbs: all.iter().filter_map(in_lanes).collect(), all, joints, stage }
     }
 
     /// Forms that serve all functions.
@@ -86,15 +94,24 @@ impl<'g> Forms<'g> {
         self.all.iter().filter(|form| !form.anchored).map(|form| &form.model)
     }
 
+    /// The same with alike limbs as lanes.
+    fn plain_limbs(&self) -> impl Iterator<Item = &Limbs<'g>> {
+        self.limbs.iter().filter(|(_, anchored)| !anchored).map(|(limbs, _)| limbs)
+    }
+
     fn mass_matrix(&self) -> Program {
-        cheapest(
+        let program = cheapest(
             self.plain().map(|model| self.stage.program(&crba::mass_matrix(model, &self.joints).concat())),
-        )
+        );
+        program.or_in_lanes(self.plain_limbs().map(|limbs| done(&in_lanes::mass_matrix(limbs))))
     }
 
     /// Inverse dynamics, or the bias alone.
     fn recursion(&self, accelerations: bool) -> Program {
-        cheapest(self.all.iter().map(|form| self.recursion_of(&form.model, accelerations)))
+        let program = cheapest(self.all.iter().map(|form| self.recursion_of(&form.model, accelerations)));
+        program.or_in_lanes(
+            self.limbs.iter().map(|(limbs, _)| done(&in_lanes::inverse_dynamics(limbs, accelerations))),
+        )
     }
 
     fn recursion_of(&self, model: &Model<'g>, accelerations: bool) -> Program {
@@ -103,9 +120,20 @@ impl<'g> Forms<'g> {
         self.stage.program(&rnea::inverse_dynamics(model, &self.joints, &v, a.as_deref()))
     }
 
+    /// Forward dynamics, also with alike limbs as lanes.
+    fn forward_dynamics(&self) -> Program {
+        let program = self.forward_dynamics_alone();
+        let bias =
+            self.limbs.iter().min_by_key(|(limbs, _)| cost(&done(&in_lanes::inverse_dynamics(limbs, false))));
+        let Some((bias, _)) = bias else { return program };
+        program.or_in_lanes(
+            self.plain_limbs().filter_map(|limbs| Some(done(&in_lanes::forward_dynamics(limbs, bias)?))),
+        )
+    }
+
     /// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
     /// divisions wait less for each other.
-    fn forward_dynamics(&self) -> Program {
+    fn forward_dynamics_alone(&self) -> Program {
         // All forms need the same forces, so that each part can be taken from the form where it is cheapest.
         let bias = self.all.iter().min_by_key(|form| cost(&self.recursion_of(&form.model, false)));
         let Some(bias) = bias.map(|form| &form.model) else { return Program::default() };

@@ -49,7 +49,7 @@ fn solve<'g>(
         }
         if let Some(parent) = joint.parent {
             inertias[parent.0] = inertia.add_to_parent(joint, &inertias[parent.0]);
-            wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrench));
+            wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
     Some(outward(model, joints, &handles))
@@ -205,7 +205,9 @@ impl<'g> Articulated<'g> {
             diagonal: std::array::from_fn(|k| entry(&both, k, k)),
             off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(&h, a, b) + entry(&moved, b, a)),
         };
-        Articulated { m: sum.m + m, h: sum.h + moved, i: sum.i + (i - shift) }
+        let all = |e| joint.gathered(e);
+        let moved = Mat3::from_fn(|i, j| all(moved.0[i][j]));
+        Articulated { m: sum.m + m.map(all), h: sum.h + moved, i: sum.i + (i - shift).map(all) }
     }
 }
 

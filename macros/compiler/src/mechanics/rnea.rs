@@ -4,7 +4,7 @@
 
 use super::kinematics::{Joint, resistance};
 use super::{Spatial, inertances};
-use crate::expr::{Expr, Mat3, Sym3, Vec3};
+use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::model::{Inertia, Model, Pose};
 
 /// `τ = M a + h`. Without accelerations it is the bias `h` alone.
@@ -23,7 +23,7 @@ pub fn inverse_dynamics<'g>(
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
-            wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrench));
+            wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
     tau
@@ -125,14 +125,14 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
 fn diagonal_terms<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
-    if let (Some(own), Some(next), Some(last)) = (own.value(), next.value(), last.value()) {
-        let size = 4.0 * f64::EPSILON * (own.abs() + next.abs() + last.abs());
+    if own.is_constant() && next.is_constant() && last.is_constant() {
+        let size = [own, next, last].map(|x| x.call(Function::Abs));
+        let rounding = (size[0] + size[1] + size[2]) * (4.0 * f64::EPSILON);
         let second = [(own + last - next) * 0.5, (own + next - last) * 0.5];
-        let [p, q] = second.map(|x| if x.abs() <= size { 0.0 } else { x });
-        let terms = usize::from(own != 0.0) + usize::from(next != last);
-        if usize::from(p != 0.0) + usize::from(q != 0.0) < terms {
-            let g = s.a[0].graph();
-            return g.num(p) * s.u.0[m][l] - g.num(q) * s.u.0[l][m];
+        let [p, q] = second.map(|x| if x.is_within(rounding) { x.zero() } else { x });
+        let terms = usize::from(!own.is_zero()) + usize::from(next != last);
+        if usize::from(!p.is_zero()) + usize::from(!q.is_zero()) < terms {
+            return p * s.u.0[m][l] - q * s.u.0[l][m];
         }
     }
     own * s.dw[k] + (last - next) * s.products[k]

@@ -86,6 +86,9 @@ pub struct Joint<'g> {
     pub dofs: Vec<Dof<'g>>,
     /// What a link placed by expressions adds.
     pub drift: Option<Drift<'g>>,
+    /// How many limbs side by side hang from the parent by this joint, one in each lane of its expressions; one for a
+    /// joint that stands for itself.
+    pub limbs: usize,
 }
 
 /// Motion of a link that its coordinates' rates alone do not give, in link axes.
@@ -107,9 +110,28 @@ impl<'g> Joint<'g> {
         Spatial { linear: force, angular: moment }
     }
 
-    /// Mass properties of the parent with those of the link.
+    /// The wrench on the parent, given that on the link: the sum of those of limbs side by side.
+    pub fn add_wrench(&self, parent: &Spatial<'g>, link: &Spatial<'g>) -> Spatial<'g> {
+        let wrench = self.wrench_to_parent(link);
+        parent.plus(&map_spatial(&wrench, |c| self.gathered(c)))
+    }
+
+    /// The sum over limbs side by side.
+    pub fn gathered(&self, e: Expr<'g>) -> Expr<'g> {
+        if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
+    }
+
+    /// Mass properties of the parent with those of the link, or of all limbs side by side.
     pub fn lump(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
-        parent.plus_placed(link, &self.rotation, self.translation)
+        if self.limbs == 1 {
+            return parent.plus_placed(link, &self.rotation, self.translation);
+        }
+        let alone = Inertia::zero(parent.mass.graph()).plus_placed(link, &self.rotation, self.translation);
+        parent.plus(&Inertia {
+            mass: self.gathered(alone.mass),
+            moment: alone.moment.map(|c| self.gathered(c)),
+            tensor: alone.tensor.map(|c| self.gathered(c)),
+        })
     }
 
     /// The parent's twist, at the link's origin in link axes.
@@ -184,6 +206,7 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &super::Link<'g>) -> Joint<'g> {
         rotation: link.placement.rotation.clone().then(&motion),
         dofs,
         drift: None,
+        limbs: 1,
     }
 }
 
@@ -210,6 +233,7 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &super::Link<'g>) -> Joint<'g> {
         translation: place.translation,
         dofs,
         drift: Some(Drift { twist: drift, acceleration, subspace_rates }),
+        limbs: 1,
     }
 }
 

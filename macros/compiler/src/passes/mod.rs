@@ -6,6 +6,7 @@ use crate::model::Model;
 mod candidates;
 mod cost;
 mod frames;
+pub mod limbs;
 mod number;
 mod regroup;
 
@@ -21,11 +22,13 @@ pub struct Passes {
     pub regroup: bool,
     /// What depends on parameters alone costs nothing: it is computed before.
     pub free_parameters: bool,
+    /// Alike limbs are evaluated as the lanes of one.
+    pub lanes: bool,
 }
 
 impl Default for Passes {
     fn default() -> Passes {
-        Passes { frames: true, regroup: true, free_parameters: false }
+        Passes { frames: true, regroup: true, free_parameters: false, lanes: true }
     }
 }
 

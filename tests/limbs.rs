@@ -1,0 +1,171 @@
+//! Mechanisms with alike limbs, which are evaluated as lanes: the functions agree with each other for every type of
+//! scalars, on the ground and on a free base, with parameters of all limbs and of each.
+
+use linkwork::nalgebra::SVector;
+use linkwork::{Lanes, Mechanism, Real, mechanism};
+use support::random::Random;
+
+/// A body on four legs of two joints, mirrored front to back and left to right.
+#[mechanism(gravity = -9.81 * z)]
+struct Quadruped<T> {
+    trunk_mass: T,
+    thigh_mass: T,
+    shank_mass: T,
+    length: T,
+    damping: T,
+    load: T,
+
+    #[body(mass = trunk_mass, inertia = cuboid(trunk_mass, 4 * length, 2 * length, length))]
+    trunk: Body,
+    #[joint(ground -> trunk)]
+    base: Free,
+
+    #[body(mass = thigh_mass, com = [0.01, 0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
+    thigh_a: Body,
+    #[body(mass = shank_mass, com = [0.01, 0, -length / 2], inertia = rod(shank_mass, length, z))]
+    shank_a: Body,
+    #[joint(trunk.at([2 * length, length, 0]) -> thigh_a, about = x)]
+    hip_a: Pin,
+    #[joint(thigh_a.at([0, 0.03, -length]) -> shank_a, about = y)]
+    knee_a: Pin,
+    #[acts(on = knee_a, damping = damping)]
+    friction_a: Dashpot,
+
+    #[body(mass = thigh_mass, com = [0.01, -0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
+    thigh_b: Body,
+    #[body(mass = shank_mass, com = [0.01, 0, -length / 2], inertia = rod(shank_mass, length, z))]
+    shank_b: Body,
+    #[joint(trunk.at([2 * length, -length, 0]) -> thigh_b, about = -x)]
+    hip_b: Pin,
+    #[joint(thigh_b.at([0, -0.03, -length]) -> shank_b, about = y)]
+    knee_b: Pin,
+    #[acts(on = knee_b, damping = damping)]
+    friction_b: Dashpot,
+
+    #[body(mass = thigh_mass, com = [-0.01, 0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
+    thigh_c: Body,
+    #[body(mass = shank_mass, com = [-0.01, 0, -length / 2], inertia = rod(shank_mass, length, z))]
+    shank_c: Body,
+    #[joint(trunk.at([-2 * length, length, 0]) -> thigh_c, about = x)]
+    hip_c: Pin,
+    #[joint(thigh_c.at([0, 0.03, -length]) -> shank_c, about = y)]
+    knee_c: Pin,
+    #[acts(on = knee_c, damping = damping)]
+    friction_c: Dashpot,
+
+    /// One leg carries more.
+    #[body(mass = thigh_mass, com = [-0.01, -0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
+    thigh_d: Body,
+    #[body(mass = load, com = [-0.01, 0, -length / 2], inertia = rod(load, length, z))]
+    shank_d: Body,
+    #[joint(trunk.at([-2 * length, -length, 0]) -> thigh_d, about = -x)]
+    hip_d: Pin,
+    #[joint(thigh_d.at([0, -0.03, -length]) -> shank_d, about = y)]
+    knee_d: Pin,
+    #[acts(on = knee_d, damping = damping)]
+    friction_d: Dashpot,
+}
+
+/// A gripper whose three fingers stand on the ground, in single precision.
+#[mechanism(gravity = -9.81 * z)]
+struct Gripper {
+    mass: f32,
+
+    #[body(mass = mass, com = 0.05 * x, inertia = rod(mass, 0.1, x))]
+    left: Body,
+    #[joint(ground.at(0.1 * x).rotated(z(0.2)) -> left, about = y)]
+    open_left: Pin,
+    #[body(mass = 0.1, com = 0.02 * z, inertia = rod(0.1, 0.04, z))]
+    left_tip: Body,
+    #[joint(left.at(0.1 * x) -> left_tip, about = y)]
+    bend_left: Pin,
+
+    #[body(mass = mass, com = 0.05 * x, inertia = rod(mass, 0.1, x))]
+    right: Body,
+    #[joint(ground.at(0.1 * y).rotated(z(2.1)) -> right, about = y)]
+    open_right: Pin,
+    #[body(mass = 0.1, com = 0.02 * z, inertia = rod(0.1, 0.04, z))]
+    right_tip: Body,
+    #[joint(right.at(0.1 * x) -> right_tip, about = y)]
+    bend_right: Pin,
+
+    #[body(mass = mass, com = 0.05 * x, inertia = rod(mass, 0.1, x))]
+    thumb: Body,
+    #[joint(ground.at(-0.1 * y).rotated(z(-2.1)) -> thumb, about = y)]
+    open_thumb: Pin,
+    #[body(mass = 0.2, com = 0.02 * z, inertia = rod(0.2, 0.04, z))]
+    thumb_tip: Body,
+    #[joint(thumb.at(0.1 * x) -> thumb_tip, about = y)]
+    bend_thumb: Pin,
+}
+
+fn quadruped<T: Real>() -> Quadruped<T> {
+    let number = linkwork::nalgebra::convert::<f64, T>;
+    Quadruped {
+        trunk_mass: number(8.0),
+        thigh_mass: number(1.5),
+        shank_mass: number(0.6),
+        length: number(0.3),
+        damping: number(0.2),
+        load: number(0.9),
+    }
+}
+
+/// A state, and an acceleration.
+fn state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
+    (random.configuration(&quadruped()), [random.vector(2.0), random.vector(2.0)])
+}
+
+#[test]
+fn functions_agree() {
+    let (robot, mut random) = (quadruped::<f64>(), Random::new(7));
+    for _ in 0..20 {
+        let (q, [v, a]) = state(&mut random);
+        let (m, h) = (robot.mass_matrix(&q), robot.bias_forces(&q, &v));
+        let tau = robot.inverse_dynamics(&q, &v, &a);
+        assert!((m * a + h - tau).amax() < 1e-12 * (1.0 + tau.amax()));
+        assert!((robot.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-10);
+        // Energies and momenta are not evaluated in lanes.
+        assert!((v.dot(&(m * v)) / 2.0 - robot.kinetic_energy(&q, &v)).abs() < 1e-12);
+        assert!((m * v - robot.generalized_momentum(&q, &v)).amax() < 1e-12);
+    }
+}
+
+#[test]
+fn every_type_of_scalars_gives_the_same() {
+    let mut random = Random::new(11);
+    let (double, single) = (quadruped::<f64>(), quadruped::<f32>());
+    let lanes = quadruped::<Lanes<f64, 2>>();
+    for _ in 0..20 {
+        let (q, [v, a]) = state(&mut random);
+        let (tau, m) = (double.inverse_dynamics(&q, &v, &a), double.mass_matrix(&q));
+        let (q32, v32, a32) = (q.map(|x| x as f32), v.map(|x| x as f32), a.map(|x| x as f32));
+        let near = |x: f32, y: f64, scale: f64| (f64::from(x) - y).abs() < 2e-5 * (1.0 + scale);
+        let found = single.inverse_dynamics(&q32, &v32, &a32);
+        assert!(found.iter().zip(&tau).all(|(x, y)| near(*x, *y, tau.amax())));
+        assert!(single.mass_matrix(&q32).iter().zip(&m).all(|(x, y)| near(*x, *y, m.amax())));
+        let [q2, v2, a2] = [q.as_slice(), v.as_slice(), a.as_slice()].map(<[f64]>::to_vec);
+        let wide = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
+        let found = lanes.inverse_dynamics(
+            &SVector::from_fn(|k, _| wide(&q2, k)),
+            &SVector::from_fn(|k, _| wide(&v2, k)),
+            &SVector::from_fn(|k, _| wide(&a2, k)),
+        );
+        assert!(found.iter().zip(&tau).all(|(x, y)| x[0] == *y && x[1] == *y));
+    }
+}
+
+#[test]
+fn three_fingers_agree() {
+    let (gripper, mut random) = (Gripper { mass: 0.3 }, Random::new(3));
+    for _ in 0..20 {
+        let mut vector = || SVector::<f32, 6>::from_fn(|_, _| random.uniform(1.5) as f32);
+        let (q, v, a) = (vector(), vector(), vector());
+        let (m, tau) = (gripper.mass_matrix(&q), gripper.inverse_dynamics(&q, &v, &a));
+        assert!((m * a + gripper.bias_forces(&q, &v) - tau).amax() < 1e-6);
+        assert!((v.dot(&(m * v)) / 2.0 - Mechanism::kinetic_energy(&gripper, &q, &v)).abs() < 1e-6);
+        // Fingers do not feel each other.
+        assert!((0..2).all(|i| (2..6).all(|j| m[(i, j)] == 0.0)));
+        assert!((gripper.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-3);
+    }
+}
