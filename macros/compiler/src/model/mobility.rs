@@ -26,7 +26,8 @@ const SMALL_PIVOT: f64 = 1e-6;
 /// A configuration with the seed of the parameters that it belongs to.
 pub type Witness = (Vec<f64>, u64);
 
-/// Some configurations that fulfil the constraints. Reports loops that nothing closes if all their numbers are known.
+/// Some configurations that fulfil the constraints, first one near the configuration with all coordinates zero, if there
+/// is one. Reports loops that nothing closes if all their numbers are known.
 pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     let rows = Rows::of(model);
     let mut found: Vec<Witness> = Vec::new();
@@ -51,13 +52,16 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     found
 }
 
-/// Counts the degrees of freedom, of configurations and of velocities. Reports a mechanism that cannot move.
+/// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first witness belongs to:
+/// linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move.
 pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> [usize; 2] {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = Rows::of(model);
     let free = |(q, seed): &Witness, rank: usize| nv - basis_of(&rows.values(q, *seed)[..rank], 1e-7).len();
-    let most = |rank: usize| witnesses.iter().map(|w| free(w, rank)).max().unwrap_or(nv.saturating_sub(rank));
-    let freedom = [most(model.holonomic()), most(nc)];
+    // The first that can move: others may be locked.
+    let witness = witnesses.iter().find(|w| free(w, nc) > 0).or(witnesses.first());
+    let count = |rank: usize| witness.map_or(nv.saturating_sub(rank), |w| free(w, rank));
+    let freedom = [count(model.holonomic()), count(nc)];
     if freedom[1] == 0 && !witnesses.is_empty() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
@@ -138,7 +142,7 @@ impl<'g> Rows<'g> {
 
     /// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
     fn close(&self, model: &Model<'_>, seed: u64) -> Result<Vec<f64>, (usize, f64)> {
-        let spread = [1.0, 3.0, 0.2][(seed % 3) as usize];
+        let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
         let mut q = random_configuration(model, seed);
         for chart in &model.charts {
             if let Chart::Plain(k, _) = chart {
