@@ -20,7 +20,7 @@
 //! # By class
 //!
 //! The first seven classes are those of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*. The
-//! column *freedom* counts the degrees of freedom.
+//! column *freedom* counts the degrees of freedom: independent velocities.
 //!
 //! | pendulums | freedom | closed form in the test |
 //! | --- | --- | --- |
@@ -43,6 +43,7 @@
 //! | [`SpringChain`] | 3 | natural frequencies, modal damping |
 //! | [`TunedSuspension`] (with inerter) | 2 | mass and stiffness matrix, the shaken cart at rest |
 //! | [`DuffingOscillator`] | 1 | period by an elliptic integral, two wells |
+//! | [`CarAxle`] (on a bumpy road) | 2 | published motion |
 //!
 //! | gimbals | freedom | closed form in the test |
 //! | --- | --- | --- |
@@ -58,16 +59,32 @@
 //!
 //! | linkages | freedom | closed form in the test |
 //! | --- | --- | --- |
+//! | [`FourBar`] | 1 | Freudenstein's equation, ratios of the rates, holding torque |
+//! | [`SliderCrank`] | 1 | place of the piston, reduced inertia |
+//! | [`FiveBar`] (parallel robot) | 2 | circles that meet, statics, reduced inertia |
+//! | [`StewartPlatform`] | 6 | inverse kinematics, forces by virtual work |
+//! | [`TwoWindows`] (through singular positions) | 1 | a pendulum's motion |
+//! | [`BricardLinkage`] (against Grübler's count) | 1 | relation of the angles, one redundant condition |
+//! | [`AndrewsSqueezer`] | 1 | published accelerations and motion |
+//! | [`GearPair`] | 1 | reduced inertia, force between the teeth |
 //! | [`RemotelyDrivenArm`] (geared, absolute angles) | 2 | mass matrix and bias forces |
 //! | [`Ur5`] | 6 | Denavit–Hartenberg parameters |
 //! | [`Panda`], [`PandaArm`], [`LoadedPanda`] | 8, 7, 7 | Denavit–Hartenberg parameters |
 //! | [`Solo12`], [`AnymalB`] | 18 | free fall, leg kinematics |
 //! | [`SimpleHumanoid`] | 35 | free fall |
 //!
-//! | rolling bodies | freedom | closed form in the test |
+//! | rolling bodies and skates | freedom | closed form in the test |
 //! | --- | --- | --- |
 //! | [`DiskOnIncline`] | 1 | accelerations of hoop, disk, shell and ball; no slip |
 //! | [`CylinderInTrough`] | 1 | period by an elliptic integral |
+//! | [`RollerOnIncline`] (with contact forces) | 1 | accelerations, forces of the contact |
+//! | [`BallInBowl`] | 3 | swings by an elliptic integral, level circles |
+//! | [`BallInTube`] | 3 | rises again, with `√(2/7)` of the rate round |
+//! | [`BallOnTurntable`] (driven) | 3 | circles at 2/7 of the table's rate |
+//! | [`RollingDisk`] | 3 | accelerations, critical speed, circles |
+//! | [`Rattleback`] | 3 | turns back, constant energy |
+//! | [`ChaplyginSleigh`] | 2 | hyperbolic tangent |
+//! | [`Bicycle`] (Whipple's, the benchmark) | 3 | published matrices, eigenvalues, weave and capsize speeds |
 //!
 //! | spinning tops | freedom | closed form in the test |
 //! | --- | --- | --- |
@@ -89,8 +106,8 @@
 //! | --- | --- | --- | --- |
 //! | pin, hinge | 1 | `Pin` | [`Pendulum`], [`BrakedFlywheel`] |
 //! | dual pin | 2 | `Pin`, then `Pin` | parallel: [`DoublePendulum`]; crossed: [`FurutaPendulum`] |
-//! | universal | 2 | `Universal` | [`SphericalPendulum`], [`FoucaultPendulum`] |
-//! | ball | 3 | `Ball` | [`HeavyTop`] |
+//! | universal | 2 | `Universal` | [`SphericalPendulum`], [`StewartPlatform`] |
+//! | ball | 3 | `Ball` | [`HeavyTop`], [`StewartPlatform`] |
 //! | sleeve | 1 | `Sleeve` | [`CartPole`], [`DuffingOscillator`] |
 //! | dual sleeve, x–y stage | 2 | `Stage` | [`JeffcottRotor`] |
 //! | dual sleeve-pin | 3 | `Planar` | [`PlanarRotorcraft`] |
@@ -115,15 +132,28 @@
 //! | forces and torques with a value | [`Aircraft`], [`ChargedParticle`], [`DuffingOscillator`] |
 //! | an energy of one's own (`Potential`) | [`WilberforcePendulum`], [`FoucaultPendulum`], [`ElasticPendulum`] |
 //! | definitions, outputs | [`Aircraft`], [`RemotelyDrivenArm`], [`Gyroscope`] |
-//! | gears | [`RemotelyDrivenArm`] |
+//! | joints that close loops | [`FourBar`], [`StewartPlatform`] |
+//! | conditions on coordinates (`Holonomic`) | [`CarAxle`], [`GearPair`] |
+//! | gears | [`RemotelyDrivenArm`], [`GearPair`] |
+//! | conditions on velocities (`Nonholonomic`) | [`ChaplyginSleigh`] |
+//! | rolling pairs (`Rolling`) | [`RollingDisk`], [`BallInBowl`], [`Bicycle`] |
+//! | a base whose motion is prescribed (`massive`) | [`RateGyroscope`], [`BallOnTurntable`] |
 //! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
 
 mod aircraft;
+mod andrews_squeezer;
 mod arm6;
 mod arm7;
+mod ball_in_bowl;
+mod ball_in_tube;
+mod ball_on_turntable;
 mod bead_on_spinning_hoop;
+mod bicycle;
 mod braked_flywheel;
+mod bricard_linkage;
+mod car_axle;
 mod cart_pole;
+mod chaplygin_sleigh;
 mod charged_particle;
 mod coplanar_double_pendulum;
 mod cylinder_in_trough;
@@ -131,9 +161,12 @@ mod disk_on_incline;
 mod double_pendulum;
 mod duffing_oscillator;
 mod elastic_pendulum;
+mod five_bar;
 mod foucault_pendulum;
+mod four_bar;
 mod free_rigid_body;
 mod furuta_pendulum;
+mod gear_pair;
 mod gravity_gradient_satellite;
 mod gyroscope;
 mod heavy_top;
@@ -147,23 +180,37 @@ mod pendulum_on_collar;
 mod planar_rotorcraft;
 mod quadruped;
 mod rate_gyroscope;
+mod rattleback;
 mod remotely_driven_arm;
 mod rod_in_slot;
+mod roller_on_incline;
+mod rolling_disk;
 mod shaft_with_slider;
+mod slider_crank;
 mod spherical_pendulum;
 mod spring_chain;
+mod stewart_platform;
 #[cfg(test)]
 mod testing;
 mod tuned_suspension;
 mod two_bodies;
 mod wilberforce_pendulum;
+mod windows;
 
 pub use aircraft::Aircraft;
+pub use andrews_squeezer::AndrewsSqueezer;
 pub use arm6::Ur5;
 pub use arm7::{LoadedPanda, Panda, PandaArm};
+pub use ball_in_bowl::BallInBowl;
+pub use ball_in_tube::BallInTube;
+pub use ball_on_turntable::BallOnTurntable;
 pub use bead_on_spinning_hoop::BeadOnSpinningHoop;
+pub use bicycle::Bicycle;
 pub use braked_flywheel::BrakedFlywheel;
+pub use bricard_linkage::BricardLinkage;
+pub use car_axle::CarAxle;
 pub use cart_pole::CartPole;
+pub use chaplygin_sleigh::ChaplyginSleigh;
 pub use charged_particle::ChargedParticle;
 pub use coplanar_double_pendulum::CoplanarDoublePendulum;
 pub use cylinder_in_trough::CylinderInTrough;
@@ -171,9 +218,12 @@ pub use disk_on_incline::DiskOnIncline;
 pub use double_pendulum::DoublePendulum;
 pub use duffing_oscillator::DuffingOscillator;
 pub use elastic_pendulum::ElasticPendulum;
+pub use five_bar::FiveBar;
 pub use foucault_pendulum::FoucaultPendulum;
+pub use four_bar::FourBar;
 pub use free_rigid_body::FreeRigidBody;
 pub use furuta_pendulum::FurutaPendulum;
+pub use gear_pair::GearPair;
 pub use gravity_gradient_satellite::GravityGradientSatellite;
 pub use gyroscope::Gyroscope;
 pub use heavy_top::HeavyTop;
@@ -187,11 +237,17 @@ pub use pendulum_on_collar::PendulumOnCollar;
 pub use planar_rotorcraft::PlanarRotorcraft;
 pub use quadruped::{AnymalB, Solo12};
 pub use rate_gyroscope::RateGyroscope;
+pub use rattleback::Rattleback;
 pub use remotely_driven_arm::RemotelyDrivenArm;
 pub use rod_in_slot::RodInSlot;
+pub use roller_on_incline::RollerOnIncline;
+pub use rolling_disk::RollingDisk;
 pub use shaft_with_slider::ShaftWithSlider;
+pub use slider_crank::SliderCrank;
 pub use spherical_pendulum::SphericalPendulum;
 pub use spring_chain::SpringChain;
+pub use stewart_platform::StewartPlatform;
 pub use tuned_suspension::TunedSuspension;
 pub use two_bodies::TwoBodies;
 pub use wilberforce_pendulum::WilberforcePendulum;
+pub use windows::TwoWindows;

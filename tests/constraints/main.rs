@@ -1,9 +1,6 @@
-//! Mechanisms with constraints, held to published and recomputed results.
+//! Mechanisms with constraints.
 
-mod bicycle;
 mod counts;
 mod formulations;
-mod linkages;
+mod invariants;
 mod reactions;
-mod rolling;
-mod skates;

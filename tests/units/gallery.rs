@@ -227,11 +227,12 @@ fn a_factor_too_few_is_refused() {
     assert!(refused > 40, "{refused} mistakes");
 }
 
-/// A message names the parameter, or shows the definition that it stands in. One of the two entries of a symmetric
-/// matrix is refused before.
+/// A message names the parameter, or one whose unit follows from it, or shows the definition that it stands in. One of the
+/// two entries of a symmetric matrix is refused before, and so is a loop that is locked by a length that is wrong.
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
-    let others = ["by this `", "an inertia matrix is symmetric"];
+    let others =
+        ["by this `", "is declared as", "an inertia matrix is symmetric", "this mechanism cannot move"];
     messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 
@@ -276,6 +277,29 @@ const PAGE: &[(&str, &str, &str, &str)] = &[
         #[acts(between = (first, second), damping = c)] damper: Dashpot,
         #[acts(between = (first, second), inertance = b)] inerter: Inerter,",
         "kg kg N/m N/m N·s/m kg",
+    ),
+    (
+        "SliderCrank",
+        "gravity = -9.81 * y",
+        "r: f64, l: f64, m_crank: f64, m_rod: f64, m_piston: f64,
+        #[body(mass = m_crank, com = r / 2 * x, inertia = rod(m_crank, r, x))] crank: Body,
+        #[body(mass = m_rod, com = l / 2 * x, inertia = rod(m_rod, l, x))] rod: Body,
+        #[body(mass = m_piston)] piston: Body,
+        #[joint(ground -> crank, about = z)] main: Pin,
+        #[joint(crank.at(r * x) -> rod, about = z)] big_end: Pin,
+        #[joint(ground -> piston, along = x)] cylinder: Sleeve,
+        #[joint(rod.at(l * x) -> piston, about = z)] small_end: Pin,
+        #[acts(on = main)] motor: Torque,",
+        "m m kg kg kg",
+    ),
+    (
+        "RollingDisk",
+        "gravity = -g * z",
+        "g: f64, m: f64, radius: f64,
+        #[body(mass = m, inertia = disk(m, radius, y))] disk: Body,
+        #[joint(ground -> disk)] pose: Free,
+        #[constraint(rolls(disk.circle(radius, y), ground.plane(z)))] contact: Rolling,",
+        "m/s² kg m",
     ),
     (
         "Aircraft",

@@ -1,0 +1,58 @@
+use linkwork::mechanism;
+
+/// A ball that rolls without slipping inside a vertical tube. It does not fall: it sinks, turns back and rises again, as
+/// a golf ball that leaves the hole.
+///
+/// Source: Gualtieri, Tokieda, Advis-Gaete, Carry, Reffet and Guthmann, *Golfer's dilemma*, Am. J. Phys. 74 (2006);
+/// Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. II.
+///
+/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z points up
+///   along the tube's axis.
+/// - The rate `Ω` of the way round is constant, and with the spin `n` about the line from the axis:
+///   `r ṅ = Ω ż`, `(7/5) z̈ + (2/5) r n Ω + g = 0`, an oscillation with the frequency `√(2/7) Ω`.
+#[mechanism(gravity = -g * z)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallInTube {
+    /// Acceleration of free fall, m/s².
+    pub g: f64,
+    /// Mass of the ball, kg.
+    pub mass: f64,
+    /// Radius of the ball, m.
+    pub radius: f64,
+    /// Inner radius of the tube, m.
+    pub tube: f64,
+
+    #[body(mass = mass, inertia = sphere(mass, radius))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[constraint(rolls(ball.sphere(radius), ground.tube(tube, z)))]
+    contact: Rolling,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_near, precisely};
+    use linkwork::prelude::*;
+
+    const B: BallInTube = BallInTube { g: 9.81, mass: 0.046, radius: 0.021, tube: 0.054 };
+
+    #[test]
+    fn rises_again() -> Result<(), Error> {
+        let (around, sinking, spin) = (30.0, -0.2, 4.0);
+        let (reach, r) = (B.tube - B.radius, B.radius);
+        let q = [reach, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        let v = [0.0, around * reach, sinking, spin, sinking / r, -around * reach / r];
+        let frequency = (2.0_f64 / 7.0).sqrt() * around;
+        let middle = -2.5 * B.g / (around * around) - r * spin / around;
+        let run = simulate(&B).from(q, v).method(precisely()).duration(1.0).sample_every(0.1);
+        for sample in run {
+            let Sample { t, q, .. } = sample?;
+            let ((s, c), (sz, cz)) = ((around * t).sin_cos(), (frequency * t).sin_cos());
+            let height = middle * (1.0 - cz) + sinking / frequency * sz;
+            assert_near(q.fixed_rows::<3>(0).into_owned(), [reach * c, reach * s, height].into(), 1e-8);
+        }
+        Ok(())
+    }
+}

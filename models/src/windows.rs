@@ -1,0 +1,69 @@
+use linkwork::mechanism;
+
+/// Two windows of the mechanism with N windows: rods in a row of parallelograms, all verticals upright at the start.
+///
+/// Source: IFToMM library of computational benchmark problems, A02; González, Dopico, Lugrís and Cuadrado, *A benchmarking
+/// system for MBS simulation software*, Multibody Syst. Dyn. 16 (2006).
+///
+/// - Coordinates: the angles of five pins, rad; y points up. The pins `close1` and `close2` close the loops.
+/// - Where all links are on one line, twice in each turn, the constraints lose rank and other motions branch off. The
+///   motion on the parallelogram's branch is that of a pendulum: `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
+#[mechanism(gravity = -g * y)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoWindows {
+    /// Acceleration of free fall, m/s².
+    pub g: f64,
+    /// Mass of each rod, kg.
+    pub mass: f64,
+    /// Length of each rod, m.
+    pub length: f64,
+
+    #[body(mass = mass, com = length / 2 * y, inertia = rod(mass, length, y))]
+    left: Body,
+    #[body(mass = mass, com = length / 2 * x, inertia = rod(mass, length, x))]
+    first: Body,
+    #[body(mass = mass, com = length / 2 * y, inertia = rod(mass, length, y))]
+    middle: Body,
+    #[body(mass = mass, com = length / 2 * x, inertia = rod(mass, length, x))]
+    second: Body,
+    #[body(mass = mass, com = length / 2 * y, inertia = rod(mass, length, y))]
+    right: Body,
+    #[joint(ground -> left, about = z)]
+    b0: Pin,
+    #[joint(left.at(length * y) -> first, about = z)]
+    t0: Pin,
+    #[joint(ground.at(length * x) -> middle, about = z)]
+    b1: Pin,
+    #[joint(middle.at(length * y) -> second, about = z)]
+    t1: Pin,
+    #[joint(ground.at(2 * length * x) -> right, about = z)]
+    b2: Pin,
+    #[joint(first.at(length * x) -> middle.at(length * y), about = z)]
+    close1: Pin,
+    #[joint(second.at(length * x) -> right.at(length * y), about = z)]
+    close2: Pin,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::precisely;
+    use linkwork::prelude::*;
+
+    #[test]
+    fn windows_go_through_their_singular_positions() -> Result<(), Error> {
+        let windows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
+        assert_eq!((TwoWindows::NV, TwoWindows::NC), (5, 4));
+        // Angles are counted against the clock; the couplers keep their direction.
+        let run = simulate(&windows)
+            .from([0.0; 5], [-1.0, 1.0, -1.0, 1.0, -1.0])
+            .method(precisely())
+            .duration(10.0)
+            .finish()?;
+        let top = (-run.q[0].sin(), run.q[0].cos());
+        assert!((top.0 - 0.328_458_111_540_815).abs() < 1e-6, "{top:?}");
+        assert!((top.1 - 0.944_518_538_078_601).abs() < 1e-6, "{top:?}");
+        assert!(windows.constraint_residuals(&run.q).amax() < 1e-10);
+        Ok(())
+    }
+}

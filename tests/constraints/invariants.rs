@@ -1,0 +1,154 @@
+//! What holds in every state of every constrained mechanism.
+
+use linkwork::prelude::*;
+use linkwork_models::*;
+use support::random::Random;
+
+/// Constraints and equations of motion at accelerations and multipliers, and what projections leave.
+fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    guess: &SVector<f64, NQ>,
+) where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(41);
+    for _ in 0..5 {
+        let near = Mechanism::integrate(m, guess, &random.vector(0.05));
+        let q = m.assemble(0.0, &near, &[]).expect("a configuration is near");
+        assert!(m.constraint_residuals(0.0, &q).amax() < 1e-13);
+        let v = m.project_velocity(0.0, &q, &random.vector(1.0)).expect("a velocity is near");
+        assert!(m.constraint_rates(0.0, &q, &v).amax() < 1e-12);
+        let again = m.project_velocity(0.0, &q, &v).expect("it is one already");
+        assert!((again - v).amax() < 1e-11 * v.amax().max(1.0));
+
+        let tau = random.vector(1.0);
+        let (a, lambda) = m.constrained_dynamics(0.0, &q, &v, &tau);
+        let j = m.constraint_jacobian(0.0, &q);
+        let scale = a.amax().max(1.0);
+        assert!((j * a + m.constraint_bias(0.0, &q, &v)).amax() < 1e-9 * scale);
+        let missing = Mechanism::inverse_dynamics(m, &q, &v, &a) - tau - j.transpose() * lambda;
+        assert!(missing.amax() < 1e-9 * scale.max(lambda.amax()), "{missing}");
+        // The constraints do no work: what the forces hand over is what the energy takes up.
+        let (before, after) = (moved(m, &q, &v, &a, -1e-5), moved(m, &q, &v, &a, 1e-5));
+        let power = (after - before) / 2e-5;
+        let energy = after.abs().max(1.0);
+        assert!((power - tau.dot(&v)).abs() < 1e-5 * energy * scale, "{power} for {}", tau.dot(&v));
+        rates(m, &q, &v);
+    }
+}
+
+/// Energy a moment later.
+fn moved<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    a: &SVector<f64, NV>,
+    h: f64,
+) -> f64
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let (q, v) = (m.integrate(q, &(v * h + a * (h * h / 2.0))), v + a * h);
+    m.kinetic_energy(&q, &v) + m.potential_energy(&q)
+}
+
+/// Rates are those of the residuals, and the biases those of the rates, by differences.
+fn rates<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+) where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let h = 1e-5;
+    let (before, after) = (Mechanism::integrate(m, q, &(v * -h)), Mechanism::integrate(m, q, &(v * h)));
+    let residuals = (m.constraint_residuals(0.0, &after) - m.constraint_residuals(0.0, &before)) / (2.0 * h);
+    let rates = m.constraint_rates(0.0, q, v);
+    let biases = (m.constraint_rates(0.0, &after, v) - m.constraint_rates(0.0, &before, v)) / (2.0 * h);
+    let bias = m.constraint_bias(0.0, q, v);
+    let scale = v.norm_squared().max(1.0);
+    for k in 0..NC {
+        if k < NH {
+            assert!((residuals[k] - rates[k]).abs() < 1e-7 * scale, "{}", M::CONSTRAINTS[k]);
+        }
+        assert!((biases[k] - bias[k]).abs() < 1e-6 * scale * scale, "{}", M::CONSTRAINTS[k]);
+    }
+}
+
+#[test]
+fn linkages() {
+    let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
+    check(&four_bar, &[0.7, 0.2, 1.8].into());
+    let crank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
+    check(&crank, &[0.8, -1.0, 0.15].into());
+    check(&BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 }, &[0.3, -0.23, 0.3, -0.23, 0.3].into());
+    check(&TwoWindows { g: 9.81, mass: 1.0, length: 1.0 }, &[0.4, -0.4, 0.4, -0.4, 0.4].into());
+}
+
+#[test]
+fn platform() {
+    let platform = StewartPlatform {
+        g: 9.81,
+        base_radius: 0.8,
+        platform_radius: 0.5,
+        platform_mass: 3.0,
+        across: 0.15,
+        axial: 0.25,
+        leg_mass: 2.0,
+        leg: 0.6,
+    };
+    let mut guess = platform.neutral();
+    guess[2] = 0.9;
+    for leg in 0..6 {
+        guess[9 + 3 * leg] = 1.0;
+    }
+    check(&platform, &guess);
+}
+
+#[test]
+fn rolling_bodies() {
+    let disk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
+    check(&disk, &[0.0, 0.0, 0.4, 0.5, 0.3, 0.7].into());
+    let bowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
+    check(&bowl, &[0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into());
+    let tube = BallInTube { g: 9.81, mass: 0.3, radius: 0.05, tube: 0.45 };
+    check(&tube, &[0.2, -0.35, 0.1, 0.5, 0.5, -0.5, 0.5].into());
+    let stone = Rattleback {
+        g: 9.81,
+        mass: 1.0,
+        a: 0.2,
+        b: 0.03,
+        c: 0.02,
+        depth: 0.01,
+        ixx: 2e-4,
+        iyy: 1.6e-3,
+        izz: 1.7e-3,
+        ixy: -2e-5,
+    };
+    check(&stone, &[0.0, 0.0, 0.02, 0.1, 0.1, 0.0, 0.98_f64.sqrt()].into());
+    let mut upright = Bicycle::BENCHMARK.neutral();
+    upright[3] = 0.1;
+    upright[6] = (1.0_f64 - 0.01).sqrt();
+    check(&Bicycle::BENCHMARK, &upright);
+}
+
+/// States that do not fulfil the constraints are refused, and what cannot be assembled says why.
+#[test]
+fn states_off_the_constraints_are_errors() {
+    let squeezer = AndrewsSqueezer {};
+    let mut q = SVector::from(AndrewsSqueezer::START);
+    q[2] += 0.01;
+    let run = simulate(&squeezer).from(q, [0.0; 7]).duration(0.001).finish();
+    assert!(matches!(run, Err(Error::OffConstraints { .. } | Error::Constraint { .. })), "{run:?}");
+    // From there it is assembled, the crank where it is.
+    let found = squeezer.assemble(&q, &[0]).expect("it is close");
+    assert!((found[0] - q[0]).abs() < 1e-15 && squeezer.constraint_residuals(&found).amax() < 1e-14);
+    // With all angles but one held it cannot be.
+    let held = squeezer.assemble(&q, &[0, 1, 2, 3, 4, 5]);
+    assert!(
+        matches!(held, Err(ConstraintError::Configuration { constraint, .. }) if constraint.starts_with('e')),
+        "{held:?}"
+    );
+    let lost = squeezer.assemble(&SVector::repeat(f64::NAN), &[]);
+    assert_eq!(lost, Err(ConstraintError::NotFinite));
+}
