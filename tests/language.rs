@@ -188,3 +188,87 @@ fn structure_without_motion() {
     assert_eq!(beam, Vector3::new(0.0, 2.0, 0.0));
     assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
 }
+
+/// The language's page: the last joint closes the loop.
+#[mechanism(gravity = -9.81 * y)]
+struct SliderCrank {
+    r: f64,
+    l: f64,
+    m_crank: f64,
+    m_rod: f64,
+    m_piston: f64,
+
+    #[body(mass = m_crank, com = r / 2 * x, inertia = rod(m_crank, r, x))]
+    crank: Body,
+    #[body(mass = m_rod, com = l / 2 * x, inertia = rod(m_rod, l, x))]
+    rod: Body,
+    #[body(mass = m_piston)]
+    piston: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[joint(crank.at(r * x) -> rod, about = z)]
+    big_end: Pin,
+    #[joint(ground -> piston, along = x)]
+    cylinder: Sleeve,
+    #[joint(rod.at(l * x) -> piston, about = z)]
+    small_end: Pin,
+    #[acts(on = main)]
+    motor: Torque,
+}
+
+/// At right angles: the piston is where Pythagoras has it, stands still against the crank's end, and its rows are named.
+#[test]
+fn joint_that_closes_a_loop() {
+    let engine = SliderCrank { r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
+    assert_eq!(SliderCrank::CONFIGURATION, ["main", "big_end", "cylinder"]);
+    assert_eq!(SliderCrank::CONSTRAINTS, ["small_end.x", "small_end.y"]);
+    let up = std::f64::consts::FRAC_PI_2;
+    let q = engine.assemble(&[up, -2.0, 0.5].into(), &[0]).expect("the rod is long enough");
+    assert_close("place", q.as_slice(), &[up, -up - 0.6_f64.asin(), 0.4], TOLERANCE);
+    let v = engine.project_velocity(&q, &[2.0, 0.0, 0.0].into()).expect("no dead centre");
+    // The rod moves without turning.
+    assert_close("rates", &[v[1] / v[0], v[2] / v[0]], &[-1.0, -0.3], TOLERANCE);
+}
+
+/// The language's page: a rolling pair on a free body.
+#[mechanism(gravity = -g * z)]
+struct RollingDisk {
+    g: f64,
+    m: f64,
+    radius: f64,
+
+    #[body(mass = m, inertia = disk(m, radius, y))]
+    disk: Body,
+    #[joint(ground -> disk)]
+    pose: Free,
+    #[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]
+    contact: Rolling,
+}
+
+/// In the axes that lean but do not roll `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`, `u̇₂ = −⅔ u₁ u₃`,
+/// `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁` (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972, ch. II); the disk turns
+/// in them by `spin` about y.
+#[test]
+fn rolling_pair() {
+    let (g, radius, lean) = (9.81, 0.4, 0.35_f64);
+    let disk = RollingDisk { g, m: 2.0, radius };
+    assert_eq!(RollingDisk::CONSTRAINTS, ["contact.normal", "contact.x", "contact.y"]);
+    assert_eq!((RollingDisk::NH, RollingDisk::NP, RollingDisk::NS), (1, 5, 3));
+    let (s, c) = (lean / 2.0).sin_cos();
+    let q = SVector::from([0.0, 0.0, radius * lean.cos(), s, 0.0, 0.0, c]);
+    let u = [0.7, -3.0, 1.3];
+    // The centre moves so that the contact is at rest.
+    let v = SVector::from([radius * u[1], -radius * u[0], 0.0, u[0], u[1], u[2]]);
+    assert_close("touches", disk.constraint_residuals(&q).as_slice(), &[0.0], TOLERANCE);
+    assert_close("rolls", disk.constraint_rates(&q, &v).as_slice(), &[0.0; 3], TOLERANCE);
+    let tan = lean.tan();
+    let spin = u[1] - u[2] * tan;
+    let bend = 4.0 * g * lean.sin() + 6.0 * radius * u[1] * u[2] - radius * u[2] * u[2] * tan;
+    let expected = [
+        bend / (5.0 * radius) - spin * u[2],
+        -2.0 * u[0] * u[2] / 3.0,
+        (-2.0 * u[1] + u[2] * tan) * u[0] + spin * u[0],
+    ];
+    let a = disk.forward_dynamics(&q, &v, &SVector::zeros());
+    assert_close("acceleration", &a.as_slice()[3..], &expected, 1e-12);
+}
