@@ -9,6 +9,12 @@
 //! `body.at(l / 2 * y)`, `body.at(l * x).rotated(z(angle), x(tilt))`, the rotations in order about carried axes.
 //! Units are SI, angles in radians.
 //!
+//! A joint holds its child. Where an earlier joint does that already, it closes a loop: it has no coordinate, and its
+//! constraints are kept by multipliers, or with `#[mechanism(formulation = speeds)]` (or `independent = (joint, …)`) by
+//! independent speeds. In a plane, a Pin that closes a loop between two bodies on Pins, or on a Pin and a Sleeve, may
+//! say `branch = 1` or `branch = -1`: then their coordinates are solved for in closed form and drop out.
+//! `reaction_force(joint)` and `reaction_torque(joint)` in an output are what the joint's parent exerts on its child.
+//!
 //! Units are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes `l` a length, and a parameter that would have
 //! to be two things at once is a compile error. A number has any unit: `-9.81 * y` is an acceleration, `l + 0.1` a
 //! length; but ½, 2 or π beside a parameter are plain numbers, and an expression without parameters is held to nothing.

@@ -1,6 +1,7 @@
 //! Mechanisms with constraints.
 
 mod counts;
+mod embedded;
 mod formulations;
 mod invariants;
 mod reactions;

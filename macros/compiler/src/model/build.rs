@@ -1,5 +1,6 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
+use super::embed;
 use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
@@ -57,6 +58,8 @@ pub struct Builder<'a, 'g> {
     pub masses: Vec<Option<MassProperties<'g>>>,
     /// By joint.
     coordinates: Vec<JointCoordinates>,
+    /// Loops that are solved in closed form.
+    pub embedded: Vec<embed::Embedded>,
     /// Joints to be opened, and the names of the constraints that a mechanism with opened joints keeps.
     pub opening: Option<(&'a [usize], &'a [Constraint<'g>])>,
     /// Number of the group of constraints that is being added.
@@ -80,6 +83,12 @@ pub fn build_model<'g>(
     }
     let mut model = build(description, graph, None, cx)?;
     let joints = reaction::requested(&model);
+    if let (false, Some(joint)) = (joints.is_empty(), description.joints.iter().find(|j| j.branch.is_some()))
+    {
+        cx.error(joint.name.place.clone(), "a loop that is solved in closed form tells no reactions")
+            .help("remove `branch`: multipliers know what the joints transmit");
+        return None;
+    }
     if !joints.is_empty() {
         let same = build(description, graph, Some((&joints, &model.constraints)), &mut Diagnostics::new());
         model.opened = same.map(|model| Rc::new(Opened { model, joints }));
@@ -217,6 +226,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             coordinates: Vec::new(),
             placeable,
             masses: Vec::new(),
+            embedded: Vec::new(),
             opening: None,
             group: 0,
         }
@@ -226,11 +236,12 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// masters may be declared later.
     fn number_coordinates(&mut self, cx: &mut Diagnostics) {
         let closing = tree::closing(self.description);
+        self.embedded = embed::find(self.description, &closing, cx);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
             let (q, v) = (self.model.nq(), self.model.nv());
             let mut plain = Vec::new();
-            if joint.mimic.is_none() && !closing[j] {
+            if joint.mimic.is_none() && !closing[j] && self.embedding(j).is_none() {
                 self.model.charts.extend(charts(joint.kind, q, v, joint.along.len()));
                 let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
                 for name in names_q {
@@ -343,7 +354,13 @@ impl<'a, 'g> Builder<'a, 'g> {
                 Some(at) => self.open(at, joints.len(), link, frame),
                 None => (link, frame),
             };
-            let (link, pose) = self.add_chain(j, &motions, link, frame);
+            let (link, pose) = match self.embedding(j) {
+                Some(_) => {
+                    let Some(solved) = self.embedded_pose(j, cx) else { return };
+                    self.settle(link, frame.then(&solved))
+                }
+                None => self.add_chain(j, &motions, link, frame),
+            };
             let pose = pose.then(&on_child.inverse());
             let kind =
                 if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };

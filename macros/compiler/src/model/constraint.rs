@@ -78,9 +78,14 @@ impl<'g> Builder<'_, 'g> {
             }
             return;
         }
-        for j in closing {
+        for j in closing
+            .iter()
+            .filter(|j| self.embedded.iter().all(|e| e.closing != **j))
+            .copied()
+            .collect::<Vec<_>>()
+        {
             self.group += 1;
-            self.close_loop(*j, cx);
+            self.close_loop(j, cx);
         }
         for constraint in &self.description.constraints {
             self.group += 1;

@@ -12,6 +12,7 @@ mod axis;
 mod build;
 mod carriers;
 mod constraint;
+mod embed;
 mod inertia;
 mod joint;
 pub mod kinematics;

@@ -3,6 +3,7 @@
 
 use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
+use crate::diag::Diagnostics;
 use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Joint, JointKind, Law};
 use std::collections::BTreeSet;
 
@@ -79,12 +80,14 @@ pub fn outline(d: &Description) -> Outline {
 fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     let closing = super::tree::closing(d);
+    let solved = super::embed::find(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();
         q.extend(free.iter().cloned());
         v.extend(free);
-        let holds = |joint: &&Joint| joint.mimic.is_none() && !closing[j];
+        let own = closing.get(j) == Some(&false) && solved.iter().all(|e| !e.sides.contains(&j));
+        let holds = |joint: &&Joint| joint.mimic.is_none() && own;
         let Some(joint) = d.joints.get(j).filter(holds) else { continue };
         let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));

@@ -64,7 +64,12 @@ impl<'a, 'g> Builder<'a, 'g> {
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
         match item {
-            Item::Joint(k) => names.push(d.joints[order.joints[k].0].parent.body.text.clone()),
+            Item::Joint(k) => {
+                let j = order.joints[k].0;
+                // What is solved for needs the other side of its loop as well.
+                let sides = self.embedding(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
+                names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
+            }
             Item::Frame(k) => {
                 let f = &d.frames[k];
                 collect_names(&f.start, &mut names);
@@ -299,7 +304,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
-    fn settle(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
+    pub fn settle(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
         let matrix = pose.rotation.matrix();
         let entries: Vec<_> = matrix.0.iter().flatten().chain(&pose.translation.0).copied().collect();
         let moves = symbols_in(&entries)

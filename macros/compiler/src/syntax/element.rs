@@ -299,6 +299,7 @@ fn read_joint(
     let along = arguments.take_list("along", cx);
     let pitch = arguments.take_expr("pitch", cx);
     let lead = arguments.take_expr("lead", cx);
+    let branch = arguments.take_expr("branch", cx);
     let allowed: &[&str] = match kind {
         JointKind::Pin | JointKind::Universal => &["about"],
         JointKind::Sleeve | JointKind::Stage => &["along"],
@@ -334,6 +335,7 @@ fn read_joint(
         mimic: None,
         damping: None,
         friction: None,
+        branch,
         driven: false,
     })
 }

@@ -333,6 +333,8 @@ pub struct Joint {
     pub lead: Option<Expr>,
     /// The axis need not be of unit length (URDF): it is normalised, and only zero is a mistake.
     pub normalise_axis: bool,
+    /// A joint that closes a loop: which of the two solutions of a loop that is solved in closed form.
+    pub branch: Option<Expr>,
     /// The coordinate follows another joint's.
     pub mimic: Option<Mimic>,
     /// Viscous damping on the coordinate (URDF).

@@ -68,6 +68,7 @@ fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) ->
         mimic: None,
         damping: None,
         friction: None,
+        branch: None,
         driven: false,
     }
 }
