@@ -171,3 +171,38 @@ fn batches() {
     let run = || assert_eq!(lanes.roll_out(&rollout, &mut q, &mut v, none, unwatched), Ok(()));
     assert_eq!(heap_calls(run), 0, "roll_out");
 }
+
+/// An arm with parameters and the rest of what can be asked for.
+#[mechanism(gravity = -g * z, prepare, centroidal, regressor, sensitivities, packed)]
+struct Arm {
+    g: f64,
+    m: f64,
+    l: f64,
+    #[body(mass = m, com = l / 2 * x, inertia = cuboid(m, l, l / 4, l / 5))]
+    upper: Body,
+    #[body(mass = m, com = l / 2 * x, inertia = cuboid(m, l, l / 4, l / 5))]
+    lower: Body,
+    #[joint(ground -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(l * x).rotated(x(pi / 2)) -> lower, about = z)]
+    elbow: Pin,
+}
+
+#[test]
+fn on_request() {
+    let m = Arm { g: 9.81, m: 0.7, l: 0.4 };
+    assert_eq!(heap_calls(|| m.prepare()), 0, "prepare");
+    check(&m.prepare());
+    let q = &Random::new(20).configuration(&m);
+    let (v, a) = (&Random::new(21).vector(1.0), &Random::new(22).vector(1.0));
+    let standard = m.standard_parameters();
+    assert_eq!(heap_calls(|| m.standard_parameters()), 0, "standard_parameters");
+    assert_eq!(heap_calls(|| m.base_parameters(&standard)), 0, "base_parameters");
+    assert_eq!(heap_calls(|| m.joint_torque_regressor(q, v, a)), 0, "joint_torque_regressor");
+    assert_eq!(heap_calls(|| m.base_regressor(q, v, a)), 0, "base_regressor");
+    assert_eq!(heap_calls(|| m.centroidal_momentum_matrix(q)), 0, "centroidal_momentum_matrix");
+    assert_eq!(heap_calls(|| m.centroidal_momentum_bias(q, v)), 0, "centroidal_momentum_bias");
+    assert_eq!(heap_calls(|| m.inverse_dynamics_by_parameters(q, v, a)), 0, "inverse_dynamics_by_parameters");
+    assert_eq!(heap_calls(|| m.forward_dynamics_by_parameters(q, v, a)), 0, "forward_dynamics_by_parameters");
+    assert_eq!(heap_calls(|| m.mass_matrix_packed(q)), 0, "mass_matrix_packed");
+}

@@ -179,6 +179,65 @@ fn driven_in_time() {
     assert!((end(one) - end(other)).abs() < 1e-9);
 }
 
+/// Four bars, with everything that can be asked for.
+#[mechanism(
+    gravity = -g * y,
+    prepare,
+    derivatives,
+    centroidal,
+    regressor,
+    sensitivities,
+    packed,
+    batch
+)]
+struct FourBars {
+    g: f64,
+    m: f64,
+    l: f64,
+    #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))]
+    crank: Body,
+    #[body(mass = 2 * m, com = l * x, inertia = rod(2 * m, 2 * l, x))]
+    coupler: Body,
+    #[body(mass = 2 * m, com = l * x, inertia = rod(2 * m, 2 * l, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    drive: Pin,
+    #[joint(crank.at(l * x) -> coupler, about = z)]
+    knee: Pin,
+    #[joint(ground.at(2 * l * x) -> rocker, about = z)]
+    pivot: Pin,
+    #[joint(coupler.at(2 * l * x) -> rocker.at(2 * l * x), about = z)]
+    closing: Pin,
+}
+
+#[test]
+fn with_a_closed_loop() {
+    let bars = FourBars { g: 9.81, m: 0.7, l: 0.4 };
+    let prepared = bars.prepare();
+    // The crank upright: the loop is a kite, its other corner as far from the crank's end as from the pivot.
+    let corner = (1.0_f64 + 4.0).sqrt() / 2.0;
+    let (axis, half) = ((1.0_f64).atan2(-2.0), (corner / 2.0).acos());
+    let (knee, pivot) = (axis + std::f64::consts::PI + half, axis - half);
+    let q = [std::f64::consts::FRAC_PI_2, knee - std::f64::consts::FRAC_PI_2, pivot].into();
+    assert_close("loop", bars.constraint_residuals(&q).as_slice(), &[0.0, 0.0], 1e-12);
+    let (v, tau) = ([0.0; 3].into(), [0.3, 0.0, 0.0].into());
+    let (one, other) = (prepared.forward_dynamics(&q, &v, &tau), bars.forward_dynamics(&q, &v, &tau));
+    assert_close("accelerations", one.as_slice(), other.as_slice(), TOLERANCE);
+    let rates = bars.constraint_jacobian(&q) * other + bars.constraint_bias(&q, &v);
+    assert_close("the loop stays closed", rates.as_slice(), &[0.0, 0.0], TOLERANCE);
+    // What the motion needs beside the forces that close the loop is what the mass properties account for.
+    let needed = bars.inverse_dynamics(&q, &v, &other);
+    let rigid = bars.joint_torque_regressor(&q, &v, &other) * bars.standard_parameters();
+    assert_close("regressor", rigid.as_slice(), needed.as_slice(), TOLERANCE);
+    let by_mass = bars.inverse_dynamics_by_parameters(&q, &v, &other).column(1) * bars.m;
+    assert_close(
+        "all forces are in proportion to the mass",
+        by_mass.as_slice(),
+        needed.as_slice(),
+        TOLERANCE,
+    );
+}
+
 // ---- What is left to do ------------------------------------------------------------------------------------------
 
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
