@@ -210,7 +210,8 @@ macro_rules! operators {
         impl<T: Real, const N: usize> $operator for Lanes<T, N> {
             type Output = Self;
 
-            #[inline(always)]
+            #[cfg_attr(debug_assertions, inline)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn $function(self, other: Self) -> Self {
                 Self(vector::$function(&self.0, &other.0))
             }
@@ -220,21 +221,24 @@ macro_rules! operators {
         impl<T: Real, const N: usize> $operator<T> for Lanes<T, N> {
             type Output = Self;
 
-            #[inline(always)]
+            #[cfg_attr(debug_assertions, inline)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn $function(self, other: T) -> Self {
                 self $symbol Self::splat(other)
             }
         }
 
         impl<T: Real, const N: usize> $assigning for Lanes<T, N> {
-            #[inline(always)]
+            #[cfg_attr(debug_assertions, inline)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn $assign(&mut self, other: Self) {
                 *self = *self $symbol other;
             }
         }
 
         impl<T: Real, const N: usize> $assigning<T> for Lanes<T, N> {
-            #[inline(always)]
+            #[cfg_attr(debug_assertions, inline)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn $assign(&mut self, other: T) {
                 *self = *self $symbol other;
             }
@@ -253,7 +257,8 @@ operators! {
 impl<T: Real, const N: usize> Neg for Lanes<T, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self(vector::neg(&self.0))
     }

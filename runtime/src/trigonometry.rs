@@ -1,6 +1,8 @@
 //! Sines and cosines of all angles of a mechanism at once: branch-free over arrays, so that the compiler turns them into
 //! vector instructions. Within one unit in the last place for |x| ≤ 10⁵; larger angles, infinities and NaN take the
 //! functions of the standard library (or of `libm`), each for itself: a result never depends on the other angles.
+//!
+//! Without optimisation everything that is inlined takes room on the stack of its own, for every call: there nothing is.
 
 use crate::Real;
 use crate::private::{constant, mul_add, neg_mul_add};
@@ -11,14 +13,16 @@ use nalgebra::ComplexField;
 pub(crate) const LARGEST: f64 = 1e5;
 
 /// Sine and cosine of an angle, rad.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos<T: Real>(x: T) -> (T, T) {
     let ([s], [c]) = sin_cos_all([x]);
     (s, c)
 }
 
 /// Sines and cosines of several angles, rad. Fastest for a multiple of eight.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos_all<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
     if let Some(x) = same::<_, [f64; N]>(&x)
         && let (s, c) = doubles(x)
@@ -40,7 +44,8 @@ pub fn sin_cos_all<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
 }
 
 /// A reference as a type that it may have; decided at compile time.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
     (a as &dyn Any).downcast_ref()
 }
@@ -53,7 +58,8 @@ fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
     (s, c)
 }
 
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     let mut small = true;
@@ -61,12 +67,12 @@ fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
         small &= x.abs() <= LARGEST;
         (*s, *c) = small_angle(*x);
     }
-    if small {
-        return (s, c);
+    if !small {
+        // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
+        let copy = *x;
+        (s, c) = with_large(&copy);
     }
-    // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
-    let copy = *x;
-    with_large(&copy)
+    (s, c)
 }
 
 /// Takes the library's values where angles are large: each result depends on its own angle alone.
@@ -82,7 +88,8 @@ pub(crate) fn with_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
 }
 
 /// Within the range of the reduction.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn small_angle(x: f64) -> (f64, f64) {
     let (s, c, shifted) = kernel(x);
     turned(s, c, shifted)
@@ -92,7 +99,8 @@ fn small_angle(x: f64) -> (f64, f64) {
 ///
 /// Cody and Waite's reduction by quarter turns, with the rounding of the reduced angle carried along; Taylor-like
 /// polynomials in double precision (coefficients of fdlibm's `__kernel_sin` and `__kernel_cos`, Sun Microsystems 1993).
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
 pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
     // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
@@ -145,7 +153,8 @@ pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
 }
 
 /// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     let quadrant = shifted.to_bits();
     let odd = (quadrant & 1).wrapping_neg();
@@ -156,7 +165,8 @@ fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     (f64::from_bits(s ^ s_sign), f64::from_bits(c ^ c_sign))
 }
 
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn horner<T: Real>(z: T, coefficients: [f64; 6]) -> T {
     let [first, rest @ ..] = coefficients;
     let mut sum = constant(first);

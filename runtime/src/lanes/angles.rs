@@ -8,13 +8,16 @@ use core::any::Any;
 macro_rules! angles {
     ($function:ident $all:ident $lanes:literal $register:ident $bits:ident, $together:literal) => {
         /// Sines and cosines of small angles, several at a time, so that their long chains of operations overlap.
-        #[inline(always)]
+        #[cfg_attr(debug_assertions, inline)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn $function<const M: usize>(x: [Lanes<f64, $lanes>; M]) -> [[Lanes<f64, $lanes>; M]; 2] {
             use wide::{$bits, $register};
             let (s, c, shifted) = kernel(Lanes(x));
             let (mut sines, mut cosines) = (s.0, c.0);
             for k in 0..M {
-                let [s, c, quadrant] = [s, c, shifted].map(|of_all| $register::new(of_all.0[k].0).to_bits());
+                let s = $register::new(s.0[k].0).to_bits();
+                let c = $register::new(c.0[k].0).to_bits();
+                let quadrant = $register::new(shifted.0[k].0).to_bits();
                 let (one, sign) = ($bits::splat(1), $bits::splat(1 << 63));
                 let exchange = (s ^ c) & ($bits::splat(0) - (quadrant & one));
                 let s = s ^ exchange ^ ((quadrant << 62_u32) & sign);
@@ -26,7 +29,8 @@ macro_rules! angles {
         }
 
         /// Puts the sines in the place of the angles and returns the cosines.
-        #[inline(always)]
+        #[cfg_attr(debug_assertions, inline)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn $all<const N: usize>(x: &mut [Lanes<f64, $lanes>; N]) -> [Lanes<f64, $lanes>; N] {
             use wide::$register;
             let mut small = $register::new([f64::from_bits(u64::MAX); $lanes]);
@@ -64,7 +68,8 @@ angles!(four all_four 4 f64x4 u64x4, 4);
 angles!(eight all_eight 8 f64x8 u64x8, 2);
 
 /// Sines and cosines, if the lanes fill a register.
-#[inline(always)]
+#[cfg_attr(debug_assertions, inline)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn sin_cos_all<T: Real, const N: usize>(mut x: [T; N]) -> Option<([T; N], [T; N])> {
     macro_rules! case {
         ($lanes:literal $function:ident) => {

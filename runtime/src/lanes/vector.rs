@@ -38,10 +38,13 @@ macro_rules! operations {
             register!(f32 4 f32x4: ($($a)+) => $f);
             register!(f32 8 f32x8: ($($a)+) => $f);
             register!(f32 16 f32x16: ($($a)+) => $f);
-            core::array::from_fn(|k| {
+            // Plain loops are unrolled where functions of arrays are not always inlined.
+            let mut result = [T::zero(); N];
+            for (k, result) in result.iter_mut().enumerate() {
                 $(let $a = $a[k];)+
-                $f
-            })
+                *result = $f;
+            }
+            result
         }
     )+};
 }

@@ -157,11 +157,15 @@ impl Calls {
             while !self.arguments.len().is_multiple_of(width) {
                 self.arguments.push((zero.to_string(), vec![self.arguments.len()]));
             }
-            let list =
-                |letter| self.arguments.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
-            let angles: Vec<&str> = self.arguments.iter().map(|(text, _)| text.as_str()).collect();
-            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
-            let _ = write!(text, "let ([{sines}], [{cosines}]) = sin_cos_all([{angles}]); ");
+            // Lanes fill registers by themselves: of so many the registers overlap, and nothing passes through memory.
+            let together = if self.padded { self.arguments.len().max(1) } else { WIDTH };
+            for group in self.arguments.chunks(together) {
+                let list =
+                    |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
+                let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
+                let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+                let _ = write!(text, "let ([{sines}], [{cosines}]) = sin_cos_all([{angles}]); ");
+            }
         }
         let _ = write!(text, "({},) }}", self.results.join(", "));
         (self.names, text)
