@@ -178,12 +178,16 @@ fn arrays_of_states_are_evaluated_state_by_state() {
         lanes.inverse_dynamics_all(0.0, &states.q, &states.v, &a, &mut tau).expect("lengths");
         lanes.forward_dynamics_all(0.0, &states.q, &states.v, &tau, &mut back).expect("lengths");
         lanes.mass_matrix_all(0.0, &states.q, &mut mass).expect("lengths");
+        // In one lane, since a single state has its alike limbs in lanes.
+        let one = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
         for k in 0..count {
-            let (q, v) = (&column(&states.q, count, k), &column(&states.v, count, k));
-            let expected = Solo12.inverse_dynamics(q, v, &column(&a, count, k));
-            assert_eq!(column::<18>(&tau, count, k), expected);
-            assert_eq!(column::<18>(&back, count, k), Solo12.forward_dynamics(q, v, &expected));
-            assert_eq!(column::<324>(&mass, count, k).as_slice(), Solo12.mass_matrix(q).as_slice());
+            let (q, v) =
+                (&column::<19>(&states.q, count, k).map(|q| Lanes([q])), &one(column(&states.v, count, k)));
+            let expected = Solo12.inverse_dynamics_lanes(q, v, &one(column(&a, count, k)));
+            assert_eq!(one(column(&tau, count, k)), expected);
+            assert_eq!(one(column(&back, count, k)), Solo12.forward_dynamics_lanes(q, v, &expected));
+            let m = Solo12.mass_matrix_lanes::<1>(q).map(|m| m[0]);
+            assert_eq!(column::<324>(&mass, count, k).as_slice(), m.as_slice());
         }
     }
 }
