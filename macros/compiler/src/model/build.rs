@@ -139,6 +139,46 @@ fn build<'g>(
     cx.is_empty().then_some(builder.model)
 }
 
+/// A model without contents.
+fn empty_model<'g>(
+    graph: &'g Graph,
+    description: &Description,
+    gravity: Vec3<'g>,
+    friction_speed: crate::expr::Expr<'g>,
+) -> Model<'g> {
+    Model {
+        graph,
+        name: description.name.text.clone(),
+        place: description.name.place.clone(),
+        scalar: description.scalar.clone(),
+        parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
+        gravity,
+        friction_speed,
+        links: Vec::new(),
+        still: Inertia::zero(graph),
+        time: false,
+        velocity_inputs: false,
+        charts: Vec::new(),
+        configuration: Vec::new(),
+        velocities: Vec::new(),
+        inputs: Vec::new(),
+        frames: Vec::new(),
+        springs: Vec::new(),
+        dashpots: Vec::new(),
+        frictions: Vec::new(),
+        potentials: Vec::new(),
+        dissipations: Vec::new(),
+        constraints: Vec::new(),
+        dependent: None,
+        freedom: [0; 2],
+        loads: Vec::new(),
+        inertances: Vec::new(),
+        outputs: Vec::new(),
+        opened: None,
+        units: Units::default(),
+    }
+}
+
 impl<'a, 'g> Builder<'a, 'g> {
     fn new(description: &'a Description, graph: &'g Graph, cx: &mut Diagnostics) -> Builder<'a, 'g> {
         let held: Vec<Held<'a>> = description
@@ -182,37 +222,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         {
             cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"));
         }
-        let model = Model {
-            graph,
-            name: description.name.text.clone(),
-            place: description.name.place.clone(),
-            scalar: description.scalar.clone(),
-            parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
-            gravity: gravity.unwrap_or(Vec3::zero(graph)),
-            friction_speed,
-            links: Vec::new(),
-            still: Inertia::zero(graph),
-            time: false,
-            velocity_inputs: false,
-            charts: Vec::new(),
-            configuration: Vec::new(),
-            velocities: Vec::new(),
-            inputs: Vec::new(),
-            frames: Vec::new(),
-            springs: Vec::new(),
-            dashpots: Vec::new(),
-            frictions: Vec::new(),
-            potentials: Vec::new(),
-            dissipations: Vec::new(),
-            constraints: Vec::new(),
-            dependent: None,
-            freedom: [0; 2],
-            loads: Vec::new(),
-            inertances: Vec::new(),
-            outputs: Vec::new(),
-            opened: None,
-            units: Units::default(),
-        };
+        let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
         let places = vec![None; held.len()];
         let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
         placeable.extend(description.frames.iter().map(|f| f.name.text.clone()));
