@@ -21,7 +21,7 @@ use nalgebra::SVector;
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///
-/// It is a [`Real`](crate::Real), so that a generic mechanism can be instantiated with it. These are not from lane to
+/// It is a [`Real`], so that a generic mechanism can be instantiated with it. These are not from lane to
 /// lane:
 ///
 /// - Comparisons ask for all lanes: `a < b` where it is so in every lane, and neither `a < b` nor `b < a` where lanes

@@ -17,7 +17,7 @@ use crate::model::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity};
 
 /// A mechanism with one limb for each group of alike ones.
 pub struct Limbs<'g> {
-    /// The mechanism, without springs and the like; its `v` are [`velocities`](Limbs::velocities).
+    /// The mechanism, without springs and the like; its `v` are numbered by the limbs.
     pub model: Model<'g>,
     /// Its joints.
     pub joints: Vec<Joint<'g>>,
