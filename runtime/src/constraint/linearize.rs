@@ -59,6 +59,19 @@ fn each_column<T: Real, const R: usize, const C: usize>(
     m
 }
 
+/// An entry; zero outside, since an index that was searched for would leave a way to panic.
+fn entry<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>, i: usize, j: usize) -> T {
+    m.get((i, j)).copied().unwrap_or(T::zero())
+}
+
+fn scale_row<T: Real, const R: usize, const C: usize>(m: &mut SMatrix<T, R, C>, row: usize, by: T) {
+    for j in 0..C {
+        if let Some(x) = m.get_mut((row, j)) {
+            *x *= by;
+        }
+    }
+}
+
 /// What generated code knows of a motion.
 pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
     /// Derivatives of the accelerations by `q` and `v`.
@@ -87,7 +100,9 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
         let zero = SMatrix::<T, NC, NV>::zeros();
         let mut on_configurations = self.jacobian;
-        (self.holonomic..NC).for_each(|k| on_configurations.row_mut(k).fill(T::zero()));
+        for k in self.holonomic..NC {
+            scale_row(&mut on_configurations, k, T::zero());
+        }
         let positions = Dependence::of(on_configurations, zero, self.preferred);
         let speeds = Dependence::of(self.jacobian, -self.rates_by_q, self.preferred);
         let (coordinates, shape) = positions.free::<NP>()?;
@@ -95,14 +110,27 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         let carried = speeds.particular() * shape;
         let (by_position, by_speed) = (self.by_q * shape + self.by_v * carried, self.by_v * gamma);
         let drift = self.turning * shape + carried;
-        let row = |i: usize| if i < NP { coordinates[i] } else { free[i - NP] };
-        let a = SMatrix::from_fn(|i, j| match (i < NP, j < NP) {
-            (true, true) => drift[(row(i), j)],
-            (true, false) => gamma[(row(i), j - NP)],
-            (false, true) => by_position[(row(i), j)],
-            (false, false) => by_speed[(row(i), j - NP)],
-        });
-        let b = SMatrix::from_fn(|i, j| if i < NP { T::zero() } else { self.by_u[(row(i), j)] });
+        let rows = coordinates.iter().chain(&free);
+        let mut a = SMatrix::<T, NX, NX>::zeros();
+        let mut b = SMatrix::<T, NX, NU>::zeros();
+        for (i, row) in rows.copied().enumerate() {
+            for j in 0..NX {
+                let value = match (i < NP, j < NP) {
+                    (true, true) => entry(&drift, row, j),
+                    (true, false) => entry(&gamma, row, j - NP),
+                    (false, true) => entry(&by_position, row, j),
+                    (false, false) => entry(&by_speed, row, j - NP),
+                };
+                if let Some(slot) = a.get_mut((i, j)) {
+                    *slot = value;
+                }
+            }
+            for j in (0..NU).filter(|_| i >= NP) {
+                if let Some(slot) = b.get_mut((i, j)) {
+                    *slot = entry(&self.by_u, row, j);
+                }
+            }
+        }
         Ok(Linearization { a, b, coordinates, speeds: free })
     }
 }
@@ -124,22 +152,25 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
                 let mut best = (0, 0, T::zero());
                 for j in (0..NV).filter(|j| !(spare && preferred.contains(j))) {
                     for i in (0..NC).filter(|i| pivots[*i].is_none()) {
-                        if left[(i, j)].abs() > best.2 {
-                            best = (i, j, left[(i, j)].abs());
+                        let size = entry(&left, i, j).abs();
+                        if size > best.2 {
+                            best = (i, j, size);
                         }
                     }
                 }
                 Some(best).filter(|best| best.2 > small)
             };
             let Some((row, column, _)) = largest(true).or_else(|| largest(false)) else { break };
-            pivots[row] = Some(column);
-            let scale = T::one() / left[(row, column)];
-            left.row_mut(row).scale_mut(scale);
-            right.row_mut(row).scale_mut(scale);
+            if let Some(pivot) = pivots.get_mut(row) {
+                *pivot = Some(column);
+            }
+            let scale = T::one() / entry(&left, row, column);
+            scale_row(&mut left, row, scale);
+            scale_row(&mut right, row, scale);
             for i in (0..NC).filter(|i| *i != row) {
-                let factor = left[(i, column)];
+                let factor = entry(&left, i, column);
                 for j in 0..NV {
-                    let (l, r) = (left[(row, j)], right[(row, j)]);
+                    let (l, r) = (entry(&left, row, j), entry(&right, row, j));
                     left[(i, j)] -= factor * l;
                     right[(i, j)] -= factor * r;
                 }
@@ -156,10 +187,13 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         }
         let mut indices = [0; N];
         indices.iter_mut().zip((0..NV).filter(is_free)).for_each(|(slot, j)| *slot = j);
-        let shape = SMatrix::from_fn(|i, j| match self.pivots.iter().position(|p| *p == Some(i)) {
-            Some(row) => -self.left[(row, indices[j])],
-            None if i == indices[j] => T::one(),
-            None => T::zero(),
+        let shape = SMatrix::from_fn(|i, j| {
+            let index = indices.get(j).copied().unwrap_or_default();
+            match self.pivots.iter().position(|p| *p == Some(i)) {
+                Some(row) => -entry(&self.left, row, index),
+                None if i == index => T::one(),
+                None => T::zero(),
+            }
         });
         Ok((indices, shape))
     }
@@ -168,7 +202,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
     fn particular(&self) -> SMatrix<T, NV, NV> {
         SMatrix::from_fn(|i, j| {
             let row = self.pivots.iter().position(|p| *p == Some(i));
-            row.map_or(T::zero(), |row| self.right[(row, j)])
+            row.map_or(T::zero(), |row| entry(&self.right, row, j))
         })
     }
 }

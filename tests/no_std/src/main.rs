@@ -1,5 +1,5 @@
-//! A computed-torque controller of a seven-axis arm with the arm that it moves, and a body in flight with every
-//! integrator, without the standard library, without an allocator and without any way to panic: the panic handler
+//! A computed-torque controller of a seven-axis arm with the arm that it moves, a body in flight with every
+//! integrator, and an engine with a closed loop, without the standard library, without an allocator and without any way to panic: the panic handler
 //! calls a function that does not exist, so that a program with a panic left in it cannot be linked.
 
 #![no_std]
@@ -99,6 +99,43 @@ fn flies(mass: f64) -> bool {
     driven.t == precise.t && fixed.iter().all(close)
 }
 
+/// A crank, a rod and a piston: a loop.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Engine {
+    length: f64,
+    #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
+    crank: Body,
+    #[body(mass = 0.5, com = length / 2 * x, inertia = rod(0.5, length, x))]
+    rod: Body,
+    #[body(mass = 0.4)]
+    piston: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[joint(ground -> piston, along = x)]
+    cylinder: Sleeve,
+    #[joint(rod.at(length * x) -> piston, about = z)]
+    small_end: Pin,
+    #[acts(on = main)]
+    motor: Torque,
+}
+
+/// Whether the engine is assembled and stays so.
+fn turns(length: f64) -> bool {
+    let engine = Engine { length };
+    let Ok(q) = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]) else { return false };
+    let Ok(v) = engine.project_velocity(&q, &[50.0, 0.0, 0.0].into()) else { return false };
+    let (a, lambda) = engine.constrained_dynamics(&q, &v, &engine.generalized_forces(&q, &[3.0].into()));
+    let Ok(linear) = engine.linearize(&q, &v, &[3.0].into(), &[0]) else { return false };
+    let run = simulate(&engine).from(q, v).inputs(|_, _, _| [3.0].into()).duration(0.1);
+    let Ok(end) = run.finish() else { return false };
+    let Ok(held) = engine.project_configuration(&end.q) else { return false };
+    let consistent = (engine.constraint_jacobian(&q) * a + engine.constraint_bias(&q, &v)).norm() < 1e-9;
+    let finite = lambda.norm() + linear.a.norm() + linear.b.norm() < 1e9;
+    consistent && finite && (held - end.q).norm() < 1e-9
+}
+
 #[unsafe(no_mangle)]
 extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
     let _ = arguments;
@@ -118,7 +155,7 @@ extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;
-    i32::from(!(sound && arrived && side_by_side(&q, &v) && flies(black_box(0.5))))
+    i32::from(!(sound && arrived && side_by_side(&q, &v) && flies(black_box(0.5)) && turns(black_box(0.13))))
 }
 
 #[panic_handler]
