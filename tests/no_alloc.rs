@@ -5,7 +5,8 @@ use linkwork::batch::{Rollout, unwatched};
 use linkwork::integrate::{ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
-use linkwork::{Batch, Mechanism, frame, mechanism, simulate};
+use linkwork::{Batch, Constrained, Mechanism, frame, mechanism, simulate};
+use linkwork_models::{Bicycle, BricardLinkage, FourBar};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
@@ -205,4 +206,41 @@ fn on_request() {
     assert_eq!(heap_calls(|| m.inverse_dynamics_by_parameters(q, v, a)), 0, "inverse_dynamics_by_parameters");
     assert_eq!(heap_calls(|| m.forward_dynamics_by_parameters(q, v, a)), 0, "forward_dynamics_by_parameters");
     assert_eq!(heap_calls(|| m.mass_matrix_packed(q)), 0, "mass_matrix_packed");
+}
+
+/// Everything in the trait `Constrained`, about a state that fulfils the constraints.
+fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    near: &SVector<f64, NQ>,
+) where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(20);
+    let (any, tau): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(1.0), random.vector(1.0));
+    assert_eq!(heap_calls(|| m.assemble(0.0, near, &[0])), 0, "assemble");
+    let q = &m.assemble(0.0, near, &[]).expect("a configuration is near");
+    assert_eq!(heap_calls(|| m.project_velocity(0.0, q, &any)), 0, "project_velocity");
+    let v = &m.project_velocity(0.0, q, &any).expect("a velocity is near");
+    assert_eq!(heap_calls(|| m.constraint_residuals(0.0, q)), 0, "constraint_residuals");
+    assert_eq!(heap_calls(|| m.constraint_rates(0.0, q, v)), 0, "constraint_rates");
+    assert_eq!(heap_calls(|| m.constraint_jacobian(0.0, q)), 0, "constraint_jacobian");
+    assert_eq!(heap_calls(|| m.constraint_bias(0.0, q, v)), 0, "constraint_bias");
+    assert_eq!(heap_calls(|| m.constrained_dynamics(0.0, q, v, &tau)), 0, "constrained_dynamics");
+    assert_eq!(heap_calls(|| m.project_state(0.0, near, v)), 0, "project_state");
+    let run = || assert!(simulate(m).from(*q, *v).duration(0.01).finish().is_ok());
+    assert_eq!(heap_calls(run), 0, "simulate");
+}
+
+/// A loop, one with a redundant condition, and two rolling wheels.
+#[test]
+fn constraints() {
+    let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
+    check_constrained(&four_bar, &[0.7, 0.2, 1.8].into());
+    let ring = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
+    check_constrained(&ring, &[0.3, -0.23, 0.3, -0.23, 0.3].into());
+    let bicycle = Bicycle::BENCHMARK;
+    check_constrained(&bicycle, &bicycle.neutral());
+    let (q, v) = (bicycle.neutral(), SVector::zeros());
+    let linear = || assert!(bicycle.linearize(&q, &v, &SVector::zeros(), &[3, 7]).is_ok());
+    assert_eq!(heap_calls(linear), 0, "linearize");
 }
