@@ -14,6 +14,8 @@ pub struct Constraints {
     pub holonomic: usize,
     /// Which are components of one vector: those of one number.
     pub groups: Vec<usize>,
+    /// Rows of joints that are left out because they follow from these.
+    pub redundant: Vec<String>,
     /// Independent coordinates and velocities.
     pub freedom: [usize; 2],
 }
@@ -21,7 +23,13 @@ pub struct Constraints {
 impl Constraints {
     /// One, where only the equations could tell how many there are.
     pub fn unknown() -> Constraints {
-        Constraints { names: vec![String::new()], holonomic: 1, groups: vec![0], freedom: [0; 2] }
+        Constraints {
+            names: vec![String::new()],
+            holonomic: 1,
+            groups: vec![0],
+            redundant: Vec::new(),
+            freedom: [0; 2],
+        }
     }
 
     /// Those of a model.
@@ -29,6 +37,7 @@ impl Constraints {
         Constraints {
             names: model.constraints.iter().map(|c| c.name.clone()).collect(),
             holonomic: model.holonomic(),
+            redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
         }

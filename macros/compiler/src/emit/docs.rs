@@ -83,6 +83,14 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     );
     list(text, "On configurations", &c.names[..c.holonomic]);
     list(text, "On velocities alone", &c.names[c.holonomic..]);
+    list(text, "Left out, because they follow from these", &c.redundant);
+    let dependent = (speeds + c.names.len()).saturating_sub(i.velocities.len());
+    if dependent > 0 {
+        let _ = writeln!(
+            text,
+            "- Redundant where the constraints hold: {dependent} of them; multipliers of least norm share the forces"
+        );
+    }
 }
 
 /// Which functions evaluate alike limbs as the lanes of vectors, and which coordinates those are.

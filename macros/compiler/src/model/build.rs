@@ -169,6 +169,7 @@ fn empty_model<'g>(
         potentials: Vec::new(),
         dissipations: Vec::new(),
         constraints: Vec::new(),
+        redundant: Vec::new(),
         dependent: None,
         freedom: [0; 2],
         loads: Vec::new(),

@@ -389,6 +389,8 @@ pub struct Model<'g> {
     pub inertances: Vec<Inertance<'g>>,
     /// Scalar constraints; those on configurations first.
     pub constraints: Vec<Constraint<'g>>,
+    /// Names of rows of joints and constraints that follow from the others everywhere.
+    pub redundant: Vec<String>,
     /// The pivots by which dependent velocities are solved for, constraint and velocity, where independent speeds are to
     /// be used.
     pub dependent: Option<Vec<(usize, usize)>>,

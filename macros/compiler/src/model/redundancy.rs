@@ -41,11 +41,13 @@ pub fn prune(model: &mut Model<'_>, witnesses: &[Witness]) {
             kept.push(row);
         }
     }
-    let mut row = 0;
-    model.constraints.retain(|_| {
-        row += 1;
-        kept.contains(&(row - 1))
-    });
+    let all = std::mem::take(&mut model.constraints);
+    for (row, constraint) in all.into_iter().enumerate() {
+        match kept.contains(&row) {
+            true => model.constraints.push(constraint),
+            false => model.redundant.push(constraint.name),
+        }
+    }
 }
 
 /// How far a row without influence is from being fulfilled, if it is: the same everywhere.

@@ -139,6 +139,7 @@ fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         dissipations: _,
         loads: _,
         constraints: _,
+        redundant: _,
         dependent: _,
         freedom: _,
         inertances: _,
