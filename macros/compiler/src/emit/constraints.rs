@@ -167,6 +167,8 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         }}
         /// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
         ///
+        /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
+        ///
         /// # Errors
         /// `Singular` where constraints lose rank.
         pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
