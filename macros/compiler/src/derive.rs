@@ -25,6 +25,9 @@ pub mod signatures;
 use regressor::Identification;
 use signatures::Sizes;
 
+/// Most products of the elimination of constraints.
+const MOST_PRODUCTS: usize = 100_000;
+
 /// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
@@ -54,6 +57,12 @@ pub fn derive_with<'g>(
         entries: requests.packed.then(|| entries(&mass)),
     };
     let all = |stage| functions(model, requests, passes, &joints, &extras, stage);
+    let constrained = !model.constraints.is_empty();
+    if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
+        cx.error(model.place.clone(), "the constraints of this mechanism depend on each other too much")
+            .help("code without loops would be too long: hold the bodies by shorter chains of joints");
+        return None;
+    }
     let functions = all(Stage::Whole);
     if functions.iter().any(|f| !f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")

@@ -50,17 +50,9 @@ pub fn solve<'g>(
     force: Vec<Expr<'g>>,
     bias: Vec<Expr<'g>>,
 ) -> Vec<Expr<'g>> {
-    let (nv, nc) = (mass.len(), jacobian.len());
-    let mut k: Matrix<'g> = mass.clone();
-    for (row, c) in k.iter_mut().zip(0..) {
-        row.extend(jacobian.iter().map(|j| j[c]));
-    }
-    for row in jacobian {
-        let mut row = row.clone();
-        row.extend((0..nc).map(|_| row[0].zero()).collect::<Vec<_>>());
-        k.push(row);
-    }
-    let order = elimination_order(&k, nv);
+    let nv = mass.len();
+    let k = system(mass, jacobian);
+    let (order, _) = elimination_order(&k, nv);
     let mut r = force;
     r.extend(bias.into_iter().map(|b| -b));
     let Solution { mut x, pivots, taken } = solve_in(k, r, &order, nv);
@@ -76,6 +68,24 @@ pub fn solve<'g>(
             .map(|own| in_group(own.group).fold(model.graph.zero(), |sum, (_, taken)| sum + *taken)),
     );
     x
+}
+
+/// About how many products the elimination takes.
+pub fn products(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
+    elimination_order(&system(mass, &jacobian(model)), mass.len()).1
+}
+
+/// The matrix of the system.
+fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
+    let mut k: Matrix<'g> = mass.clone();
+    for (row, c) in k.iter_mut().zip(0..) {
+        row.extend(jacobian.iter().map(|j| j[c]));
+    }
+    for row in jacobian {
+        let zeros = row.first().map_or(Vec::new(), |e| vec![e.zero(); jacobian.len()]);
+        k.push(row.iter().copied().chain(zeros).collect());
+    }
+    k
 }
 
 /// The same by independent speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985; the projection `Nᵀ M N`
@@ -161,29 +171,32 @@ fn eliminate<'g>(
     (right, sizes)
 }
 
-/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row.
-fn elimination_order(k: &Matrix<'_>, nv: usize) -> Vec<usize> {
+/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row. With the order comes
+/// about how many products it takes.
+fn elimination_order(k: &Matrix<'_>, nv: usize) -> (Vec<usize>, usize) {
     let n = k.len();
     let mut full: Vec<Vec<bool>> = k.iter().map(|row| row.iter().map(|e| !e.is_zero()).collect()).collect();
     let waits: Vec<Vec<usize>> =
         (0..n).map(|i| if i < nv { Vec::new() } else { (0..nv).filter(|j| full[i][*j]).collect() }).collect();
     let mut left: Vec<usize> = (0..n).collect();
-    let mut order = Vec::with_capacity(n);
+    let (mut order, mut done, mut products) = (Vec::with_capacity(n), vec![false; n], 0);
     while !left.is_empty() {
         let degree = |i: usize| left.iter().filter(|j| **j != i && full[i][**j]).count();
-        let ready = left.iter().copied().filter(|i| waits[*i].iter().all(|j| order.contains(j)));
+        let ready = left.iter().copied().filter(|i| waits[*i].iter().all(|j| done[*j]));
         // Of equals the last: leaves come before the links that carry them.
         let Some(next) = ready.min_by_key(|i| (degree(*i), usize::MAX - i)) else { break };
         left.retain(|i| *i != next);
         order.push(next);
+        done[next] = true;
         let near: Vec<usize> = left.iter().copied().filter(|j| full[next][*j]).collect();
+        products += near.len() * (near.len() + 1) / 2;
         for &i in &near {
             for &j in &near {
                 full[i][j] = true;
             }
         }
     }
-    order
+    (order, products)
 }
 
 /// The forces and biases of the equations of motion as symbols: what is handed to [`solve`] at run time.

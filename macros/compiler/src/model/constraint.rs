@@ -14,6 +14,9 @@ use crate::expr::{Expr, Rotation, Vec3};
 use crate::model::sample;
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
+/// Most scalar constraints of a mechanism, twice as many as velocities: half of them may be redundant.
+const MAX_CONSTRAINTS: usize = 256;
+
 /// A scalar with its rate, and the rate of that at zero accelerations.
 pub struct Jet<'g> {
     value: Expr<'g>,
@@ -101,6 +104,12 @@ impl<'g> Builder<'_, 'g> {
             (&self.description.formulation, self.model.constraints.is_empty())
         {
             cx.error(place.clone(), "all speeds are independent: this mechanism has no constraint");
+        }
+        let count = self.model.constraints.len();
+        if count > MAX_CONSTRAINTS {
+            let place = self.description.name.place.clone();
+            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}"));
+            return;
         }
         if let Some((_, kept)) = self.opening {
             self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));

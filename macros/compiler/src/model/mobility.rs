@@ -3,7 +3,7 @@
 //! all rows for independent, is what is left where none is found.
 
 use super::kinematics::{symbols_in, velocity_gradient};
-use super::redundancy::{basis_of, random_configuration};
+use super::redundancy::{Basis, random_configuration};
 use super::{Chart, Model, Quantity, sample};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -13,6 +13,8 @@ use crate::expr::{Expr, Symbol};
 const STARTS: u64 = 24;
 /// Configurations that must agree on a mechanism that cannot move.
 const WITNESSES: usize = 3;
+/// Bound on the starts times the cube of the number of constraints: more of them are searched from fewer starts.
+const WORK: u64 = 3_000_000;
 /// Steps from each start.
 const STEPS: usize = 60;
 /// What may be left of the residuals.
@@ -32,7 +34,9 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     let rows = Rows::of(model);
     let mut found: Vec<Witness> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
-    let starts = if rows.is_numeric() { STARTS } else { STARTS / 3 };
+    let wanted = if rows.is_numeric() { STARTS } else { STARTS / 3 };
+    // Each step solves a system of that size.
+    let starts = wanted.min(WORK / (rows.size.0 as u64).pow(3).max(1)).max(1);
     for seed in 0..starts {
         match rows.close(model, seed) {
             Ok(q) => found.push((q, seed)),
@@ -43,7 +47,7 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
             return found;
         }
     }
-    if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && rows.is_numeric())
+    if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && starts == STARTS)
     {
         let c = &model.constraints[row];
         cx.error(c.place.clone(), format!("no configuration was found that fulfils `{}`", c.name))
@@ -57,7 +61,11 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
 pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> [usize; 2] {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = Rows::of(model);
-    let free = |(q, seed): &Witness, rank: usize| nv - basis_of(&rows.values(q, *seed)[..rank], 1e-7).len();
+    let free = |(q, seed): &Witness, count: usize| {
+        let mut basis = Basis::default();
+        rows.values(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
+        nv - basis.rank()
+    };
     // The first that can move: others may be locked.
     let witness = witnesses.iter().find(|w| free(w, nc) > 0).or(witnesses.first());
     let count = |rank: usize| witness.map_or(nv.saturating_sub(rank), |w| free(w, rank));

@@ -30,15 +30,18 @@ pub fn prune(model: &mut Model<'_>, witnesses: &[Witness]) {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(witnesses.iter().cloned());
     let samples: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| jacobian(model, &q, seed)).collect();
+    let mut bases: Vec<Basis> = samples.iter().map(|_| Basis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
     for row in 0..rows {
-        let depends = samples.iter().all(|j| {
-            let others: Vec<&[f64]> = kept.iter().map(|k| j[*k].as_slice()).collect();
-            // Where no configuration is known that fulfils the constraints, only rows without any influence go.
-            is_combination(&j[row], if witnesses.is_empty() { &[] } else { &others })
+        // Where no configuration is known that fulfils the constraints, only rows without any influence go.
+        let none = Basis::default();
+        let depends = samples.iter().zip(&bases).all(|(j, basis)| {
+            let others = if witnesses.is_empty() { &none } else { basis };
+            others.explains(&j[row], TOLERANCE)
         });
         if !depends {
             kept.push(row);
+            bases.iter_mut().zip(&samples).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
         }
     }
     let all = std::mem::take(&mut model.constraints);
@@ -53,15 +56,17 @@ pub fn prune(model: &mut Model<'_>, witnesses: &[Witness]) {
 /// How far a row without influence is from being fulfilled, if it is: the same everywhere.
 fn constant_gap(model: &Model<'_>, row: usize) -> Option<f64> {
     let c = &model.constraints[row];
+    if !velocity_gradient(c.rate).is_empty() {
+        return None;
+    }
     let value = |seed| {
         let q = random_configuration(model, seed);
         let e = c.residual.unwrap_or(c.rate);
         eval(&[e], &|s| value_of(s, &q, seed)).first().copied().unwrap_or(0.0)
     };
-    let moves = !velocity_gradient(c.rate).is_empty();
     let (first, second) = (value(0), value(1));
     let gone = |x: f64| x.abs() <= TOLERANCE;
-    (!moves && !gone(first) && !gone(second)).then_some(first)
+    (!gone(first) && !gone(second)).then_some(first)
 }
 
 fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
@@ -86,34 +91,45 @@ fn jacobian(model: &Model<'_>, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
     rows
 }
 
-/// True for a row that is a combination of others, or zero; a row that has no value is none.
-fn is_combination(row: &[f64], others: &[&[f64]]) -> bool {
-    let rows: Vec<Vec<f64>> = others.iter().copied().chain([row]).map(<[f64]>::to_vec).collect();
-    let finite = row.iter().all(|x| x.is_finite());
-    finite && !basis_of(&rows, TOLERANCE).contains(&others.len())
-}
+/// Orthonormal combinations of rows.
+#[derive(Default)]
+pub struct Basis(Vec<Vec<f64>>);
 
-/// Indices of rows that are no combination of those before, up to a relative tolerance.
-pub fn basis_of(rows: &[Vec<f64>], tolerance: f64) -> Vec<usize> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut indices = Vec::new();
-    for (k, row) in rows.iter().enumerate() {
-        let mut reduced = row.clone();
-        // Twice, since the first time leaves the rounding of what it takes away.
-        for _ in 0..2 {
-            for b in &basis {
-                let part = dot(&reduced, b);
-                reduced.iter_mut().zip(b).for_each(|(x, b)| *x -= part * b);
-            }
-        }
-        let size = dot(&reduced, &reduced).sqrt();
+impl Basis {
+    /// How many rows are independent.
+    pub fn rank(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds a row, unless it is a combination of those before up to a relative tolerance.
+    pub fn add(&mut self, row: &[f64], tolerance: f64) {
+        let rest = self.rest(row);
+        let size = dot(&rest, &rest).sqrt();
         if size > tolerance * dot(row, row).sqrt().max(tolerance) {
-            basis.push(reduced.iter().map(|x| x / size).collect());
-            indices.push(k);
+            self.0.push(rest.iter().map(|x| x / size).collect());
         }
     }
-    indices
+
+    /// True for a row that is a combination of those before, or zero; a row that has no value is none.
+    fn explains(&self, row: &[f64], tolerance: f64) -> bool {
+        let rest = self.rest(row);
+        dot(&rest, &rest).sqrt() <= tolerance * dot(row, row).sqrt().max(tolerance)
+    }
+
+    /// What is left of a row without its parts along those before.
+    fn rest(&self, row: &[f64]) -> Vec<f64> {
+        let mut rest = row.to_vec();
+        // Twice, since the first time leaves the rounding of what it takes away.
+        for b in self.0.iter().chain(&self.0) {
+            let part = dot(&rest, b);
+            rest.iter_mut().zip(b).for_each(|(x, b)| *x -= part * b);
+        }
+        rest
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Random coordinates with unit quaternions.
