@@ -264,6 +264,21 @@ fn list(n: usize, item: impl Fn(usize) -> String) -> String {
     (0..n).map(item).collect()
 }
 
+/// A planar chain of pins that is tied to the ground by others, so many of each.
+fn tied_chain(pins: usize, ties: usize) -> String {
+    let bodies = list(pins, |k| {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(x)", k - 1) };
+        format!(
+            "#[body(mass = 1, inertia = rod(1, 1, x))] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,\n"
+        )
+    });
+    let ends = list(ties, |k| {
+        let (body, x, y) = ((2 * k + 3) % pins, (2 * k) % 7, k % 3);
+        format!("#[joint(b{body}.at(x) -> ground.at({x} * x + {y} * y), about = z)] tie{k}: Pin,\n")
+    });
+    format!("struct S {{ {bodies} {ends} }}")
+}
+
 /// A mechanism with an expression somewhere.
 fn with_mass(e: &str) -> String {
     format!("struct S {{ m: f64, #[body(mass = {e})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}")
@@ -351,6 +366,10 @@ fn great_numbers_of_things_end() {
                 chain(900, "Weld").replace("b0: Body", "c0: Body").replace("ground ->", "b0 ->")
             ),
         ),
+        ("a chain tied to the ground", tied_chain(85, 41)),
+        ("a chain tied to the ground a few times", tied_chain(40, 4)),
+        ("a chain tied to the ground everywhere", tied_chain(100, 50)),
+        ("a chain tied to the ground too often", tied_chain(20, 100)),
         ("a chain of sleeves", format!("struct S {{ {} }}", chain(40, "Sleeve"))),
         ("long generics", format!("struct S<{}> {{}}", list(10_000, |k| format!("T{k},")))),
         ("deep types", format!("struct S {{ a: {}f64{} }}", "Vec<".repeat(10_000), ">".repeat(10_000))),
@@ -359,6 +378,18 @@ fn great_numbers_of_things_end() {
         ("a long number", with_mass(&"9".repeat(100_000))),
     ];
     run_cases(cases);
+}
+
+#[test]
+fn too_many_loops_are_refused_with_a_reason() {
+    for (pins, ties, reason) in [
+        (20, 100, "500 scalar constraints, more than 256"),
+        (85, 41, "the constraints of this mechanism depend on each other too much"),
+    ] {
+        let output = expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("ui"));
+        let output = format!("{} {}", output.tokens, output.text);
+        assert!(output.contains(reason), "{pins} pins with {ties} ties: {:.2000}", output);
+    }
 }
 
 #[test]

@@ -2,55 +2,11 @@
 
 use super::graph::{Expr, Graph};
 use super::lanes::MOST;
-use super::node::{Node, Symbol};
+use super::node::{Id, Node, Symbol};
 
 /// The values of several expressions of one graph, given the value of every symbol.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-    let Some(first) = roots.first() else {
-        return Vec::new();
-    };
-    let nodes = first.graph().nodes();
-    let mut needed = vec![false; nodes.len()];
-    for root in roots {
-        needed[root.id() as usize] = true;
-    }
-    for id in (0..nodes.len()).rev().filter(|id| needed[*id]).collect::<Vec<_>>() {
-        mark(&nodes, id, &mut needed);
-    }
-    let graph = first.graph();
-    let all = |id: &usize| needed[*id];
-    let is_lane =
-        |id: usize| matches!(nodes[id], Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..));
-    match (0..nodes.len()).filter(all).any(is_lane) {
-        true => values::<MOST>(graph, &nodes, &needed, symbol, roots),
-        false => values::<1>(graph, &nodes, &needed, symbol, roots),
-    }
-}
-
-/// The values of `roots` (their first lanes), all needed nodes computed in so many lanes.
-fn values<const N: usize>(
-    graph: &Graph,
-    nodes: &[Node],
-    needed: &[bool],
-    symbol: &dyn Fn(Symbol) -> f64,
-    roots: &[Expr<'_>],
-) -> Vec<f64> {
-    let mut values = vec![[0.0_f64; N]; nodes.len()];
-    for id in (0..nodes.len()).filter(|id| needed[*id]) {
-        let at = |a: u32| &values[a as usize];
-        values[id] = match nodes[id] {
-            Node::Tuple(k) => padded(&graph.tuple(k)),
-            Node::Gather(k) => padded(&graph.gather(k).into_iter().map(symbol).collect::<Vec<_>>()),
-            Node::Sum(n, a) => [at(a)[..usize::from(n)].iter().sum(); N],
-            Node::Lane(k, a) => [at(a)[usize::from(k)]; N],
-            node => std::array::from_fn(|lane| step(node, &|a| at(a)[lane], symbol)),
-        };
-    }
-    roots.iter().map(|r| values[r.id() as usize][0]).collect()
-}
-
-fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
-    std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN))
+    Tape::of(roots).values(symbol)
 }
 
 /// The value of one expression.
@@ -58,30 +14,106 @@ pub fn eval_one(root: Expr<'_>, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
     eval(&[root], symbol)[0]
 }
 
-fn mark(nodes: &[Node], root: usize, needed: &mut [bool]) {
-    let mut todo = vec![root];
-    while let Some(id) = todo.pop() {
-        nodes[id].operands(|a| {
-            if !needed[a as usize] {
-                needed[a as usize] = true;
-                todo.push(a as usize);
-            }
-        });
+/// What several expressions need, in order, to be evaluated more than once.
+pub struct Tape<'g> {
+    graph: Option<&'g Graph>,
+    /// Every node with its operands' places on the tape.
+    steps: Vec<(Node, [u32; 2])>,
+    /// Where the values of the expressions are.
+    roots: Vec<u32>,
+    /// Some node has several lanes.
+    in_lanes: bool,
+}
+
+impl<'g> Tape<'g> {
+    /// For the given expressions, all of one graph.
+    pub fn of(roots: &[Expr<'g>]) -> Tape<'g> {
+        let mut tape = Tape { graph: None, steps: Vec::new(), roots: Vec::new(), in_lanes: false };
+        let Some(first) = roots.first() else { return tape };
+        let graph = first.graph();
+        let nodes = graph.nodes();
+        let needed = needed(&nodes, roots);
+        let mut places = vec![0; nodes.len()];
+        for id in (0..nodes.len()).filter(|id| needed[*id]) {
+            let (mut operands, mut count) = ([0; 2], 0);
+            nodes[id].operands(|a| {
+                operands[count] = places[a as usize];
+                count += 1;
+            });
+            places[id] = tape.steps.len() as u32;
+            tape.in_lanes |=
+                matches!(nodes[id], Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..));
+            tape.steps.push((nodes[id], operands));
+        }
+        tape.roots = roots.iter().map(|r| places[r.id() as usize]).collect();
+        tape.graph = Some(graph);
+        tape
+    }
+
+    /// How many operations it has, symbols and constants included.
+    pub fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The values of the expressions.
+    pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        match self.graph {
+            None => Vec::new(),
+            Some(graph) if self.in_lanes => self.run::<MOST>(graph, symbol),
+            Some(graph) => self.run::<1>(graph, symbol),
+        }
+    }
+
+    /// The values of the expressions (their first lanes), everything computed in so many lanes.
+    fn run<const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        let mut values: Vec<[f64; N]> = Vec::with_capacity(self.steps.len());
+        for (node, [a, b]) in &self.steps {
+            let at = |place: u32| values.get(place as usize).copied().unwrap_or([f64::NAN; N]);
+            let value = match *node {
+                Node::Tuple(k) => padded(&graph.tuple(k)),
+                Node::Gather(k) => padded(&graph.gather(k).into_iter().map(symbol).collect::<Vec<_>>()),
+                Node::Sum(n, _) => [at(*a)[..usize::from(n)].iter().sum(); N],
+                Node::Lane(k, _) => [at(*a)[usize::from(k)]; N],
+                Node::Symbol(s) => [symbol(s); N],
+                node => {
+                    let (a, b) = (at(*a), at(*b));
+                    std::array::from_fn(|lane| step(node, a[lane], b[lane]))
+                }
+            };
+            values.push(value);
+        }
+        self.roots.iter().map(|place| values[*place as usize][0]).collect()
     }
 }
 
-fn step(node: Node, at: &dyn Fn(u32) -> f64, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
+/// Which nodes the expressions depend on, by their numbers.
+fn needed(nodes: &[Node], roots: &[Expr<'_>]) -> Vec<bool> {
+    let mut needed = vec![false; nodes.len()];
+    let mut todo: Vec<Id> = roots.iter().map(|r| r.id()).collect();
+    while let Some(id) = todo.pop() {
+        if !std::mem::replace(&mut needed[id as usize], true) {
+            nodes[id as usize].operands(|a| todo.push(a));
+        }
+    }
+    needed
+}
+
+fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
+    std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN))
+}
+
+/// An operation on the values of its operands.
+fn step(node: Node, a: f64, b: f64) -> f64 {
     match node {
         Node::Const(c) => c,
-        Node::Symbol(s) => symbol(s),
-        Node::Neg(a) => -at(a),
-        Node::Add(a, b) => at(a) + at(b),
-        Node::Sub(a, b) => at(a) - at(b),
-        Node::Mul(a, b) => at(a) * at(b),
-        Node::Div(a, b) => at(a) / at(b),
-        Node::Call(f, a) => f.apply(at(a)),
-        Node::Atan2(a, b) => at(a).atan2(at(b)),
-        Node::Pow(a, b) => at(a).powf(at(b)),
-        Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) => f64::NAN,
+        Node::Neg(_) => -a,
+        Node::Add(..) => a + b,
+        Node::Sub(..) => a - b,
+        Node::Mul(..) => a * b,
+        Node::Div(..) => a / b,
+        Node::Call(f, _) => f.apply(a),
+        Node::Atan2(..) => a.atan2(b),
+        Node::Pow(..) => a.powf(b),
+        Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) => f64::NAN,
     }
 }

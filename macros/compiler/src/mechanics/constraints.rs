@@ -10,19 +10,20 @@
 
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
-use super::kinematics::velocity_gradient;
+use super::kinematics::velocity_gradients;
 use super::ldl::{Solution, solve_in};
 use crate::expr::Expr;
 use crate::model::{Model, Quantity};
 
 /// `J`: a row for each constraint, a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
-    let row = |c: &crate::model::Constraint<'g>| {
+    let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
+    let row = |gradient: Vec<(usize, Expr<'g>)>| {
         let mut row = vec![model.graph.zero(); model.nv()];
-        velocity_gradient(c.rate).into_iter().for_each(|(k, d)| row[k] = d);
+        gradient.into_iter().for_each(|(k, d)| row[k] = d);
         row
     };
-    model.constraints.iter().map(row).collect()
+    velocity_gradients(&rates).into_iter().map(row).collect()
 }
 
 /// Residuals of the constraints on configurations.

@@ -6,6 +6,7 @@ use super::axis::always;
 use super::build::Builder;
 use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
+use super::rows::Rows;
 use super::world::{Level, Placed, PlacedKind, View};
 use super::{Constraint, LinkId, Pose, Quantity, Transmission, mobility, redundancy};
 use crate::diag::{Diagnostics, Place};
@@ -115,19 +116,28 @@ impl<'g> Builder<'_, 'g> {
             self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
             return;
         }
-        if cx.is_empty() {
-            redundancy::check_constant(&self.model, cx);
-        }
         if cx.is_empty() && !self.model.constraints.is_empty() {
-            let witnesses = mobility::witnesses(&self.model, cx);
-            redundancy::prune(&mut self.model, &witnesses);
-            self.model.freedom = mobility::degrees_of_freedom(&self.model, &witnesses, cx);
-            self.choose_speeds(&witnesses, cx);
+            self.check_mobility(cx);
         }
     }
 
+    /// Drops rows that follow from others and counts the degrees of freedom.
+    fn check_mobility(&mut self, cx: &mut Diagnostics) {
+        let mut rows = Rows::of(&self.model);
+        redundancy::check_constant(&self.model, &rows, cx);
+        if !cx.is_empty() {
+            return;
+        }
+        let witnesses = mobility::witnesses(&self.model, &rows, cx);
+        if redundancy::prune(&mut self.model, &rows, &witnesses) {
+            rows = Rows::of(&self.model);
+        }
+        self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &witnesses, cx);
+        self.choose_speeds(&rows, &witnesses, cx);
+    }
+
     /// Finds the velocities that follow from independent speeds, if those are asked for.
-    fn choose_speeds(&mut self, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
+    fn choose_speeds(&mut self, rows: &Rows<'_>, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         let mut independent = Vec::new();
         for e in names {
@@ -158,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             return;
         }
-        self.model.dependent = mobility::dependent(&self.model, witnesses, &independent);
+        self.model.dependent = mobility::dependent(&self.model, rows, witnesses, &independent);
         if self.model.dependent.is_none() {
             let diagnostic =
                 cx.error(place.clone(), "the other velocities do not follow from independent speeds");

@@ -401,16 +401,26 @@ pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
 
 /// Derivatives by all velocities that an expression depends on.
 pub fn velocity_gradient(e: Expr<'_>) -> Vec<(usize, Expr<'_>)> {
-    let graph = e.graph();
-    let index = |s: Symbol| match Quantity::of(s) {
-        Quantity::Velocity(k) => Some((k, s)),
-        _ => None,
-    };
-    symbols_in(&[e])
-        .into_iter()
-        .filter_map(index)
-        .map(|(k, s)| (k, Derivative::with_respect_to(s, graph).of(e)))
-        .collect()
+    velocity_gradients(&[e]).pop().unwrap_or_default()
+}
+
+/// The same of several expressions, which share what they have in common.
+pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
+    let mut gradients = vec![Vec::new(); all.len()];
+    let Some(graph) = all.first().map(|e| e.graph()) else { return gradients };
+    let mut wanted: Vec<(Symbol, usize)> = Vec::new();
+    for (row, e) in all.iter().enumerate() {
+        wanted.extend(symbols_in(&[*e]).into_iter().map(|s| (s, row)));
+    }
+    wanted.sort_unstable();
+    for rows in wanted.chunk_by(|a, b| a.0 == b.0) {
+        let Quantity::Velocity(k) = Quantity::of(rows[0].0) else { continue };
+        let mut derivative = Derivative::with_respect_to(rows[0].0, graph);
+        for (_, row) in rows {
+            gradients[*row].push((k, derivative.of(all[*row])));
+        }
+    }
+    gradients
 }
 
 /// Components in the axes of `to` of a vector given in the axes of `from`.

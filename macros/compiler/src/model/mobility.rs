@@ -2,21 +2,21 @@
 //! mechanism and samples of its parameters, and the independent rows are counted there. Grübler's count, which takes
 //! all rows for independent, is what is left where none is found.
 
-use super::kinematics::{symbols_in, velocity_gradient};
-use super::redundancy::{Basis, random_configuration};
-use super::{Chart, Model, Quantity, sample};
+use super::kinematics::symbols_in;
+use super::redundancy::Basis;
+use super::rows::{Rows, random_configuration};
+use super::{Chart, Model, Quantity};
 use crate::diag::Diagnostics;
-use crate::expr::eval::eval;
-use crate::expr::{Expr, Symbol};
+use crate::expr::Expr;
 
 /// Random starts of the search; a third of them where the parameters are samples and may not fit each other.
 const STARTS: u64 = 24;
 /// Configurations that must agree on a mechanism that cannot move.
 const WITNESSES: usize = 3;
-/// Bound on the starts times the cube of the number of constraints: more of them are searched from fewer starts.
-const WORK: u64 = 3_000_000;
+/// Bound on the operations of the search, roughly: large mechanisms are searched from fewer starts.
+const WORK: u64 = 40_000_000;
 /// Steps from each start.
-const STEPS: usize = 60;
+const STEPS: u64 = 60;
 /// What may be left of the residuals.
 const CLOSED: f64 = 1e-11;
 /// Residuals above this, m or rad, are not closed by more steps.
@@ -30,15 +30,15 @@ pub type Witness = (Vec<f64>, u64);
 
 /// Some configurations that fulfil the constraints, first one near the configuration with all coordinates zero, if there
 /// is one. Reports loops that nothing closes if all their numbers are known.
-pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
-    let rows = Rows::of(model);
+pub fn witnesses(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     let mut found: Vec<Witness> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
-    let wanted = if rows.is_numeric() { STARTS } else { STARTS / 3 };
-    // Each step solves a system of that size.
-    let starts = wanted.min(WORK / (rows.size.0 as u64).pow(3).max(1)).max(1);
+    let wanted = if is_numeric(model) { STARTS } else { STARTS / 3 };
+    let possible = WORK / rows.cost().max(1);
+    let starts = wanted.min(possible / STEPS).max(1);
+    let steps = STEPS.min(possible);
     for seed in 0..starts {
-        match rows.close(model, seed) {
+        match close(model, rows, seed, steps) {
             Ok(q) => found.push((q, seed)),
             Err(open) if worst.is_none_or(|(_, best)| open.1 < best) => worst = Some(open),
             Err(_) => {}
@@ -56,14 +56,26 @@ pub fn witnesses(model: &Model<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
     found
 }
 
+/// No residual depends on a parameter or on time.
+fn is_numeric(model: &Model<'_>) -> bool {
+    let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
+    symbols_in(&residuals)
+        .into_iter()
+        .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
+}
+
 /// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first witness belongs to:
 /// linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move.
-pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Diagnostics) -> [usize; 2] {
+pub fn degrees_of_freedom(
+    model: &Model<'_>,
+    rows: &Rows<'_>,
+    witnesses: &[Witness],
+    cx: &mut Diagnostics,
+) -> [usize; 2] {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let rows = Rows::of(model);
     let free = |(q, seed): &Witness, count: usize| {
         let mut basis = Basis::default();
-        rows.values(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
+        rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
         nv - basis.rank()
     };
     // The first that can move: others may be locked.
@@ -83,11 +95,12 @@ pub fn degrees_of_freedom(model: &Model<'_>, witnesses: &[Witness], cx: &mut Dia
 /// an elimination that is well conditioned at a witness. `None` if some constraint has none.
 pub fn dependent(
     model: &Model<'_>,
+    rows: &Rows<'_>,
     witnesses: &[Witness],
     independent: &[usize],
 ) -> Option<Vec<(usize, usize)>> {
     let (q, seed) = witnesses.first()?;
-    let mut rows = Rows::of(model).values(q, *seed);
+    let mut rows = rows.jacobian(q, *seed);
     let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
     let mut pivots: Vec<(usize, usize)> = Vec::new();
     while pivots.len() < rows.len() {
@@ -111,83 +124,36 @@ pub fn dependent(
     Some(pivots)
 }
 
-/// Constraints as expressions to be evaluated.
-struct Rows<'g> {
-    residuals: Vec<Expr<'g>>,
-    /// Entries of the Jacobian that are not zero: row, column.
-    at: Vec<(usize, usize)>,
-    entries: Vec<Expr<'g>>,
-    size: (usize, usize),
-}
-
-impl<'g> Rows<'g> {
-    fn of(model: &Model<'g>) -> Rows<'g> {
-        let (mut at, mut entries) = (Vec::new(), Vec::new());
-        for (row, c) in model.constraints.iter().enumerate() {
-            for (column, entry) in velocity_gradient(c.rate) {
-                at.push((row, column));
-                entries.push(entry);
-            }
-        }
-        let residuals = model.constraints.iter().filter_map(|c| c.residual).collect();
-        Rows { residuals, at, entries, size: (model.constraints.len(), model.nv()) }
-    }
-
-    /// No residual depends on a parameter or on time.
-    fn is_numeric(&self) -> bool {
-        symbols_in(&self.residuals)
-            .into_iter()
-            .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
-    }
-
-    fn values(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
-        let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
-        for ((row, column), value) in self.at.iter().zip(eval(&self.entries, &|s| value_of(s, q, seed))) {
-            rows[*row][*column] = value;
-        }
-        rows
-    }
-
-    /// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
-    fn close(&self, model: &Model<'_>, seed: u64) -> Result<Vec<f64>, (usize, f64)> {
-        let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
-        let mut q = random_configuration(model, seed);
-        for chart in &model.charts {
-            if let Chart::Plain(k, _) = chart {
-                q[*k] *= spread;
-            }
-        }
-        let residuals = |q: &[f64]| eval(&self.residuals, &|s| value_of(s, q, seed));
-        let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-        let mut r = residuals(&q);
-        let mut damping = 1e-3;
-        for _ in 0..STEPS {
-            if size(&r) <= CLOSED * CLOSED || !size(&r).is_finite() {
-                break;
-            }
-            let rows = &self.values(&q, seed)[..r.len()];
-            let step = damped_step(rows, &r, damping);
-            let next = moved(model, &q, &step);
-            let trial = residuals(&next);
-            if size(&trial) < size(&r) {
-                (q, r, damping) = (next, trial, damping * 0.1);
-            } else {
-                damping *= 10.0;
-            }
-        }
-        let worst = r.iter().map(|r| r.abs()).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        match worst {
-            Some((row, open)) if open > CLOSED || open.is_nan() => Err((row, open)),
-            _ => Ok(q),
+/// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
+fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
+    let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
+    let mut q = random_configuration(model, seed);
+    for chart in &model.charts {
+        if let Chart::Plain(k, _) = chart {
+            q[*k] *= spread;
         }
     }
-}
-
-fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
-    match Quantity::of(s) {
-        Quantity::Configuration(k) => q[k],
-        Quantity::Velocity(_) | Quantity::Time => 0.0,
-        _ => sample(s, seed),
+    let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let mut r = rows.residuals(&q, seed);
+    let mut damping = 1e-3;
+    for _ in 0..steps {
+        if size(&r) <= CLOSED * CLOSED || !size(&r).is_finite() {
+            break;
+        }
+        let jacobian = &rows.jacobian(&q, seed)[..r.len()];
+        let step = damped_step(jacobian, &r, damping);
+        let next = moved(model, &q, &step);
+        let trial = rows.residuals(&next, seed);
+        if size(&trial) < size(&r) {
+            (q, r, damping) = (next, trial, damping * 0.1);
+        } else {
+            damping *= 10.0;
+        }
+    }
+    let worst = r.iter().map(|r| r.abs()).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    match worst {
+        Some((row, open)) if open > CLOSED || open.is_nan() => Err((row, open)),
+        _ => Ok(q),
     }
 }
 

@@ -23,6 +23,7 @@ mod reaction;
 mod redundancy;
 mod resolve;
 mod rolling;
+mod rows;
 mod terms;
 mod tree;
 pub mod units;
@@ -31,7 +32,7 @@ mod world;
 pub use axis::sample;
 pub use build::build_model;
 pub use outline::{Outline, Uses, outline};
-pub use redundancy::random_configuration;
+pub use rows::random_configuration;
 
 /// What a symbol of the expressions stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
