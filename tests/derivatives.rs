@@ -8,6 +8,7 @@ use linkwork::nalgebra::SMatrix;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph};
+use linkwork_compiler::lower::{Op, Program};
 use linkwork_compiler::mechanics::derivatives::{self, Method, analytic, symbolic};
 use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
 use linkwork_compiler::model::random_configuration;
@@ -159,6 +160,10 @@ proptest! {
 
 /// Operations of the derivatives of inverse dynamics, and of the inverse of the mass matrix.
 fn operations(arguments: &str) -> [usize; 2] {
+    programs(arguments).map(|program| program.counts.total())
+}
+
+fn programs(arguments: &str) -> [Program; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -169,8 +174,22 @@ fn operations(arguments: &str) -> [usize; 2] {
     };
     ["inverse_dynamics_derivatives", "mass_matrix_inverse"].map(|name| {
         let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");
-        f.program.counts.total()
+        f.program.clone()
     })
+}
+
+/// With alike limbs as lanes: multiplications, additions and divisions together, each on all lanes at once, and the
+/// instructions that are left of them when products are fused into sums.
+#[test]
+fn operation_counts_in_lanes() {
+    for (robot, total, instructions) in [("solo12", 1393, 1006), ("simple_humanoid", 9253, 6379)] {
+        let [forces, _] =
+            programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
+        let forces = forces.in_lanes.expect("its limbs are alike");
+        let fused =
+            forces.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Call(..))).count();
+        assert_eq!((forces.counts.total(), fused), (total, instructions), "{robot}");
+    }
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Mechanisms with alike limbs, which are evaluated as lanes: the functions agree with each other for every type of
 //! scalars, on the ground and on a free base, with parameters of all limbs and of each.
 
-use linkwork::nalgebra::SVector;
+use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Mechanism, Real, mechanism};
 use support::random::Random;
 
 /// A body on four legs of two joints, mirrored front to back and left to right.
-#[mechanism(gravity = -9.81 * z)]
+#[mechanism(gravity = -9.81 * z, derivatives)]
 struct Quadruped<T> {
     trunk_mass: T,
     thigh_mass: T,
@@ -128,6 +128,35 @@ fn functions_agree() {
         // Energies and momenta are not evaluated in lanes.
         assert!((v.dot(&(m * v)) / 2.0 - robot.kinetic_energy(&q, &v)).abs() < 1e-12);
         assert!((m * v - robot.generalized_momentum(&q, &v)).amax() < 1e-12);
+    }
+}
+
+/// A column of differences for each velocity.
+fn differences(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatrix<f64, 14, 14> {
+    const STEP: f64 = 1e-6;
+    let column = |k: usize| {
+        let axis = SVector::from_fn(|i, _| f64::from(u8::from(i == k)));
+        (f(STEP, &axis) - f(-STEP, &axis)) / (2.0 * STEP)
+    };
+    SMatrix::from_columns(&std::array::from_fn::<_, 14, _>(column))
+}
+
+#[test]
+fn derivatives_are_limits_of_differences() {
+    let (robot, mut random) = (quadruped::<f64>(), Random::new(5));
+    let near = |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
+    for _ in 0..5 {
+        let (q, [v, a]) = state(&mut random);
+        let moved = |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
+        let tau = robot.inverse_dynamics(&q, &v, &a);
+        let (by_q, by_v) = robot.inverse_dynamics_derivatives(&q, &v, &a);
+        assert!(near(&by_q, &differences(|h, axis| robot.inverse_dynamics(&moved(h, axis), &v, &a))));
+        assert!(near(&by_v, &differences(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))));
+        let (by_q, by_v, inverse) = robot.forward_dynamics_derivatives(&q, &v, &tau);
+        assert!(near(&by_q, &differences(|h, axis| robot.forward_dynamics(&moved(h, axis), &v, &tau))));
+        assert!(near(&by_v, &differences(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))));
+        assert!(near(&(inverse * robot.mass_matrix(&q)), &SMatrix::identity()));
+        assert!(near(&robot.mass_matrix_inverse(&q), &inverse));
     }
 }
 

@@ -1,13 +1,14 @@
 //! The functions of the word `derivatives`.
 
-use super::Stage;
 use super::signatures::{self, Sizes};
+use super::{Stage, done, in_lanes};
 use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::Program;
 use crate::mechanics::derivatives::{self, ForceDerivatives, Linearized, Method, analytic, symbolic};
 use crate::mechanics::{self, Joint, constraints, crba, forces};
 use crate::model::{Chart, Model, Quantity};
+use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Passes};
 
 /// Up to how many velocities all forms of the model are tried, and every function is written out; those of larger
@@ -34,6 +35,10 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         if other.cost() < parts.cost() {
             parts = other;
         }
+    }
+    if passes.lanes && stage == Stage::Whole && derivatives::is_analytic(parts.model) {
+        let groups = limbs::find(parts.model, &parts.joints);
+        parts.limbs = Limbs::of(parts.model, &parts.joints, &groups);
     }
     let tau = forces::generalized_forces(model, &mechanics::joints(model));
     let mut functions = signatures::derivatives(&Sizes::of(model));
@@ -66,13 +71,15 @@ struct Parts<'a, 'g> {
     mass: crba::Matrix<'g>,
     method: Method,
     stage: Stage,
+    /// The same with alike limbs as lanes.
+    limbs: Option<Limbs<'g>>,
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
     fn new(model: &'a Model<'g>, stage: Stage) -> Parts<'a, 'g> {
         let joints = mechanics::joints(model);
         let mass = crba::mass_matrix(model, &joints);
-        Parts { model, joints, mass, method: Method::Recursion, stage }
+        Parts { model, joints, mass, method: Method::Recursion, stage, limbs: None }
     }
 
     fn cost(&self) -> usize {
@@ -156,7 +163,11 @@ impl<'a, 'g> Parts<'a, 'g> {
                 let v = mechanics::velocities(self.model);
                 self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
             }
-            "inverse_dynamics_derivatives" => self.inverse_dynamics(),
+            "inverse_dynamics_derivatives" => {
+                self.inverse_dynamics().or_in_lanes(self.limbs.iter().map(|limbs| {
+                    done(&force_columns(&in_lanes::inverse_dynamics_derivatives(limbs, self.model)))
+                }))
+            }
             "forward_dynamics_derivatives" => self.forward_dynamics(),
             _ => self.linearization(tau),
         }

@@ -2,8 +2,9 @@
 //! scattering the results.
 
 use crate::expr::Expr;
+use crate::mechanics::derivatives::{ForceDerivatives, analytic, symbolic};
 use crate::mechanics::{aba, crba, rnea};
-use crate::model::Quantity;
+use crate::model::{Model, Quantity};
 use crate::passes::limbs::Limbs;
 
 /// The mass matrix, by rows.
@@ -29,4 +30,16 @@ pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<E
     let r: Vec<Expr<'g>> = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t - *h).collect();
     let a = aba::forward_dynamics(&limbs.model, &limbs.joints, wrenches, &r)?;
     Some(limbs.scattered(&a))
+}
+
+/// Derivatives of inverse dynamics by the recursion, those of springs and the like taken from the whole mechanism.
+pub fn inverse_dynamics_derivatives<'g>(limbs: &Limbs<'g>, whole: &Model<'g>) -> ForceDerivatives<'g> {
+    let v = limbs.symbols(Quantity::Velocity);
+    let a = limbs.symbols(Quantity::Acceleration);
+    let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, &a);
+    let [by_q, by_v] = [found.by_q, found.by_v].map(|m| limbs.scattered_matrix(&m));
+    let rows = |m: Vec<Expr<'g>>| m.chunks(whole.nv().max(1)).map(<[Expr<'g>]>::to_vec).collect();
+    let mut scattered = ForceDerivatives { by_q: rows(by_q), by_v: rows(by_v) };
+    symbolic::add_resistance(whole, &mut scattered);
+    scattered
 }

@@ -60,11 +60,11 @@ pub fn subtrees<'g>(
         if let Some(parent) = joint.parent {
             let child = sums[k];
             let sum = &mut sums[parent.0];
-            sum.wrench = sum.wrench.plus(&joint.wrench_to_parent(&child.wrench));
+            sum.wrench = joint.add_wrench(&sum.wrench, &child.wrench);
             let momentum = joint.rotation.to_parent(child.momentum);
-            sum.momentum += momentum;
-            let moved = joint.rotation.mat_to_parent(child.moments) + outer(momentum, joint.translation);
-            sum.moments = sum.moments + moved;
+            let moments = joint.rotation.mat_to_parent(child.moments) + outer(momentum, joint.translation);
+            sum.momentum += momentum.map(|c| joint.gathered(c));
+            sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.gathered(c))));
         }
     }
     sums
