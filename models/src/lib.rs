@@ -79,8 +79,10 @@
 //! | [`CylinderInTrough`] | 1 | period by an elliptic integral |
 //! | [`RollerOnIncline`] (with contact forces) | 1 | accelerations, forces of the contact |
 //! | [`BallInBowl`] | 3 | swings by an elliptic integral, level circles |
+//! | [`BallInFunnel`] | 3 | level circles with spin, two integrals of the motion |
 //! | [`BallInTube`] | 3 | rises again, with `√(2/7)` of the rate round |
 //! | [`BallOnTurntable`] (driven) | 3 | circles at 2/7 of the table's rate |
+//! | [`RollingCone`] | 1 | energies, swings by an elliptic integral, where the line of contact presses |
 //! | [`RollingDisk`] | 3 | accelerations, critical speed, circles |
 //! | [`Rattleback`] | 3 | turns back, constant energy |
 //! | [`ChaplyginSleigh`] | 2 | hyperbolic tangent |
@@ -145,6 +147,7 @@ mod andrews_squeezer;
 mod arm6;
 mod arm7;
 mod ball_in_bowl;
+mod ball_in_funnel;
 mod ball_in_tube;
 mod ball_on_turntable;
 mod bead_on_spinning_hoop;
@@ -184,6 +187,7 @@ mod rattleback;
 mod remotely_driven_arm;
 mod rod_in_slot;
 mod roller_on_incline;
+mod rolling_cone;
 mod rolling_disk;
 mod shaft_with_slider;
 mod slider_crank;
@@ -202,6 +206,7 @@ pub use andrews_squeezer::AndrewsSqueezer;
 pub use arm6::Ur5;
 pub use arm7::{LoadedPanda, Panda, PandaArm};
 pub use ball_in_bowl::BallInBowl;
+pub use ball_in_funnel::BallInFunnel;
 pub use ball_in_tube::BallInTube;
 pub use ball_on_turntable::BallOnTurntable;
 pub use bead_on_spinning_hoop::BeadOnSpinningHoop;
@@ -241,6 +246,7 @@ pub use rattleback::Rattleback;
 pub use remotely_driven_arm::RemotelyDrivenArm;
 pub use rod_in_slot::RodInSlot;
 pub use roller_on_incline::RollerOnIncline;
+pub use rolling_cone::RollingCone;
 pub use rolling_disk::RollingDisk;
 pub use shaft_with_slider::ShaftWithSlider;
 pub use slider_crank::SliderCrank;

@@ -229,11 +229,29 @@ pub enum Nonholonomic {}
 /// A pair of surfaces that touch and roll on each other without slip:
 /// `#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]`.
 ///
-/// A surface belongs to a body or to one of its points, `body.at(vector).plane(normal)`, which is its centre or a point of
-/// it. What rolls is a `circle(radius, axis)` (the sharp rim of a disk), a `torus(radius, tube_radius, axis)` (`radius` is
-/// that of the tube's centre line), a `sphere(radius)` or an `ellipsoid(a, b, c)` (semi-axes along the body's axes); on a
-/// `plane(normal)`, whose normal points to what rolls on it. A sphere also rolls on a `sphere(radius)` and a
-/// `cylinder(radius, axis)`, and inside of a `bowl(radius)` and a `tube(radius, axis)`. Both bodies may move.
+/// A surface belongs to a body or to one of its points, `body.at(vector).plane(normal)`, which is its centre, its apex or a
+/// point of it. Both bodies may move.
+///
+/// | what rolls | on | inside of |
+/// | --- | --- | --- |
+/// | `sphere(radius)` | `plane(normal)`, `sphere(radius)`, `cylinder(radius, axis)`, `cone(half_angle, axis)` | `bowl(radius)`, `tube(radius, axis)`, `funnel(half_angle, axis)` |
+/// | `circle(radius, axis)`, the sharp rim of a disk | `plane(normal)` | |
+/// | `torus(radius, tube_radius, axis)`, a tyre; `radius` is that of the tube's centre line | `plane(normal)` | |
+/// | `ellipsoid(a, b, c)`, semi-axes along the body's axes | `plane(normal)` | |
+/// | `cone(half_angle, axis)` | `plane(normal)`, `cone(half_angle, axis)` | `funnel(half_angle, axis)` |
+///
+/// A plane's normal points to what rolls on it, a cone's axis from the apex into the cone, a funnel's from the apex to its
+/// opening; a half angle is that between axis and surface, rad.
+///
+/// Contacts at a point have three constraints: `contact.normal` and two tangents; their multipliers are the normal force and
+/// the friction, N. Cones touch along a line, and none of its points slips: the apexes stay together (on a plane the apex
+/// stays where it is: `contact.normal` and two tangents; else `contact.x`, `.y`, `.z`), and the cones turn relative to
+/// each other about the line alone. That adds `contact.tilt`, whose multiplier is the moment of the pressure about the
+/// apex, and `contact.spin`, the moment of friction about the normal, N·m. The rim of a cone, or of a disk, that rolls by
+/// itself is a `circle`.
+///
+/// The surfaces are held together, also where the normal force (`contact.normal`, positive where they press) would be
+/// negative and bodies would part.
 pub enum Rolling {}
 
 /// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of

@@ -1,5 +1,6 @@
 //! Mechanisms with constraints.
 
+mod contacts;
 mod counts;
 mod embedded;
 mod formulations;

@@ -127,8 +127,62 @@ mod no_rolling_pair {
         negative: Rolling,
         #[constraint(rolls(ground.sphere(1), ground.plane(z)))]
         both_still: Rolling,
+    }
+}
+
+mod rolling_is_no_equation {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        #[body(mass = 1, inertia = disk(1, 1, y))]
+        disk: Body,
+        #[joint(ground -> disk)]
+        pose: Free,
         #[constraint(rolls(disk.circle(1, y), ground.plane(z)) = 0)]
         equation: Rolling,
+    }
+}
+
+mod cones {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        #[body(mass = 1, inertia = cone(1, 1, 1, z))]
+        cone: Body,
+        #[joint(ground -> cone)]
+        pose: Free,
+        #[constraint(rolls(cone.cone(30, z), ground.plane(z)))]
+        degrees: Rolling,
+        #[constraint(rolls(cone.cone(z), ground.plane(z)))]
+        no_angle: Rolling,
+        #[constraint(rolls(cone.cone(0.6, z), ground.funnel(0.4, z)))]
+        too_wide: Rolling,
+        #[constraint(rolls(cone.cone(0.5, z), ground.cylinder(1, z)))]
+        on_a_cylinder: Rolling,
+        #[constraint(rolls(cone.funnel(0.5, z), ground.plane(z)))]
+        funnel_on_a_plane: Rolling,
+    }
+}
+
+mod units_of_surfaces {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        #[unit(m)]
+        angle: f64,
+        #[unit(rad)]
+        radius: f64,
+        #[body(mass = 1, inertia = cone(1, 1, 1, z))]
+        cone: Body,
+        #[joint(ground -> cone)]
+        pose: Free,
+        #[constraint(rolls(cone.cone(angle, z), ground.plane(z)))]
+        wide: Rolling,
+        #[constraint(rolls(cone.sphere(radius), ground.plane(z)))]
+        round: Rolling,
     }
 }
 

@@ -6,6 +6,7 @@ use super::si::{
     ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, STRENGTH, TIME,
 };
 use super::unify::Dimension;
+use crate::model::contact::FORMS;
 use crate::model::inertia::SOLIDS;
 use crate::syntax::{
     Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
@@ -246,7 +247,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Both sides are alike, whatever they are; the lengths of rolling surfaces are lengths.
+    /// Both sides are alike, whatever they are; surfaces have arguments of their own.
     fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         if constraint.kind != ConstraintKind::Rolling {
             let side = Dimension::variable(inference.system.variable());
@@ -258,13 +259,14 @@ impl<'a> Places<'a> {
         for surface in pair {
             let ExprKind::Method(home, word, arguments) = &surface.kind else { continue };
             self.points.push(home);
-            let axis = match word.text.as_str() {
-                "circle" | "torus" | "plane" | "cylinder" | "tube" => arguments.len().saturating_sub(1),
-                _ => arguments.len(),
-            };
-            let (lengths, axes) = arguments.split_at(axis);
-            self.all(lengths, &LENGTH, "m");
-            self.all(axes, &PLAIN, "1");
+            let Some((_, names)) = FORMS.iter().find(|(name, _)| *name == word.text) else { continue };
+            for (argument, name) in arguments.iter().zip(*names) {
+                match *name {
+                    "axis" | "normal" => self.add(argument, &PLAIN, "1"),
+                    "half_angle" => self.add(argument, &PLAIN, "rad"),
+                    _ => self.add(argument, &LENGTH, "m"),
+                }
+            }
         }
     }
 
