@@ -326,6 +326,61 @@ fn units_are_documented() {
     }
 }
 
+/// Rows of joints, of expressions and of rolling pairs: multipliers times rates are powers.
+#[test]
+fn constraints_and_multipliers_have_units() {
+    let item = "struct Machine {
+        length: f64, radius: f64, ratio: f64, area: f64,
+        #[body(mass = 1, com = x, inertia = diagonal(1, 2, 3))] first: Body,
+        #[body(mass = 1, com = y, inertia = diagonal(1, 2, 3))] second: Body,
+        #[body(mass = 1, inertia = sphere(1, radius))] ball: Body,
+        #[joint(ground -> first)] left: Free,
+        #[joint(ground -> second)] right: Free,
+        #[joint(ground -> ball)] loose: Free,
+        #[body(mass = 1, com = x, inertia = rod(1, 1, y))] wheel: Body,
+        #[joint(ground -> wheel, about = z)] spin: Pin,
+        #[body(mass = 1)] slider: Body,
+        #[joint(ground -> slider, along = x)] slide: Sleeve,
+        #[joint(first -> second, about = z, pitch = 0.1)] thread: Screw,
+        #[constraint(norm(r(first / ground)) = length)] rope: Holonomic,
+        #[constraint(spin = ratio * sin(3 * t))] drive: Holonomic,
+        #[constraint(slide * slide = area)] square: Holonomic,
+        #[constraint(rate(spin) = ratio * dot(omega(second / ground), x))] gear: Nonholonomic,
+        #[constraint(dot(v(second / ground / ground), second.y) = 0)] knife: Nonholonomic,
+        #[constraint(rolls(ball.sphere(radius), ground.plane(z)))] contact: Rolling,
+        #[body(mass = 1, com = z, inertia = cone(1, 1, 2, z))] top: Body,
+        #[joint(ground -> top)] tumble: Free,
+        #[constraint(rolls(top.cone(0.4, z), ground.plane(z)))] line: Rolling,
+    }";
+    let expected = [
+        ("thread.x", "configurations", "m", "N"),
+        ("thread.y", "configurations", "m", "N"),
+        ("thread.advance", "configurations", "m", "N"),
+        ("thread.tilt_x", "configurations", "rad", "N·m"),
+        ("thread.tilt_y", "configurations", "rad", "N·m"),
+        ("rope", "configurations", "m", "N"),
+        ("drive", "configurations", "rad", "N·m"),
+        ("square", "configurations", "m²", "N/m"),
+        ("contact.normal", "configurations", "m", "N"),
+        ("line.normal", "configurations", "m", "N"),
+        ("line.tilt", "configurations", "rad", "N·m"),
+        ("gear", "velocities", "rad/s", "N·m"),
+        ("knife", "velocities", "m/s", "N"),
+        ("contact.x", "velocities", "m/s", "N"),
+        ("contact.y", "velocities", "m/s", "N"),
+        ("line.x", "velocities", "m/s", "N"),
+        ("line.y", "velocities", "m/s", "N"),
+        ("line.spin", "velocities", "rad/s", "N·m"),
+    ];
+    let found = units("", item).unwrap().constraints;
+    assert_eq!(found, expected.map(|(.., unit, multiplier)| [unit, multiplier].map(str::to_string)));
+    let text = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
+    for (k, (name, what, unit, multiplier)) in expected.into_iter().enumerate() {
+        let row = format!("| `λ[{k}]` | `{name}` | {what} | {unit} | {multiplier} |");
+        assert!(text.contains(&row), "{row} is not in {text}");
+    }
+}
+
 /// Inference is bounded, whatever it is given.
 #[test]
 fn large_structs_are_read_in_time() {

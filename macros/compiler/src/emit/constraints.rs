@@ -100,7 +100,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
         }}
-        /// Acceleration, and the multipliers `λ` of the constraints: N for lengths, N·m for angles; of redundant constraints those of least norm.
+        /// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let found = self.__constrained_dynamics({pass}q, v, tau);

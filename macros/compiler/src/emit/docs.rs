@@ -81,8 +81,14 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
         c.names.len(),
         c.holonomic
     );
-    list(text, "On configurations", &c.names[..c.holonomic]);
-    list(text, "On velocities alone", &c.names[c.holonomic..]);
+    text.push_str(
+        "| | constraint | restricts | residual or rate | multiplier |\n| --- | --- | --- | --- | --- |\n",
+    );
+    for (k, (name, [residual, multiplier])) in c.names.iter().zip(&i.units.constraints).enumerate() {
+        let what = if k < c.holonomic { "configurations" } else { "velocities" };
+        let _ = writeln!(text, "| `λ[{k}]` | `{name}` | {what} | {residual} | {multiplier} |");
+    }
+    text.push('\n');
     list(text, "Left out, because they follow from these", &c.redundant);
     let dependent = (speeds + c.names.len()).saturating_sub(i.velocities.len());
     if dependent > 0 {

@@ -8,7 +8,7 @@ use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
 use super::rows::Rows;
 use super::world::{Level, Placed, PlacedKind, View};
-use super::{Constraint, LinkId, Pose, Quantity, Transmission, mobility, redundancy};
+use super::{Constraint, LinkId, Measure, Pose, Quantity, Transmission, mobility, redundancy};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -91,11 +91,12 @@ impl<'g> Builder<'_, 'g> {
             self.group += 1;
             self.close_loop(j, cx);
         }
-        for constraint in &self.description.constraints {
+        for (index, constraint) in self.description.constraints.iter().enumerate() {
             self.group += 1;
+            let measure = Measure::Declared(index);
             match constraint.kind {
-                ConstraintKind::Holonomic => self.add_holonomic(constraint, cx),
-                ConstraintKind::Nonholonomic => self.add_nonholonomic(constraint, cx),
+                ConstraintKind::Holonomic => self.add_holonomic(constraint, measure, cx),
+                ConstraintKind::Nonholonomic => self.add_nonholonomic(constraint, measure, cx),
                 ConstraintKind::Rolling => self.add_rolling(constraint, cx),
             }
         }
@@ -214,7 +215,7 @@ impl<'g> Builder<'_, 'g> {
         let gap = self.point(on_child, child.pose.translation).minus(&origin);
         if slides.is_empty() {
             for (k, word) in AXES.iter().enumerate() {
-                self.push(ends, word, gap.component(k), Some((false, Vec3::axis(g, k))));
+                self.push(ends, word, gap.component(k), (Measure::Length, Vec3::axis(g, k)));
             }
             return;
         }
@@ -225,7 +226,7 @@ impl<'g> Builder<'_, 'g> {
         };
         for (word, direction) in across {
             let e = self.direction(on_parent, parent.pose.rotation.to_parent(direction));
-            self.push(ends, word, gap.dot(&e), Some((false, e.value)));
+            self.push(ends, word, gap.dot(&e), (Measure::Length, e.value));
         }
         if let [Elementary::Helix(axis, pitch)] = motions {
             let n = self.direction(on_parent, parent.pose.rotation.to_parent(*axis)).value;
@@ -237,10 +238,10 @@ impl<'g> Builder<'_, 'g> {
             let value = *pitch * (sine * advance.cos() - cosine * advance.sin());
             let rate = time_derivative(self.model.space(), value);
             let second = time_derivative(self.model.space(), rate);
-            // It turns the child by the pitch and pushes it back along the axis.
-            self.push(ends, "advance", Jet { value, rate, second }, Some((true, n * *pitch)));
-            let pushed = self.transmission(ends, false, -n);
-            self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(pushed));
+            // It pushes the child back along the axis and turns it by the pitch.
+            self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
+            let turned = self.transmission(ends, true, n * *pitch);
+            self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
         }
     }
 
@@ -276,23 +277,30 @@ impl<'g> Builder<'_, 'g> {
         for (word, e, carried, angle) in rows {
             let mut jet = e.dot(&carried);
             jet.value -= angle;
-            self.push(ends, &word, jet, Some((true, carried.value.cross(e.value))));
+            self.push(ends, &word, jet, (Measure::Angle, carried.value.cross(e.value)));
         }
     }
 
-    /// A row of a joint, with the force or torque on the child that its multiplier is, in the axes of the link that
-    /// carries both ends.
-    fn push(&mut self, ends: &Closing<'g>, word: &str, jet: Jet<'g>, acts: Option<(bool, Vec3<'g>)>) {
+    /// A row of a joint, with the force of a length or the torque of an angle on the child that its multiplier is, in the
+    /// axes of the link that carries both ends.
+    fn push(
+        &mut self,
+        ends: &Closing<'g>,
+        word: &str,
+        jet: Jet<'g>,
+        (measure, direction): (Measure, Vec3<'g>),
+    ) {
         let joint = &self.description.joints[ends.j].name;
         let Jet { value, rate, second } = jet;
-        let transmits = acts.map(|(torque, direction)| self.transmission(ends, torque, direction));
+        let transmits = self.transmission(ends, measure == Measure::Angle, direction);
         self.model.constraints.push(Constraint {
             name: format!("{}.{word}", joint.text),
             place: joint.place.clone(),
             residual: Some(value),
             rate,
             bias: second,
-            transmits: transmits.into_iter().collect(),
+            measure,
+            transmits: vec![transmits],
             group: self.group,
         });
     }
@@ -303,13 +311,14 @@ impl<'g> Builder<'_, 'g> {
         Transmission { joint: ends.j, torque, direction }
     }
 
-    fn push_residual(&mut self, name: String, place: &Place, residual: Expr<'g>) {
-        let rate = time_derivative(self.model.space(), residual);
-        self.push_rate(name, place, Some(residual), rate);
-    }
-
-    /// A row whose rate is known.
-    pub fn push_rate(&mut self, name: String, place: &Place, residual: Option<Expr<'g>>, rate: Expr<'g>) {
+    /// A row of a constraint that was declared, whose rate is known.
+    pub fn push_rate(
+        &mut self,
+        (name, place): (String, &Place),
+        measure: Measure,
+        residual: Option<Expr<'g>>,
+        rate: Expr<'g>,
+    ) {
         let bias = time_derivative(self.model.space(), rate);
         self.model.constraints.push(Constraint {
             name,
@@ -317,6 +326,7 @@ impl<'g> Builder<'_, 'g> {
             residual,
             rate,
             bias,
+            measure,
             transmits: Vec::new(),
             group: self.group,
         });
@@ -385,18 +395,19 @@ impl<'g> Builder<'_, 'g> {
         change_axes(&self.scope.world.borrow().joints, v, on.link, on.ancestor)
     }
 
-    fn add_holonomic(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+    fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
         for (name, residual) in self.difference(constraint, Level::Placement, cx) {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
                 return;
             }
-            self.push_residual(name, &constraint.name.place, residual);
+            let rate = time_derivative(self.model.space(), residual);
+            self.push_rate((name, &constraint.name.place), measure, Some(residual), rate);
         }
     }
 
-    fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+    fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
         for (name, rate) in self.difference(constraint, Level::Motion, cx) {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
@@ -419,7 +430,7 @@ impl<'g> Builder<'_, 'g> {
                 );
                 return;
             }
-            self.push_rate(name, &constraint.name.place, None, rate);
+            self.push_rate((name, &constraint.name.place), measure, None, rate);
         }
     }
 

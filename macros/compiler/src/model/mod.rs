@@ -401,7 +401,7 @@ pub struct Model<'g> {
     pub outputs: Vec<OutputValue<'g>>,
     /// The same mechanism with the joints whose reactions outputs name opened: six coordinates for each after all others.
     pub opened: Option<Rc<Opened<'g>>>,
-    /// Units of parameters, coordinates, inputs and outputs.
+    /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: units::Units,
 }
 
@@ -439,10 +439,23 @@ pub struct Constraint<'g> {
     pub rate: Expr<'g>,
     /// Derivative of `rate` at zero accelerations.
     pub bias: Expr<'g>,
+    /// What `residual` measures, or where there is none, what `rate` is the rate of.
+    pub measure: Measure,
     /// What its multiplier is in a joint that closes a loop.
     pub transmits: Vec<Transmission<'g>>,
     /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
     pub group: usize,
+}
+
+/// What a scalar constraint measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// A length between two points or surfaces.
+    Length,
+    /// The sine of an angle, or the difference of a cosine, which are zero where the angle is right.
+    Angle,
+    /// What an expression is, or the rate of something: that of a declared constraint, by its index.
+    Declared(usize),
 }
 
 /// A part of the force or torque that a joint's parent exerts on its child.

@@ -10,6 +10,7 @@ use super::Pair;
 use super::surface::Form;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
+use crate::model::Measure;
 use crate::model::build::Builder;
 use crate::model::constraint::perpendicular;
 use crate::syntax;
@@ -52,7 +53,8 @@ impl<'g> Builder<'_, 'g> {
         let (name, place) = (&constraint.name.text, &constraint.name.place);
         for (word, e, is_place) in apex {
             let e = self.of_second(pair, e).value;
-            self.push_rate(format!("{name}.{word}"), place, is_place.then(|| e.dot(away)), e.dot(slip));
+            let gap = is_place.then(|| e.dot(away));
+            self.push_rate((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip));
         }
         self.group += 1;
         // The angle by which the wide end is lifted, to first order.
@@ -60,9 +62,10 @@ impl<'g> Builder<'_, 'g> {
         let lifted = side / sine;
         let tilt = (a.value.dot(b.value) - cosine) * lifted;
         let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
-        self.push_rate(format!("{name}.tilt"), place, Some(tilt), rate);
+        self.push_rate((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
         let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
         let [w_a, w_b] = self.spins(pair);
-        self.push_rate(format!("{name}.spin"), place, None, normal.dot(w_a - w_b));
+        let spin = normal.dot(w_a - w_b);
+        self.push_rate((format!("{name}.spin"), place), Measure::Angle, None, spin);
     }
 }

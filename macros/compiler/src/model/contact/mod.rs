@@ -7,6 +7,7 @@ mod surface;
 
 pub use surface::FORMS;
 
+use super::Measure;
 use super::build::Builder;
 use super::constraint::{Moving, Relative, perpendicular};
 use crate::diag::Diagnostics;
@@ -53,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
         for (k, (word, e)) in contact.axes.into_iter().enumerate() {
             let residual = (k == 0).then_some(contact.gap);
             let name = format!("{}.{word}", constraint.name.text);
-            self.push_rate(name, &constraint.name.place, residual, e.dot(slip));
+            self.push_rate((name, &constraint.name.place), Measure::Length, residual, e.dot(slip));
         }
     }
 

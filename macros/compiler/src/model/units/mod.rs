@@ -11,7 +11,7 @@ mod unify;
 mod value;
 mod walk;
 
-use super::{Chart, Coordinate, Model};
+use super::{Chart, Constraint, Coordinate, Measure, Model};
 use crate::diag::Diagnostics;
 use crate::syntax::{Definition, Description, Expr, ExprKind};
 use infer::{Inference, Meaning, Origin, Reason};
@@ -33,6 +33,9 @@ pub struct Units {
     pub inputs: Vec<String>,
     /// Of every output.
     pub outputs: Vec<String>,
+    /// Of every scalar constraint: its residual, or its rate where it restricts velocities alone, and its multiplier,
+    /// which is a power per rate.
+    pub constraints: Vec<[String; 2]>,
 }
 
 /// How deep definitions of definitions are looked into.
@@ -60,6 +63,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
         let (dimension, locals) = (Dimension::variable(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
+    let sides = std::mem::take(&mut places.sides);
     solve(places, &mut inference);
     if inference.gave_up {
         inference.mismatches.clear();
@@ -75,6 +79,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
         let energy = !output.vector && unit == "N·m";
         units.outputs.push(if energy { "J".to_string() } else { unit });
     }
+    units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();
     units
 }
 
@@ -220,6 +225,30 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
         }
     };
     (unit, rate)
+}
+
+/// Units of a constraint and of its multiplier, whose product with the rate is a power.
+fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
+    let configurations = c.residual.is_some();
+    let (length, angle, work) = match configurations {
+        true => (si::LENGTH, si::PLAIN, si::ENERGY),
+        false => (si::SPEED, si::RATE, si::POWER),
+    };
+    let dimension = match c.measure {
+        Measure::Length => Some(length),
+        Measure::Angle => Some(angle.clone()),
+        Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
+    };
+    let known = dimension.filter(|d| d.is_known() && !inference.gave_up);
+    let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.over(&d)?))) else {
+        return ["any".to_string(), "any".to_string()];
+    };
+    let unit = match (dimension == angle, configurations) {
+        (true, true) => "rad".to_string(),
+        (true, false) => "rad/s".to_string(),
+        _ => si::unit(&dimension),
+    };
+    [unit, si::unit(&multiplier)]
 }
 
 /// The unit of an input: that of a joint's motor is the motor's.

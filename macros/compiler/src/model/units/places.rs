@@ -31,6 +31,8 @@ pub struct Places<'a> {
     pub tasks: Vec<Task<'a>>,
     /// Ends of force elements, which may be placed by vectors.
     pub points: Vec<&'a Expr>,
+    /// By declared constraint: what its sides are. Nothing of rolling pairs.
+    pub sides: Vec<Dimension>,
 }
 
 /// What a force element works on.
@@ -46,7 +48,7 @@ const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
 /// Collects the places of a description. What comes from a file is all numbers.
 pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<'a> {
-    let mut places = Places { tasks: Vec::new(), points: Vec::new() };
+    let mut places = Places { tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
     // Definitions have unknowns of their own, which come with their names; where they are used comes after.
     for definition in &d.definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
@@ -249,8 +251,9 @@ impl<'a> Places<'a> {
 
     /// Both sides are alike, whatever they are; surfaces have arguments of their own.
     fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+        let side = Dimension::variable(inference.system.variable());
+        self.sides.push(side.clone());
         if constraint.kind != ConstraintKind::Rolling {
-            let side = Dimension::variable(inference.system.variable());
             self.add(&constraint.value, &side, "");
             self.all(&constraint.other, &side, "");
             return;
