@@ -68,6 +68,7 @@ const MECHANISMS: [&str; 12] = [
         #[body(mass = m, inertia = disk(m, radius, y))] disk: Body,
         #[joint(ground -> disk)] pose: Free,
         #[constraint(rolls(disk.circle(radius, y), ground.plane(z)))] contact: Rolling,
+        #[constraint(slips(disk.at(m * y).sphere(radius), ground.plane(z)), friction = m, speed = radius)] rub: Slipping,
     }",
     "gravity = 9.81 * z, friction_speed = 0.1; pub struct Aircraft {
         pub m: f64, pub ixx: f64, pub izz: f64, pub ixz: f64,

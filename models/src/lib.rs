@@ -82,6 +82,8 @@
 //! | [`BallInFunnel`] | 3 | level circles with spin, two integrals of the motion |
 //! | [`BallInTube`] | 3 | rises again, with `√(2/7)` of the rate round |
 //! | [`BallOnTurntable`] (driven) | 3 | circles at 2/7 of the table's rate |
+//! | [`BowlingBall`] (slides with friction) | 5 | accelerations, when it rolls and how fast, parabola |
+//! | [`SlidingRod`] (Painlevé's) | 2 | accelerations, normal force, where friction jams |
 //! | [`RollingCone`] | 1 | energies, swings by an elliptic integral, where the line of contact presses |
 //! | [`RollingDisk`] | 3 | accelerations, critical speed, circles |
 //! | [`Rattleback`] | 3 | turns back, constant energy |
@@ -139,6 +141,7 @@
 //! | gears | [`RemotelyDrivenArm`], [`GearPair`] |
 //! | conditions on velocities (`Nonholonomic`) | [`ChaplyginSleigh`] |
 //! | rolling pairs (`Rolling`) | [`RollingDisk`], [`BallInBowl`], [`Bicycle`] |
+//! | slipping pairs with friction (`Slipping`) | [`BowlingBall`], [`SlidingRod`] |
 //! | a base whose motion is prescribed (`massive`) | [`RateGyroscope`], [`BallOnTurntable`] |
 //! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
 
@@ -152,6 +155,7 @@ mod ball_in_tube;
 mod ball_on_turntable;
 mod bead_on_spinning_hoop;
 mod bicycle;
+mod bowling_ball;
 mod braked_flywheel;
 mod bricard_linkage;
 mod car_axle;
@@ -191,6 +195,7 @@ mod rolling_cone;
 mod rolling_disk;
 mod shaft_with_slider;
 mod slider_crank;
+mod sliding_rod;
 mod spherical_pendulum;
 mod spring_chain;
 mod stewart_platform;
@@ -211,6 +216,7 @@ pub use ball_in_tube::BallInTube;
 pub use ball_on_turntable::BallOnTurntable;
 pub use bead_on_spinning_hoop::BeadOnSpinningHoop;
 pub use bicycle::Bicycle;
+pub use bowling_ball::BowlingBall;
 pub use braked_flywheel::BrakedFlywheel;
 pub use bricard_linkage::BricardLinkage;
 pub use car_axle::CarAxle;
@@ -250,6 +256,7 @@ pub use rolling_cone::RollingCone;
 pub use rolling_disk::RollingDisk;
 pub use shaft_with_slider::ShaftWithSlider;
 pub use slider_crank::SliderCrank;
+pub use sliding_rod::SlidingRod;
 pub use spherical_pendulum::SphericalPendulum;
 pub use spring_chain::SpringChain;
 pub use stewart_platform::StewartPlatform;

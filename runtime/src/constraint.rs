@@ -12,12 +12,15 @@ use nalgebra::{SMatrix, SVector};
 
 mod assemble;
 mod linearize;
+mod slipping;
 mod solve;
 mod stabilized;
 
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, columns, constrained_derivatives};
+#[doc(hidden)]
+pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]
 pub use solve::{least_multipliers, regular_solution};
 pub use stabilized::{Stabilized, stabilized};
@@ -45,6 +48,12 @@ pub enum ConstraintError {
     },
     /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to first order.
     Singular,
+    /// Friction jams: a normal force that friction depends on does not follow from the motion (Painlevé's paradox), or is
+    /// shared by contacts in more than one way.
+    Jammed {
+        /// The contact.
+        constraint: &'static str,
+    },
     /// Residuals or rates are infinite or NaN there.
     NotFinite,
 }
@@ -59,6 +68,7 @@ impl fmt::Display for ConstraintError {
                 write!(f, "the constraint `{constraint}` is left at a rate of {rate}")
             }
             Self::Singular => write!(f, "the constraints lose rank in this configuration"),
+            Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
             Self::NotFinite => write!(f, "the constraints are not finite"),
         }
     }

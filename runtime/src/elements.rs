@@ -254,6 +254,21 @@ pub enum Nonholonomic {}
 /// negative and bodies would part.
 pub enum Rolling {}
 
+/// A pair of surfaces that touch and slip on each other with dry friction:
+/// `#[constraint(slips(ball.sphere(radius), lane.plane(z)), friction = mu, speed = v0)]`.
+///
+/// The surfaces are those of [`Rolling`] that touch at a point, and are held together in the same way: the one constraint is
+/// `contact.normal`, and its multiplier is the normal force `N`, positive where they press. At the slip `s`, the velocity of
+/// the first surface at the contact relative to the other one, friction is `−μ |N| s / √(|s|² + v₀²)`: Coulomb's law, made
+/// smooth at speeds around `speed` (0.01 m/s unless given here or for the mechanism by `friction_speed`). So at rest the
+/// bodies creep instead of sticking; the smaller the speed, the stiffer the motion. It resists the slip also where the surfaces are
+/// held together by a pull. `friction` may depend on coordinates and time; with `friction = 0` the surfaces are smooth.
+///
+/// The equations of motion are `M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|`. Where they have no unique solution, friction jams (Painlevé's
+/// paradox): `try_constrained_dynamics` returns `ConstraintError::Jammed`, the other functions NaN, and a simulation ends
+/// with an error. What friction takes out is not part of `dissipated_power`, which does not know the multipliers.
+pub enum Slipping {}
+
 /// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
 /// that name, with `name_jacobian`, its derivatives by the velocities (those of its rate if it contains none).
 pub enum Scalar {}

@@ -59,7 +59,8 @@ pub mod prelude {
 #[doc(hidden)]
 pub mod __private {
     pub use crate::constraint::{
-        Motion, columns, constrained_derivatives, least_multipliers, regular_solution,
+        Motion, columns, constrained_derivatives, least_multipliers, pressing_solution, regular_solution,
+        slipping_response, slipping_solution,
     };
     pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, splat};

@@ -6,3 +6,4 @@ mod embedded;
 mod formulations;
 mod invariants;
 mod reactions;
+mod slipping;

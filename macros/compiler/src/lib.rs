@@ -126,7 +126,7 @@ pub fn compile_with<'g>(
 }
 
 /// Functions that are not derived but written as they are, those of mechanisms with constraints included.
-const WRITTEN: [&str; 15] = [
+const WRITTEN: [&str; 16] = [
     "assemble",
     "constrained_dynamics",
     "constraint_correction",
@@ -142,6 +142,7 @@ const WRITTEN: [&str; 15] = [
     "project_configuration",
     "project_velocity",
     "tangent_rate",
+    "try_constrained_dynamics",
 ];
 
 /// Reports outputs that would be functions of the same name as others.
@@ -254,7 +255,7 @@ impl Source {
         }
         if outline.constrained {
             functions.retain(|f| f.name != "forward_dynamics");
-            functions.extend(signatures::constrained(&sizes, 1, 1));
+            functions.extend(signatures::constrained(&sizes, 1, 1, 0));
         }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {

@@ -17,17 +17,20 @@ fn tolerance<T: Real>() -> T {
 pub fn regular_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
     found: &[T; N],
 ) -> Option<Multipliers<T, NV, NC>> {
-    let tolerance = tolerance::<T>();
-    for k in 0..NC {
-        let (pivot, before) = (found.get(NV + NC + k)?, found.get(NV + 2 * NC + k)?);
-        // Not so for what is not a number.
-        let holds = *pivot > tolerance * *before;
-        if !holds {
-            return None;
-        }
+    if !(0..NC).all(|k| regular::<T, NV, NC, N>(found, k)) {
+        return None;
     }
     let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
     Some((SVector::from_fn(|k, _| part(k)), SVector::from_fn(|k, _| part(NV + k))))
+}
+
+/// Whether the pivot of a constraint can be trusted; not so what is not a number.
+#[inline]
+pub fn regular<T: Real, const NV: usize, const NC: usize, const N: usize>(found: &[T; N], k: usize) -> bool {
+    match (found.get(NV + NC + k), found.get(NV + 2 * NC + k)) {
+        (Some(pivot), Some(before)) => *pivot > tolerance::<T>() * *before,
+        _ => false,
+    }
 }
 
 /// `v̇` and the multipliers of least norm: `M v̇ = f + Jᵀ λ`, `J v̇ = −b`. Constraints that follow from others are found by

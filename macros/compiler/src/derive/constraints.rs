@@ -3,7 +3,7 @@
 use super::signatures::{self, Sizes};
 use crate::emit::Function;
 use crate::expr::Expr;
-use crate::mechanics::constraints;
+use crate::mechanics::{constraints, friction};
 use crate::model::Model;
 
 /// Takes away what a mechanism with constraints solves otherwise, and adds what it has besides.
@@ -11,7 +11,8 @@ pub(super) fn replace(functions: &mut Vec<Function>, model: &Model<'_>) {
     if !model.constraints.is_empty() {
         functions.retain(|f| f.name != "forward_dynamics");
         let (nh, nc) = (model.holonomic(), model.constraints.len());
-        functions.extend(signatures::constrained(&Sizes::of(model), nh, nc));
+        let slipping = friction::slipping(model).len();
+        functions.extend(signatures::constrained(&Sizes::of(model), nh, nc, slipping));
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{Stage, done, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
-use crate::mechanics::{self, Joint, aba, constraints, crba, energy, frames, ldl, momentum, rnea};
+use crate::mechanics::{self, Joint, aba, constraints, crba, energy, frames, friction, ldl, momentum, rnea};
 use crate::model::{Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
@@ -50,6 +50,7 @@ impl<'g> Dynamics<'g> {
             "forward_dynamics" => return Some(self.forms.forward_dynamics()),
             "__constrained_dynamics" => return Some(self.forms.constrained_dynamics()),
             "__constraint_correction" => return Some(self.forms.constraint_correction()),
+            "__slipping_response" => return Some(self.forms.slipping_response()),
             "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
             "potential_energy" => |m, j, _| vec![energy::potential_energy(m, j)],
             "generalized_momentum" => |m, j, v| momentum::generalized_momentum(m, j, v),
@@ -172,11 +173,25 @@ impl<'g> Forms<'g> {
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
         let force: Vec<Expr<'g>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
+        if !friction::slipping(bias).is_empty() {
+            return cheapest(self.plain().map(|model| {
+                let mass = crba::mass_matrix(model, &self.joints);
+                self.stage.program(&friction::motion(model, &mass, &force))
+            }));
+        }
         let biases = constraints::biases(bias);
         let Some(pivots) = &bias.dependent else { return self.multipliers(&force, &biases) };
         cheapest(self.plain().map(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
             self.stage.program(&constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots))
+        }))
+    }
+
+    /// The same for forces and biases that are given, with friction.
+    fn slipping_response(&self) -> Program {
+        cheapest(self.plain().map(|model| {
+            let mass = crba::mass_matrix(model, &self.joints);
+            self.stage.program(&friction::response(model, &mass))
         }))
     }
 

@@ -401,11 +401,11 @@ pub fn output(name: &str, size: usize, uses: Uses, sizes: &Sizes) -> Vec<Functio
 }
 
 /// The functions of a mechanism with `nc` constraints, of which `nh` are on configurations, beside those that solve.
-pub fn constrained(sizes: &Sizes, nh: usize, nc: usize) -> Vec<Function> {
+pub fn constrained(sizes: &Sizes, nh: usize, nc: usize, slipping: usize) -> Vec<Function> {
     let nv = sizes.nv;
     let (force, bias) = (Argument::Given("force", 0, nv), Argument::Given("bias", nv, nc));
     let solution = Shape::Array(nv + 3 * nc);
-    vec![
+    let mut functions = vec![
         sizes.function(
             "constraint_residuals",
             &[Q],
@@ -430,9 +430,16 @@ pub fn constrained(sizes: &Sizes, nh: usize, nc: usize) -> Vec<Function> {
             Shape::Vector(nc),
             &["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
         ),
-        sizes.function("__constrained_dynamics", &[Q, V, Tau], solution, &[]),
         sizes.function("__constraint_correction", &[Q, force, bias], solution, &[]),
-    ]
+    ];
+    let sides = Argument::Given("sides", nv + nc, slipping);
+    if slipping == 0 {
+        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau], solution, &[]));
+    } else {
+        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau, sides], solution, &[]));
+        functions.push(sizes.function("__slipping_response", &[Q, V, force, bias, sides], solution, &[]));
+    }
+    functions
 }
 
 /// What a mechanism with `nc` constraints needs for the derivatives of its motion, all hidden.

@@ -18,6 +18,8 @@ pub struct Constraints {
     pub redundant: Vec<String>,
     /// Independent coordinates and velocities.
     pub freedom: [usize; 2],
+    /// Those whose multipliers are normal forces of friction.
+    pub slipping: Vec<usize>,
 }
 
 impl Constraints {
@@ -29,6 +31,7 @@ impl Constraints {
             groups: vec![0],
             redundant: Vec::new(),
             freedom: [0; 2],
+            slipping: Vec::new(),
         }
     }
 
@@ -40,6 +43,9 @@ impl Constraints {
             redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
+            slipping: (0..model.constraints.len())
+                .filter(|k| !model.constraints[*k].drags.is_empty())
+                .collect(),
         }
     }
 }
@@ -100,15 +106,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
         }}
-        /// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
-        #[inline]\n#[must_use]
-        pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
-            let found = self.__constrained_dynamics({pass}q, v, tau);
-            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
-                ::core::option::Option::Some(solution) => solution,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
-            }}
-        }}
+        {solve}
         /// The change of velocity of least kinetic energy that takes the rates `gap` of the constraints away: `J x = −gap`.
         #[inline]\n#[must_use]
         pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
@@ -138,10 +136,52 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         groups = c.groups,
         np = c.freedom[0],
         ns = c.freedom[1],
+        solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
     );
     if functions.iter().any(|f| f.name == "__motion_derivatives") {
         write_derivatives(out, c, s);
     }
+}
+
+/// Accelerations and multipliers of a mechanism whose contacts do not slip.
+fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
+    let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
+    let (scalar, nv, nc, groups) = (s.scalar.name(), s.nv, c.names.len(), &c.groups);
+    let n = nv + 3 * nc;
+    format!(
+        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
+        #[inline]\n#[must_use]
+        pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
+            let found = self.__constrained_dynamics({pass}q, v, tau);
+            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
+                ::core::option::Option::Some(solution) => solution,
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
+            }}
+        }}"
+    )
+}
+
+/// The same of one with contacts that slip.
+fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
+    let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
+    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
+    let (n, slipping, k) = (nv + 3 * nc, &c.slipping, c.slipping.len());
+    format!(
+        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists. Those of contacts that slip are their normal forces, with friction in proportion to their magnitudes. NaN where [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
+        #[inline]\n#[must_use]
+        pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
+            let lost = ::linkwork::__private::constant::<{scalar}>(f64::NAN);
+            self.try_constrained_dynamics({pass}q, v, tau).unwrap_or_else(|_| (<{v}>::repeat(lost), <{multipliers}>::repeat(lost)))
+        }}
+        /// The same, or why there is no unique answer.
+        ///
+        /// # Errors
+        /// `Jammed` where the normal force of a contact that slips does not follow from the motion (Painlevé's paradox: friction that presses harder than it yields); `Singular` where other constraints are redundant.
+        #[inline]
+        pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
+            ::linkwork::__private::slipping_solution::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
+        }}"
+    )
 }
 
 /// Derivatives of constrained motion, on request.
@@ -150,9 +190,16 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
     let [np, ns] = c.freedom;
     let square = s.shape(Shape::Square(nv));
-    let solve = format!(
-        "|force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]| self.__constraint_solution({pass}q, force, bias)"
-    );
+    let solve = if c.slipping.is_empty() {
+        format!(
+            "|force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]| self.__constraint_solution({pass}q, force, bias)"
+        )
+    } else {
+        let (slipping, k, n) = (&c.slipping, c.slipping.len(), nv + 3 * nc);
+        format!(
+            "::linkwork::__private::slipping_response::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
+        )
+    };
     let (rates, turning) = (2 * nv * nv + 2 * nc * nv, 2 * nv * nv + 3 * nc * nv);
     let _ = writeln!(
         out,

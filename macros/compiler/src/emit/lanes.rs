@@ -57,14 +57,19 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             _ => format!("&lane({}, k)", a.name()),
         })
         .collect();
+    let slipping = &i.constraints.slipping;
+    let sides = match slipping.len() {
+        0 => String::new(),
+        k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.name()),
+    };
     let _ = writeln!(
         out,
         "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit.
         #[inline]\n#[must_use]
         pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
-            use ::linkwork::__private::{{lane, lane_by_lane, regular_solution}};
-            let found = self.__constrained_dynamics_lanes({});
-            match regular_solution::<{}, {nv}, {nc}, {}>(&found) {{
+            use ::linkwork::__private::{{lane, lane_by_lane, pressing_solution}};
+            let found = self.__constrained_dynamics_lanes({}{sides});
+            match pressing_solution::<{}, {nv}, {nc}, {}>(&{slipping:?}, &found) {{
                 ::core::option::Option::Some(solution) => solution.0,
                 ::core::option::Option::None => lane_by_lane(|k| self.forward_dynamics({})),
             }}

@@ -10,9 +10,10 @@
 
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
+use super::friction;
 use super::kinematics::velocity_gradients;
 use super::ldl::{Solution, solve_in};
-use crate::expr::Expr;
+use crate::expr::{Expr, Function};
 use crate::model::{Model, Quantity};
 
 /// `J`: a row for each constraint, a column for each velocity.
@@ -53,7 +54,7 @@ pub fn solve<'g>(
 ) -> Vec<Expr<'g>> {
     let nv = mass.len();
     let k = system(mass, jacobian);
-    let (order, _) = elimination_order(&k, nv);
+    let (order, _) = elimination_order(&k, nv, &[]);
     let mut r = force;
     r.extend(bias.into_iter().map(|b| -b));
     let Solution { mut x, pivots, taken } = solve_in(k, r, &order, nv);
@@ -61,23 +62,43 @@ pub fn solve<'g>(
         *multiplier = -*multiplier;
     }
     x.extend(pivots[nv..].iter().map(|p| -*p));
-    let in_group = |group| model.constraints.iter().zip(&taken[nv..]).filter(move |(c, _)| c.group == group);
-    x.extend(
-        model
-            .constraints
-            .iter()
-            .map(|own| in_group(own.group).fold(model.graph.zero(), |sum, (_, taken)| sum + *taken)),
-    );
+    x.extend(in_groups(model, &taken[nv..]));
     x
+}
+
+/// By constraint, the sum over its group.
+pub fn in_groups<'g>(model: &Model<'g>, each: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let sum = |group| {
+        let own = model.constraints.iter().zip(each).filter(|(c, _)| c.group == group);
+        own.fold(model.graph.zero(), |sum, (_, e)| sum + *e)
+    };
+    model.constraints.iter().map(|c| sum(c.group)).collect()
+}
+
+/// `Jᵀ λ`, with the friction that follows from normal forces: what constraints contribute to the forces.
+pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = vec![model.graph.zero(); model.nv()];
+    for ((row, drag), l) in jacobian(model).iter().zip(friction::drags(model)).zip(lambda) {
+        let size = l.call(Function::Abs);
+        for ((force, entry), drag) in forces.iter_mut().zip(row).zip(drag) {
+            *force += *entry * *l + drag * size;
+        }
+    }
+    forces
+}
+
+/// The multipliers as given numbers.
+pub fn multipliers<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.constraints.len()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
 }
 
 /// About how many products the elimination takes.
 pub fn products(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
-    elimination_order(&system(mass, &jacobian(model)), mass.len()).1
+    elimination_order(&system(mass, &jacobian(model)), mass.len(), &friction::slipping(model)).1
 }
 
 /// The matrix of the system.
-fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
+pub fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
     let mut k: Matrix<'g> = mass.clone();
     for (row, c) in k.iter_mut().zip(0..) {
         row.extend(jacobian.iter().map(|j| j[c]));
@@ -172,13 +193,20 @@ fn eliminate<'g>(
     (right, sizes)
 }
 
-/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row. With the order comes
-/// about how many products it takes.
-fn elimination_order(k: &Matrix<'_>, nv: usize) -> (Vec<usize>, usize) {
+/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row, those of the rows `last`
+/// after everything else. With the order comes about how many products it takes.
+pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usize>, usize) {
     let n = k.len();
-    let mut full: Vec<Vec<bool>> = k.iter().map(|row| row.iter().map(|e| !e.is_zero()).collect()).collect();
-    let waits: Vec<Vec<usize>> =
-        (0..n).map(|i| if i < nv { Vec::new() } else { (0..nv).filter(|j| full[i][*j]).collect() }).collect();
+    let is_last = |i: usize| i >= nv && last.contains(&(i - nv));
+    let mut full: Vec<Vec<bool>> =
+        (0..n).map(|i| (0..n).map(|j| !k[i][j].is_zero() || !k[j][i].is_zero()).collect()).collect();
+    let waits: Vec<Vec<usize>> = (0..n)
+        .map(|i| match (is_last(i), i < nv) {
+            (true, _) => (0..n).filter(|j| !is_last(*j)).collect(),
+            (_, true) => Vec::new(),
+            _ => (0..nv).filter(|j| full[i][*j]).collect(),
+        })
+        .collect();
     let mut left: Vec<usize> = (0..n).collect();
     let (mut order, mut done, mut products) = (Vec::with_capacity(n), vec![false; n], 0);
     while !left.is_empty() {
@@ -221,10 +249,8 @@ pub struct FirstOrder<'g> {
 /// The derivatives for given multipliers, symbols as well.
 pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
     let rows = jacobian(model);
-    let lambda: Vec<Expr<'g>> = (0..rows.len()).map(|k| Quantity::Given(k).expr(model.graph)).collect();
     let zero = model.graph.zero();
-    let force = |k: usize| rows.iter().zip(&lambda).fold(zero, |sum, (row, l)| sum + row[k] * *l);
-    let forces: Vec<Expr<'g>> = (0..model.nv()).map(force).collect();
+    let forces = forces(model, &multipliers(model));
     let along = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
     let accelerations: Vec<Expr<'g>> =
         rows.iter().zip(biases(model)).map(|(row, bias)| along(row) + bias).collect();

@@ -68,10 +68,8 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let potential = normal.of(energy::potential_energy(model, joints))?;
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
     let mut right = forces::generalized_forces(model, joints);
-    for (k, row) in constraints::jacobian(model).iter().enumerate() {
-        let lambda = Quantity::Given(k).expr(model.graph);
-        right.iter_mut().zip(row).for_each(|(force, entry)| *force += *entry * lambda);
-    }
+    let held = constraints::forces(model, &constraints::multipliers(model));
+    right.iter_mut().zip(held).for_each(|(force, held)| *force += held);
     let mut forces = normals(&mut normal, &right)?;
     for c in &model.constraints {
         motion.push(normal.of(c.residual.unwrap_or(c.rate))?);

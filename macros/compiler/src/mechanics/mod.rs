@@ -13,6 +13,7 @@ pub mod energy;
 pub mod equations;
 pub mod forces;
 pub mod frames;
+pub mod friction;
 pub mod independence;
 pub mod inertances;
 pub mod lagrange;

@@ -53,12 +53,9 @@ fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> Vec<Expr<'
     let a: Vec<Expr<'g>> = (0..open.nv()).map(|k| closed(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
     let inputs = forces::generalized_forces(open, &joints);
-    let rows = constraints::jacobian(open);
+    let held = constraints::forces(open, &constraints::multipliers(open));
     for (k, force) in forces_needed.iter_mut().enumerate() {
-        *force -= inputs[k];
-        for (c, row) in rows.iter().enumerate() {
-            *force -= row[k] * Quantity::Given(c).expr(g);
-        }
+        *force -= inputs[k] + held[k];
     }
     let is_open = |s: Symbol| match Quantity::of(s) {
         Quantity::Configuration(k) => k >= model.nq(),

@@ -8,7 +8,7 @@ use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
 use super::rows::Rows;
 use super::world::{Level, Placed, PlacedKind, View};
-use super::{Constraint, LinkId, Measure, Pose, Quantity, Transmission, mobility, redundancy};
+use super::{Constraint, LinkId, Measure, Pose, Quantity, Transmission, contact, mobility, redundancy};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -98,6 +98,7 @@ impl<'g> Builder<'_, 'g> {
                 ConstraintKind::Holonomic => self.add_holonomic(constraint, measure, cx),
                 ConstraintKind::Nonholonomic => self.add_nonholonomic(constraint, measure, cx),
                 ConstraintKind::Rolling => self.add_rolling(constraint, cx),
+                ConstraintKind::Slipping => self.add_slipping(constraint, cx),
             }
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
@@ -130,7 +131,9 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         let witnesses = mobility::witnesses(&self.model, &rows, cx);
+        let before = self.model.constraints.clone();
         if redundancy::prune(&mut self.model, &rows, &witnesses) {
+            contact::check_pressed(&before, &self.model.redundant, cx);
             rows = Rows::of(&self.model);
         }
         self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &witnesses, cx);
@@ -140,6 +143,11 @@ impl<'g> Builder<'_, 'g> {
     /// Finds the velocities that follow from independent speeds, if those are asked for.
     fn choose_speeds(&mut self, rows: &Rows<'_>, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
+        if self.model.constraints.iter().any(|c| !c.drags.is_empty()) {
+            cx.error(place.clone(), "independent speeds leave no normal force for friction to follow")
+                .help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
+            return;
+        }
         let mut independent = Vec::new();
         for e in names {
             let name = match &e.kind {
@@ -302,6 +310,7 @@ impl<'g> Builder<'_, 'g> {
             measure,
             transmits: vec![transmits],
             group: self.group,
+            drags: Vec::new(),
         });
     }
 
@@ -329,6 +338,7 @@ impl<'g> Builder<'_, 'g> {
             measure,
             transmits: Vec::new(),
             group: self.group,
+            drags: Vec::new(),
         });
     }
 

@@ -445,6 +445,17 @@ pub struct Constraint<'g> {
     pub transmits: Vec<Transmission<'g>>,
     /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
     pub group: usize,
+    /// Friction in proportion to its multiplier, the normal force of a contact that slips.
+    pub drags: Vec<Drag<'g>>,
+}
+
+/// Friction along a direction: its power is `share × rate` for each unit of normal force, pressing or pulling.
+#[derive(Clone, Copy, Debug)]
+pub struct Drag<'g> {
+    /// The rate of slip, linear in the velocities.
+    pub rate: Expr<'g>,
+    /// Force along it by normal force, an expression of state and time.
+    pub share: Expr<'g>,
 }
 
 /// What a scalar constraint measures.

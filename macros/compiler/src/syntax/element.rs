@@ -5,7 +5,7 @@ use super::arguments::Arguments;
 use super::expression::parse_expr;
 use super::{
     ActionKind, Body, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind, Frame,
-    FreeCoordinate, Joint, JointKind, Name, Particle, Point,
+    FreeCoordinate, Joint, JointKind, Name, Particle, Point, SlipFriction,
 };
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
@@ -49,7 +49,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 11] = [
+const OTHERS: [(&str, &[&str]); 12] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -59,6 +59,7 @@ const OTHERS: [(&str, &[&str]); 11] = [
     ("Holonomic", &["constraint"]),
     ("Nonholonomic", &["constraint"]),
     ("Rolling", &["constraint"]),
+    ("Slipping", &["constraint"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
 ];
@@ -451,11 +452,12 @@ fn read_other(
         "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
         "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
         "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
+        "Slipping" => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
         _ => read_expression(name, kind, attribute, arguments, description, cx),
     }
 }
 
-/// An equation or an expression that stays zero, or a rolling pair.
+/// An equation or an expression that stays zero, or a pair of surfaces.
 fn read_constraint(
     name: Name,
     kind: ConstraintKind,
@@ -463,6 +465,12 @@ fn read_constraint(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
+    let slips = kind == ConstraintKind::Slipping;
+    let keys: &[&str] = if slips { &["friction", "speed"] } else { &[] };
+    let speed = if slips { arguments.take_expr("speed", cx) } else { None };
+    let coefficient =
+        if slips { arguments.need_expr("friction", "mu", "constraint", keys, cx) } else { None };
+    let friction = coefficient.map(|coefficient| SlipFriction { coefficient, speed });
     let found = arguments.take_equation();
     let (whose, example) = match kind {
         ConstraintKind::Holonomic => {
@@ -474,18 +482,22 @@ fn read_constraint(
         ConstraintKind::Rolling => {
             ("a Rolling constraint", "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]")
         }
+        ConstraintKind::Slipping => (
+            "a Slipping constraint",
+            "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]",
+        ),
     };
-    arguments.finish(whose, &[], cx);
+    arguments.finish(whose, keys, cx);
     let Some((value, other)) = found else {
         cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
             .help(format!("write `{example}`"));
         return;
     };
-    if let (ConstraintKind::Rolling, Some(other)) = (kind, &other) {
-        cx.error(other.place.clone(), "a rolling pair is no equation").help(format!("write `{example}`"));
+    if let (ConstraintKind::Rolling | ConstraintKind::Slipping, Some(other)) = (kind, &other) {
+        cx.error(other.place.clone(), "a pair of surfaces is no equation").help(format!("write `{example}`"));
         return;
     }
-    description.constraints.push(Constraint { name, kind, value, other });
+    description.constraints.push(Constraint { name, kind, value, other, friction });
 }
 
 /// Elements that are one expression.

@@ -196,19 +196,39 @@ pub enum ConstraintKind {
     Nonholonomic,
     /// Two surfaces that touch and do not slip.
     Rolling,
+    /// Two surfaces that touch and slip with friction.
+    Slipping,
 }
 
-/// An expression that stays zero, or two that stay equal; or a rolling pair.
+impl ConstraintKind {
+    /// What a pair of surfaces does.
+    pub fn verb(self) -> &'static str {
+        if self == ConstraintKind::Slipping { "slips" } else { "rolls" }
+    }
+}
+
+/// Coulomb's friction of surfaces that slip.
+#[derive(Clone, Debug)]
+pub struct SlipFriction {
+    /// Coefficient of friction.
+    pub coefficient: Expr,
+    /// Speed around which it is smooth; the mechanism's if absent.
+    pub speed: Option<Expr>,
+}
+
+/// An expression that stays zero, or two that stay equal; or a pair of surfaces.
 #[derive(Clone, Debug)]
 pub struct Constraint {
     /// Its name.
     pub name: Name,
     /// What it restricts.
     pub kind: ConstraintKind,
-    /// The expression, a scalar or a vector, or `rolls(surface, surface)`.
+    /// The expression, a scalar or a vector, or `rolls(surface, surface)` or `slips(surface, surface)`.
     pub value: Expr,
     /// What it stays equal to; zero if absent.
     pub other: Option<Expr>,
+    /// Friction of surfaces that slip.
+    pub friction: Option<SlipFriction>,
 }
 
 /// A generalized coordinate that belongs to no joint.

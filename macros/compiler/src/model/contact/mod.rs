@@ -1,10 +1,12 @@
-//! Rolling pairs: two surfaces touch, and their points at the contact have one velocity. The contact is found in closed
+//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is found in closed
 //! form: where a convex body touches a plane is its point farthest along the normal (its support function), a sphere
 //! touches along the normal through its centre, and cones touch along a line.
 
 mod cones;
+mod slipping;
 mod surface;
 
+pub use slipping::check_pressed;
 pub use surface::FORMS;
 
 use super::Measure;
@@ -37,14 +39,12 @@ struct Pair<'g> {
     base: Moving<'g>,
 }
 
-const EXAMPLE: &str = "write `rolls(disk.circle(radius, y), ground.plane(z))`";
-
-const PAIRS: &str = "a circle, a torus, a sphere, an ellipsoid or a cone rolls on a plane; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the rows of a rolling pair.
     pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
-        let Some(pair) = self.pair(&constraint.value, cx) else { return };
+        let Some(pair) = self.pair(constraint, cx) else { return };
         if let Form::Cone(..) = pair.a.form {
             self.roll_cone(constraint, &pair, cx);
             return;
@@ -58,27 +58,29 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// `rolls(surface, surface)`, what rolls first.
-    fn pair(&mut self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Pair<'g>> {
+    /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
+    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
+        let (e, known) = (&constraint.value, constraint.kind.verb());
+        let example = format!("write `{known}(disk.circle(radius, y), ground.plane(z))`");
         let (first, second) = match &e.kind {
-            ExprKind::Call(word, pair) if word.text == "rolls" && pair.len() == 2 => (&pair[0], &pair[1]),
+            ExprKind::Call(word, pair) if word.text == known && pair.len() == 2 => (&pair[0], &pair[1]),
             _ => {
-                cx.error(e.place.clone(), "expected a rolling pair").help(EXAMPLE);
+                cx.error(e.place.clone(), format!("expected a pair that {known}")).help(example);
                 return None;
             }
         };
-        let (a, b) = (self.surface(first, EXAMPLE, cx), self.surface(second, EXAMPLE, cx));
+        let (a, b) = (self.surface(first, &example, cx), self.surface(second, &example, cx));
         let (mut a, mut b) = (a?, b?);
         if a.home.link == b.home.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
-                .help("let bodies roll that move relative to each other");
+                .help("surfaces touch that belong to bodies which move relative to each other");
             return None;
         }
         if !a.form.rolls_on(&b.form) {
             std::mem::swap(&mut a, &mut b);
         }
         if !a.form.rolls_on(&b.form) {
-            cx.error(e.place.clone(), "this pair is not known to roll").help(PAIRS);
+            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
             return None;
         }
         let (on_a, on_b) = (self.relative(a.home.link, b.home.link), self.relative(b.home.link, a.home.link));

@@ -3,7 +3,8 @@
 use super::infer::{Inference, Meaning};
 use super::ratio::Ratio;
 use super::si::{
-    ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, STRENGTH, TIME,
+    ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED,
+    STRENGTH, TIME,
 };
 use super::unify::Dimension;
 use crate::model::contact::FORMS;
@@ -253,10 +254,14 @@ impl<'a> Places<'a> {
     fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         let side = Dimension::variable(inference.system.variable());
         self.sides.push(side.clone());
-        if constraint.kind != ConstraintKind::Rolling {
+        if !matches!(constraint.kind, ConstraintKind::Rolling | ConstraintKind::Slipping) {
             self.add(&constraint.value, &side, "");
             self.all(&constraint.other, &side, "");
             return;
+        }
+        if let Some(friction) = &constraint.friction {
+            self.add(&friction.coefficient, &PLAIN, "1");
+            self.all(&friction.speed, &SPEED, "m/s");
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
         for surface in pair {

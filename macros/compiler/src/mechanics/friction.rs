@@ -1,0 +1,115 @@
+//! Contacts that slip with dry friction: the normal force is a multiplier `λ`, and friction follows from it. With `J` the
+//! rows of all constraints and `T` those of friction, its generalized force per unit of each normal force,
+//!
+//! ```text
+//! M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|,   J v̇ + J̇ v = 0.
+//! ```
+//!
+//! Where the signs `σ` of the normal forces are known this is a linear system, which is not symmetric:
+//!
+//! ```text
+//! | M  (J + σ T)ᵀ | |  v̇ |   | τ − h |
+//! | J      0      | | −λ | = | −J̇ v  |
+//! ```
+//!
+//! The multipliers of these contacts are eliminated last. What is left for them then is `−J M⁻¹ (J + σ T)ᵀ`, reduced to
+//! the motions that the other constraints allow; a normal force can be told from it as long as its pivots keep their sign.
+//! Where they do not, friction jams (Painlevé's paradox: Génot and Brogliato, *New results on Painlevé paradoxes*,
+//! Eur. J. Mech. A 18, 1999).
+
+use super::constraints::{biases, elimination_order, jacobian, system};
+use super::crba::Matrix;
+use super::kinematics::velocity_gradients;
+use super::ldl::Solution;
+use crate::expr::{Expr, Function};
+use crate::model::{Model, Quantity};
+
+/// The constraints whose multipliers are the normal forces of friction.
+pub fn slipping(model: &Model<'_>) -> Vec<usize> {
+    let all = model.constraints.iter().enumerate();
+    all.filter(|(_, c)| !c.drags.is_empty()).map(|(k, _)| k).collect()
+}
+
+/// `T`: a row for each constraint, a column for each velocity.
+pub fn drags<'g>(model: &Model<'g>) -> Matrix<'g> {
+    let row = |c: &crate::model::Constraint<'g>| {
+        let mut row = vec![model.graph.zero(); model.nv()];
+        let rates: Vec<Expr<'g>> = c.drags.iter().map(|d| d.rate).collect();
+        for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.drags) {
+            gradient.into_iter().for_each(|(k, d)| row[k] += d * drag.share);
+        }
+        row
+    };
+    model.constraints.iter().map(row).collect()
+}
+
+/// Accelerations and multipliers for forces `τ − h` and biases, and what tells whether they can be trusted, as
+/// [`super::constraints::solve`] does. The signs `σ` are given numbers, those behind `NV + NC` others.
+pub fn solve<'g>(
+    model: &Model<'g>,
+    mass: &Matrix<'g>,
+    force: Vec<Expr<'g>>,
+    bias: Vec<Expr<'g>>,
+) -> Vec<Expr<'g>> {
+    let nv = mass.len();
+    let rows = jacobian(model);
+    let (friction, last) = (drags(model), slipping(model));
+    let mut k = system(mass, &rows);
+    for (n, row) in last.iter().enumerate() {
+        let side = Quantity::Given(nv + rows.len() + n).expr(model.graph);
+        for (equation, drag) in k.iter_mut().zip(&friction[*row]) {
+            equation[nv + row] += side * *drag;
+        }
+    }
+    let (order, _) = elimination_order(&k, nv, &last);
+    let mut r = force;
+    r.extend(bias.into_iter().map(|b| -b));
+    let Solution { mut x, pivots, taken } = eliminate(k, r, &order, nv);
+    for multiplier in &mut x[nv..] {
+        *multiplier = -*multiplier;
+    }
+    x.extend(pivots[nv..].iter().map(|p| -*p));
+    x.extend(super::constraints::in_groups(model, &taken[nv..]));
+    x
+}
+
+/// The solution of `m x = r`, eliminated in a given order; with the magnitudes that the first so many indices have taken
+/// from each diagonal entry.
+fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
+    let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
+    let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
+    for (step, &k) in order.iter().enumerate() {
+        pivots[k] = m[k][k];
+        inverse[k] = m[k][k].num(1.0) / m[k][k];
+        let left = &order[step + 1..];
+        let columns: Vec<usize> = left.iter().copied().filter(|&j| !m[k][j].is_zero()).collect();
+        for &i in left.iter().filter(|&&i| !m[i][k].is_zero()).collect::<Vec<_>>() {
+            let factor = m[i][k] * inverse[k];
+            if k < first {
+                taken[i] += (factor * m[k][i]).call(Function::Abs);
+            }
+            for &j in &columns {
+                let part = factor * m[k][j];
+                m[i][j] -= part;
+            }
+            let part = factor * r[k];
+            r[i] -= part;
+        }
+    }
+    for (step, &k) in order.iter().enumerate().rev() {
+        let later = order[step + 1..].iter().filter(|&&j| !m[k][j].is_zero());
+        x[k] = later.fold(r[k], |sum, &j| sum - m[k][j] * x[j]) * inverse[k];
+    }
+    Solution { x, pivots, taken }
+}
+
+/// The same for forces and biases that are given numbers.
+pub fn response<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Vec<Expr<'g>> {
+    let (force, bias) = super::constraints::given(model);
+    solve(model, mass, force, bias)
+}
+
+/// Accelerations and multipliers under the forces `τ − h`.
+pub fn motion<'g>(model: &Model<'g>, mass: &Matrix<'g>, force: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    solve(model, mass, force.to_vec(), biases(model))
+}

@@ -1,0 +1,69 @@
+//! What generated code calls where contacts slip: the signs of their normal forces are found, with which friction acts.
+
+use super::solve::{regular, regular_solution};
+use super::{ConstraintError, Multipliers};
+use crate::Real;
+use crate::private::constant;
+use nalgebra::SVector;
+
+/// Accelerations and multipliers with friction in proportion to the magnitudes of the multipliers `rows`. `solve` gives
+/// what [`regular_solution`] takes, for given signs: first all contacts press, then those whose force turns out to pull
+/// change their sign. One contact is decided with the second attempt.
+#[inline]
+pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
+    rows: &[usize; K],
+    names: &[&'static str; NC],
+    solve: impl Fn(&[T; K]) -> [T; N],
+) -> Result<Multipliers<T, NV, NC>, ConstraintError> {
+    let jammed = |row: usize| ConstraintError::Jammed { constraint: names.get(row).copied().unwrap_or("") };
+    let mut sides = [T::one(); K];
+    for _ in 0..=2 * K {
+        let found = solve(&sides);
+        for row in 0..NC {
+            if !regular::<T, NV, NC, N>(&found, row) {
+                return Err(if rows.contains(&row) { jammed(row) } else { ConstraintError::Singular });
+            }
+        }
+        let mut settled = true;
+        for (side, row) in sides.iter_mut().zip(rows) {
+            let force = found.get(NV + row).copied().unwrap_or(T::zero());
+            if force * *side < T::zero() {
+                *side = -*side;
+                settled = false;
+            }
+        }
+        if settled {
+            let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
+            return Ok((SVector::from_fn(|k, _| part(k)), SVector::from_fn(|k, _| part(NV + k))));
+        }
+    }
+    Err(jammed(rows.first().copied().unwrap_or(0)))
+}
+
+/// The same where all of them press, for lanes: in every lane, or none.
+#[inline]
+pub fn pressing_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+    rows: &[usize],
+    found: &[T; N],
+) -> Option<Multipliers<T, NV, NC>> {
+    let solution = regular_solution::<T, NV, NC, N>(found)?;
+    let presses = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
+    rows.iter().all(presses).then_some(solution)
+}
+
+/// Accelerations by forces and biases, with the signs that the multipliers have: how the motion answers small changes.
+#[inline]
+pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
+    rows: &'a [usize; K],
+    lambda: &'a SVector<T, NC>,
+    solve: impl Fn(&[T; NV], &[T; NC], &[T; K]) -> [T; N] + 'a,
+) -> impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV> + 'a {
+    move |force, bias| {
+        let sides = rows.map(|row| match lambda.get(row) {
+            Some(force) if *force < T::zero() => -T::one(),
+            _ => T::one(),
+        });
+        let solution = regular_solution::<T, NV, NC, N>(&solve(force, bias, &sides));
+        solution.map_or_else(|| SVector::repeat(constant(f64::NAN)), |(a, _)| a)
+    }
+}
