@@ -182,7 +182,7 @@ fn programs(arguments: &str) -> [Program; 2] {
 /// instructions that are left of them when products are fused into sums.
 #[test]
 fn operation_counts_in_lanes() {
-    for (robot, total, instructions) in [("solo12", 1393, 1006), ("simple_humanoid", 9253, 6379)] {
+    for (robot, total, instructions) in [("solo12", 1380, 897), ("simple_humanoid", 9244, 5829)] {
         let [forces, _] =
             programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         let forces = forces.in_lanes.expect("its limbs are alike");

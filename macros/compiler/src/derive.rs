@@ -168,6 +168,9 @@ fn functions<'g>(
             functions.push(Function { program: program.clone().unwrap_or_default(), ..f });
         }
     }
+    for f in &mut functions {
+        f.program = std::mem::take(&mut f.program).with_shared_sums();
+    }
     functions
 }
 

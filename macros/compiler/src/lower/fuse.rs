@@ -5,16 +5,17 @@ use super::{Op, Operand, Program};
 impl Program {
     /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
     /// and as product and sum elsewhere.
-    pub fn fused(mut self) -> Program {
-        for k in 0..self.instructions.len() {
-            if let Some(op) = self.fuse(k) {
-                self.instructions[k] = op;
+    pub fn fused(self) -> Program {
+        let counts = self.counts;
+        let mut program = self.chained();
+        for k in 0..program.instructions.len() {
+            if let Some(op) = program.fuse(k) {
+                program.instructions[k] = op;
             }
         }
-        let counts = self.counts;
-        self.sweep();
-        self.counts = counts;
-        self
+        program.sweep();
+        program.counts = counts;
+        program
     }
 
     fn fuse(&self, k: usize) -> Option<Op> {

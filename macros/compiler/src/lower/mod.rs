@@ -4,10 +4,13 @@
 use crate::expr::lanes::MOST;
 use crate::expr::{Expr, Function, Id, Node, Symbol};
 
+mod chain;
+mod factor;
 mod fuse;
 mod hoist;
 mod lanes;
 mod signs;
+mod sums;
 
 pub use hoist::{hoisted, place_hoisted};
 
@@ -187,7 +190,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
         places[*id as usize] = 0;
     }
     program.sweep();
-    program = program.with_cheap_signs();
+    program = program.factored().with_cheap_signs();
     program.counts = program.count();
     program
 }

@@ -1,0 +1,159 @@
+//! Sums put in the order in which their products fuse. A sum of two products is a product and a fused one; where it is
+//! added to something else by an addition of its own, as in `a + (b c + d e)`, beginning with that saves an instruction:
+//! `(a + b c) + d e`. The numbers of multiplications and additions stay the same.
+
+use super::{Op, Operand, Program};
+
+/// A term of a sum.
+#[derive(Clone, Copy)]
+struct Term {
+    operand: Operand,
+    negative: bool,
+}
+
+/// A sum that can be rewritten: the additions that are its own, innermost first, and its terms in a new order.
+struct Sum {
+    additions: Vec<usize>,
+    terms: Vec<Term>,
+}
+
+impl Program {
+    /// The same program with its sums in order.
+    pub(super) fn chained(mut self) -> Program {
+        // Rewritten additions stand where their sum is used, since they need all that it does.
+        let mut late = vec![false; self.instructions.len()];
+        for k in 0..self.instructions.len() {
+            let Some(sum) = self.sum_to_chain(k) else { continue };
+            let Some(ops) = sum.chain() else { continue };
+            for (at, op) in sum.additions.iter().zip(ops) {
+                self.instructions[*at] = op;
+                late[*at] = *at != k;
+            }
+        }
+        self.sorted(&late)
+    }
+
+    /// The sum that ends with instruction `k`, if another order of its terms saves an instruction.
+    fn sum_to_chain(&self, k: usize) -> Option<Sum> {
+        let ends = self.terms(k)?;
+        // With a product among its terms it is fused as it stands.
+        if ends.iter().any(|t| self.lone_product(t.operand)) {
+            return None;
+        }
+        let joined = |from: usize| {
+            let Operand::Value(top) = ends[1 - from].operand else { return None };
+            let mut sum = Sum { additions: vec![k], terms: Vec::new() };
+            self.descend(top, ends[1 - from].negative, &mut sum).then(|| {
+                sum.additions.reverse();
+                sum.terms.push(ends[from]);
+                sum.terms.reverse();
+                sum
+            })
+        };
+        joined(0).or_else(|| joined(1))
+    }
+
+    /// Collects the terms of a sum from the last to the first, which is a product; false if it is none.
+    fn descend(&self, k: usize, negative: bool, sum: &mut Sum) -> bool {
+        let Some(terms) = self.terms(k).filter(|_| self.uses[k] == 1) else { return false };
+        let mut terms = terms.map(|t| Term { negative: t.negative != negative, ..t });
+        sum.additions.push(k);
+        let products = terms.map(|t| self.lone_product(t.operand));
+        match products {
+            [true, true] => {
+                // The earlier one is there first.
+                if number(terms[0].operand) > number(terms[1].operand) {
+                    terms.swap(0, 1);
+                }
+                sum.terms.extend([terms[1], terms[0]]);
+                true
+            }
+            [true, false] | [false, true] => {
+                let rest = usize::from(products[0]);
+                sum.terms.push(terms[1 - rest]);
+                matches!(terms[rest].operand, Operand::Value(a) if self.descend(a, terms[rest].negative, sum))
+            }
+            [false, false] => [0, 1].into_iter().any(|rest| {
+                let Operand::Value(a) = terms[rest].operand else { return false };
+                let before = (sum.additions.len(), sum.terms.len());
+                sum.terms.push(terms[1 - rest]);
+                let found = self.descend(a, terms[rest].negative, sum);
+                if !found {
+                    sum.additions.truncate(before.0);
+                    sum.terms.truncate(before.1);
+                }
+                found
+            }),
+        }
+    }
+
+    /// The two terms of an addition.
+    fn terms(&self, k: usize) -> Option<[Term; 2]> {
+        let positive = |operand| Term { operand, negative: false };
+        match self.instructions[k] {
+            Op::Add(a, b) => Some([positive(a), positive(b)]),
+            Op::Sub(a, b) => Some([positive(a), Term { operand: b, negative: true }]),
+            _ => None,
+        }
+    }
+
+    /// True for a product whose only use is here.
+    fn lone_product(&self, o: Operand) -> bool {
+        matches!(o, Operand::Value(k) if matches!(self.instructions[k], Op::Mul(..)) && self.uses[k] == 1)
+    }
+
+    /// The same instructions with operands before operations, those that are `late` not before they are needed.
+    fn sorted(mut self, late: &[bool]) -> Program {
+        let n = self.instructions.len();
+        let mut places: Vec<Option<usize>> = vec![None; n];
+        let mut instructions = Vec::with_capacity(n);
+        for k in (0..n).filter(|k| !late[*k]) {
+            let mut todo = vec![k];
+            while let Some(&top) = todo.last() {
+                let before = todo.len();
+                self.instructions[top].operands(|o| match o {
+                    Operand::Value(a) if places[a].is_none() => todo.push(a),
+                    _ => {}
+                });
+                if todo.len() == before {
+                    todo.pop();
+                    if places[top].is_none() {
+                        places[top] = Some(instructions.len());
+                        instructions.push(top);
+                    }
+                }
+            }
+        }
+        let number: Vec<usize> = places.into_iter().map(Option::unwrap_or_default).collect();
+        let ops: Vec<Op> = instructions.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
+        self.uses = instructions.iter().map(|k| self.uses[*k]).collect();
+        self.outputs.iter_mut().for_each(|o| *o = super::renumber(*o, &number));
+        self.instructions = ops;
+        self
+    }
+}
+
+impl Sum {
+    /// An addition for each of its places: terms are added one after another, the first one last if both of the first
+    /// two are negative. `None` if all are.
+    fn chain(&self) -> Option<Vec<Op>> {
+        let mut ops = Vec::with_capacity(self.additions.len());
+        let mut sum = *self.terms.first()?;
+        for (term, at) in self.terms[1..].iter().zip(&self.additions) {
+            ops.push(match (sum.negative, term.negative) {
+                (false, false) | (true, true) => Op::Add(sum.operand, term.operand),
+                (false, true) => Op::Sub(sum.operand, term.operand),
+                (true, false) => Op::Sub(term.operand, sum.operand),
+            });
+            sum = Term { operand: Operand::Value(*at), negative: sum.negative && term.negative };
+        }
+        (!sum.negative).then_some(ops)
+    }
+}
+
+fn number(o: Operand) -> usize {
+    match o {
+        Operand::Value(k) => k,
+        _ => 0,
+    }
+}
