@@ -4,14 +4,16 @@ use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::read;
+use quote::ToTokens;
 use std::fmt::Write;
 use std::path::Path;
+use syn::{Item, Meta};
 
 /// Multiplications, additions and divisions of the constrained dynamics.
-fn operations(item: &str) -> usize {
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+fn operations(arguments: &str, item: &str) -> usize {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read(tokens("gravity = -9.81 * y"), tokens(item), Path::new(""), &mut cx);
+    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let output = source.and_then(|source| compile(&source, &graph, &mut cx));
     let (_, output) = output.unwrap_or_else(|| panic!("{}\n{item}", cx.messages().join("\n")));
@@ -46,9 +48,72 @@ fn windows(n: usize) -> String {
 /// The elimination keeps the zeros of a chain of loops: each window costs as much as the one before.
 #[test]
 fn a_chain_of_loops_costs_in_proportion_to_its_length() {
-    let counts: Vec<usize> = (1..=10).map(|n| operations(&windows(n))).collect();
+    let counts: Vec<usize> = (1..=10).map(|n| operations("gravity = -9.81 * y", &windows(n))).collect();
     let steps: Vec<usize> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (least, most) = (steps[2..].iter().min(), steps[2..].iter().max());
     assert_eq!(least, most, "{counts:?}");
     assert!(counts[0] <= 300, "{counts:?}");
+}
+
+/// The mechanism of a file of the models, with the arguments of its attribute.
+fn model(name: &str) -> (String, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/src/{name}.rs"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let file = syn::parse_file(&text).expect("it is Rust");
+    let mechanism = file.items.into_iter().find_map(|item| {
+        let Item::Struct(mut item) = item else { return None };
+        let k = item.attrs.iter().position(|a| a.path().is_ident("mechanism"))?;
+        let arguments = match item.attrs.remove(k).meta {
+            Meta::List(list) => list.tokens.to_string(),
+            _ => String::new(),
+        };
+        Some((arguments, item.to_token_stream().to_string()))
+    });
+    mechanism.expect("it has a mechanism")
+}
+
+/// A platform on legs that change their length, held by balls.
+fn platform(legs: usize) -> String {
+    let mut item = String::from(
+        "struct Platform {
+        #[body(mass = 30, inertia = diagonal(1.5, 1.5, 2.5))] platform: Body,
+        #[joint(ground -> platform)] pose: Free,\n",
+    );
+    for k in 0..legs {
+        let (foot, head) = (6 * k + 1, 5 * k + 2);
+        let _ = writeln!(
+            item,
+            "#[body(mass = 2, com = 0.3 * z, inertia = rod(2, 0.6, z))] lower{k}: Body,
+            #[body(mass = 2, com = -0.3 * z, inertia = rod(2, 0.6, z))] upper{k}: Body,
+            #[joint(ground.at(0.8 * (cos({foot}) * x + sin({foot}) * y)) -> lower{k}, about = (x, y))] foot{k}: Universal,
+            #[joint(lower{k} -> upper{k}, along = z)] slide{k}: Sleeve,
+            #[joint(upper{k} -> platform.at(0.5 * (cos({head}) * x + sin({head}) * y)))] head{k}: Ball,"
+        );
+    }
+    item + "}"
+}
+
+/// Operations of the models, exactly: a change of the compiler that costs or saves some is seen here.
+#[test]
+fn linkages_and_rolling_bodies() {
+    let expected = [
+        ("four_bar", 182),
+        ("slider_crank", 149),
+        ("andrews_squeezer", 538),
+        ("windows", 345),
+        ("bricard_linkage", 1421),
+        ("five_bar", 269),
+        ("rolling_disk", 552),
+        ("ball_in_bowl", 900),
+        ("chaplygin_sleigh", 60),
+        ("bicycle", 3059),
+        ("rattleback", 800),
+    ];
+    let found = expected.map(|(name, _)| {
+        let (arguments, item) = model(name);
+        (name, operations(&arguments, &item))
+    });
+    assert_eq!(found, expected);
+    let platforms = [3, 4, 5, 6].map(|legs| operations("gravity = -9.81 * z", &platform(legs)));
+    assert_eq!(platforms, [1759, 2798, 4170, 5929]);
 }
