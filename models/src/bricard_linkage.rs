@@ -3,9 +3,9 @@ use linkwork::mechanism;
 /// Bricard's linkage: six rods in a ring, joined by six pins, along the edges of a cube. Grübler's count gives no freedom
 /// at all, and yet it moves: one of its conditions follows from the others.
 ///
-/// Source: Bricard, *Leçons de cinématique* II (1927); IFToMM library of computational benchmark problems, A05;
-/// González, Dopico, Lugrís and Cuadrado, *A benchmarking system for MBS simulation software*, Multibody Syst. Dyn. 16
-/// (2006).
+/// Source: Bricard, *Leçons de cinématique* II (1927); IFToMM library of computational benchmark problems, A04: rods of one
+/// metre and one kilogram, released from the cube for ten seconds; González, Dopico, Lugrís and Cuadrado, *A benchmarking
+/// system for MBS simulation software*, Multibody Syst. Dyn. 16 (2006).
 ///
 /// - Coordinates: `p1` to `p5`, the angles of five pins, rad. The sixth rod is the ground, and the pin `p6` closes the
 ///   ring. y points up. With all angles zero the ring goes along `x`, `−y`, `z`, `−x`, `y`, `−z`.
@@ -48,9 +48,25 @@ pub struct BricardLinkage {
 mod tests {
     use super::*;
     use crate::testing::{assert_close, precisely};
-    use linkwork::prelude::*;
+    use linkwork::{frame, prelude::*};
 
     const B: BricardLinkage = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
+
+    /// The rods begin in corners of a cube of one metre, as in the benchmark.
+    #[test]
+    fn starts_along_the_edges_of_a_cube() {
+        let q = B.neutral();
+        let placed = [
+            (B.frame_placement(frame!(BricardLinkage, "rod1"), &q), [0.0, 0.0, 0.0]),
+            (B.frame_placement(frame!(BricardLinkage, "rod2"), &q), [1.0, 0.0, 0.0]),
+            (B.frame_placement(frame!(BricardLinkage, "rod3"), &q), [1.0, -1.0, 0.0]),
+            (B.frame_placement(frame!(BricardLinkage, "rod4"), &q), [1.0, -1.0, 1.0]),
+            (B.frame_placement(frame!(BricardLinkage, "rod5"), &q), [0.0, -1.0, 1.0]),
+        ];
+        for (rod, corner) in placed {
+            assert_eq!(rod.translation.vector, SVector::from(corner));
+        }
+    }
 
     #[test]
     fn one_condition_follows_from_the_others() {
