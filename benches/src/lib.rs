@@ -5,6 +5,7 @@ pub mod chains;
 pub mod generic;
 pub mod operations;
 pub mod pairs;
+pub mod peers;
 pub mod random;
 pub mod robots;
 pub mod states;

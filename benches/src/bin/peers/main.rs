@@ -4,12 +4,6 @@
 //! robots for them, then to measure. By itself: `peers write FOLDER`, `peers measure FOLDER [--quick]`. A peer that is
 //! not in the folder is left out.
 
-mod clock;
-mod code;
-mod contender;
-#[expect(unsafe_code, reason = "the peers are shared libraries with C interfaces")]
-mod library;
-mod own;
 mod robots;
 mod table;
 mod write;

@@ -1,8 +1,8 @@
 //! The robots that are compared.
 
-use crate::contender::{Contender, Function, Owner};
-use crate::own::{Call, Flat, Own};
 use linkwork_benches::generic::{Model, Options};
+use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::own::{Call, Flat, Own};
 use linkwork_benches::robots::{Kinova, Panda};
 use linkwork_benches::states::{State, states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};

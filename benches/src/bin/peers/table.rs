@@ -1,28 +1,15 @@
 //! Agreement first, then time, as a table.
 
-use crate::clock;
-use crate::contender::{Contender, Function, Owner};
-use crate::library::{self, Rows};
 use crate::robots::{Robot, robots};
+use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::library::{self, Rows};
+use linkwork_benches::peers::turns::{Measured, TOLERANCE, agree, time};
 use linkwork_benches::states::STATES;
 use std::path::Path;
 
-/// How far results may differ, relative to one plus the largest number of the column.
-const TOLERANCE: f64 = 1e-9;
-/// Seconds that are measured at a time, so that reading the clock costs nothing.
-const BATCH: f64 = 1e-4;
 /// The C that CasADi generates, and how it is compiled.
 const CASADI: [&str; 2] = ["plain", "shared"];
 const FLAGS: [&str; 2] = ["exact", "fast"];
-
-/// What is known of a contender after it has been measured.
-struct Measured {
-    owner: Owner,
-    variant: String,
-    /// Nanoseconds of a call.
-    time: f64,
-    bytes: Option<u64>,
-}
 
 /// Measures every function of every robot and prints a table. Whatever disagrees is left out; it is an error if that is
 /// generated code of our own.
@@ -38,9 +25,10 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
         let numbers: &'static [f64] = std::mem::take(&mut robot.numbers).leak();
         for function in Function::ALL {
             let mut contenders = contenders(folder, &mut robot, numbers, function);
-            wrong.extend(agree(&mut contenders, &format!("{} {}", robot.name, function.title()), robot.nv));
+            let what = format!("{} {}", robot.name, function.title());
+            wrong.extend(agree(&mut contenders, &what, (robot.nv, STATES), TOLERANCE));
             if contenders.iter().any(|contender| contender.owner() == Owner::Linkwork) {
-                println!("{}", line(&robot, function, &time(&mut contenders, budget)));
+                println!("{}", line(&robot, function, &time(&mut contenders, STATES, budget)));
             }
         }
     }
@@ -72,72 +60,6 @@ fn contenders(
     robot.functions = others;
     all.extend(Vec::from_iter(these).into_iter().map(|(_, contender)| contender));
     all
-}
-
-/// Leaves out what differs from the first, Pinocchio if it is there; tells of those of our own.
-fn agree(contenders: &mut Vec<Box<dyn Contender>>, what: &str, nv: usize) -> Vec<String> {
-    let Some(first) = contenders.first_mut() else { return Vec::new() };
-    let expected: Vec<Vec<f64>> = (0..STATES).map(|state| first.result(state)).collect();
-    let mut wrong = Vec::new();
-    contenders.retain_mut(|contender| {
-        let errors = expected.iter().enumerate();
-        let errors = errors.map(|(state, expected)| difference(&contender.result(state), expected, nv));
-        let error = largest(errors);
-        let good = error <= TOLERANCE;
-        if !good {
-            let message =
-                format!("{what}: {:?} {} is off by {error:e}", contender.owner(), contender.variant());
-            eprintln!("{message}");
-            if matches!(contender.owner(), Owner::Linkwork | Owner::Parameters | Owner::Prepared) {
-                wrong.push(message);
-            }
-        }
-        good
-    });
-    wrong
-}
-
-/// How far a result is off, column by column.
-fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
-    assert_eq!(found.len(), expected.len(), "size of a result");
-    let columns = found.chunks_exact(nv).zip(expected.chunks_exact(nv));
-    largest(columns.map(|(found, expected)| {
-        let error = largest(found.iter().zip(expected).map(|(x, y)| (x - y).abs()));
-        error / (1.0 + largest(expected.iter().map(|y| y.abs())))
-    }))
-}
-
-/// The largest of some numbers, or what is no number.
-fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
-}
-
-/// Measures in turns, each for `budget` seconds; the least time counts.
-fn time(contenders: &mut [Box<dyn Contender>], budget: f64) -> Vec<Measured> {
-    let seconds = |contender: &mut Box<dyn Contender>, passes: usize| {
-        let start = clock::seconds();
-        for _ in 0..passes {
-            contender.pass();
-        }
-        (clock::seconds() - start) / passes as f64
-    };
-    let once = |contender: &mut Box<dyn Contender>| (seconds(contender, 1), seconds(contender, 1)).1;
-    let passes: Vec<usize> =
-        contenders.iter_mut().map(|c| (BATCH / once(c)).ceil().max(1.0) as usize).collect();
-    let mut least = vec![f64::INFINITY; contenders.len()];
-    let end = clock::seconds() + budget * contenders.len() as f64;
-    while clock::seconds() < end {
-        for (k, contender) in contenders.iter_mut().enumerate() {
-            least[k] = least[k].min(seconds(contender, passes[k]));
-        }
-    }
-    let measured = contenders.iter().zip(least).map(|(contender, least)| Measured {
-        owner: contender.owner(),
-        variant: contender.variant(),
-        time: least * 1e9 / STATES as f64,
-        bytes: contender.bytes(),
-    });
-    measured.collect()
 }
 
 /// A line of the table.

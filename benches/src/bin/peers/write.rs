@@ -1,7 +1,7 @@
 //! Robots as files for the peers.
 
-use crate::contender::Function;
 use crate::robots::{Robot, robots};
+use linkwork_benches::peers::contender::Function;
 use roxmltree::Document;
 use std::fs;
 use std::io::{self, Write};

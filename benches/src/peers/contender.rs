@@ -13,10 +13,14 @@ pub enum Function {
     InverseDerivatives,
     /// `∂v̇/∂q`, `∂v̇/∂v`, `M⁻¹`.
     ForwardDerivatives,
+    /// `v̇` under constraints, multipliers found.
+    Constrained,
+    /// `v` after a hundred steps of a simulation, under constraints.
+    Motion,
 }
 
 impl Function {
-    /// All, in the order in which peers number them.
+    /// All of robots, in the order in which peers number them; those of constrained mechanisms follow.
     pub const ALL: [Function; 5] = [
         Function::Inverse,
         Function::Mass,
@@ -33,6 +37,8 @@ impl Function {
             Function::Forward => "forward dynamics",
             Function::InverseDerivatives => "∂τ/∂q, ∂τ/∂v",
             Function::ForwardDerivatives => "∂v̇/∂q, ∂v̇/∂v, M⁻¹",
+            Function::Constrained => "accelerations",
+            Function::Motion => "motion",
         }
     }
 
@@ -44,6 +50,8 @@ impl Function {
             Function::Forward => "forward_dynamics",
             Function::InverseDerivatives => "inverse_dynamics_derivatives",
             Function::ForwardDerivatives => "forward_dynamics_derivatives",
+            Function::Constrained => "constrained_dynamics",
+            Function::Motion => "simulate",
         }
     }
 
@@ -55,13 +63,15 @@ impl Function {
             Function::Forward => "forward",
             Function::InverseDerivatives => "inverse_derivatives",
             Function::ForwardDerivatives => "forward_derivatives",
+            Function::Constrained => "constrained",
+            Function::Motion => "motion",
         }
     }
 
     /// How many columns the result has, for `nv` velocities; each has `nv` numbers.
     pub fn columns(self, nv: usize) -> usize {
         match self {
-            Function::Inverse | Function::Forward => 1,
+            Function::Inverse | Function::Forward | Function::Constrained | Function::Motion => 1,
             Function::Mass => nv,
             Function::InverseDerivatives => 2 * nv,
             Function::ForwardDerivatives => 3 * nv,
@@ -84,6 +94,10 @@ pub enum Owner {
     Casadi,
     /// The Rust crate dynibo.
     Dynibo,
+    /// MuJoCo.
+    Mujoco,
+    /// C printed by SymPy.
+    Sympy,
 }
 
 /// One implementation of one function of one robot, with its copy of the states.

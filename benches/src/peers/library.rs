@@ -13,7 +13,7 @@
 //!
 //! C that CasADi has generated has an interface of its own.
 
-use crate::contender::{Contender, Function, Owner};
+use super::contender::{Contender, Function, Owner};
 use libloading::Library;
 use std::ffi::{CString, c_char, c_int, c_longlong, c_void};
 use std::path::Path;

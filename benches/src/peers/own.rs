@@ -1,9 +1,9 @@
 //! Generated functions as contenders.
 
-use crate::code;
-use crate::contender::{Contender, Owner};
+use super::code;
+use super::contender::{Contender, Owner};
+use crate::states::State;
 use linkwork::nalgebra::SMatrix;
-use linkwork_benches::states::State;
 use std::hint::black_box;
 use std::rc::Rc;
 

@@ -1,0 +1,198 @@
+//! The constrained mechanisms that are compared; `peers/constraints/mechanisms.py` has the same numbers.
+
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::{Constrained, Rk4, simulate};
+use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::own::{Flat, Own};
+use linkwork_benches::random::Random;
+use linkwork_benches::states::{STATES, State};
+use linkwork_models::{
+    AndrewsSqueezer, BallInBowl, Bicycle, BricardLinkage, ChaplyginSleigh, FiveBar, FourBar, Rattleback,
+    RollingDisk, SliderCrank, StewartPlatform, TwoWindows,
+};
+use std::rc::Rc;
+
+/// Seconds.
+const STEP: f64 = 1e-3;
+
+/// A mechanism with its functions.
+pub struct Mechanism {
+    /// As in the table.
+    pub title: &'static str,
+    /// Its folder's name.
+    pub name: &'static str,
+    /// Number of coordinates.
+    pub nq: usize,
+    /// Number of velocities.
+    pub nv: usize,
+    /// Number of scalar constraints.
+    pub nc: usize,
+    /// `q`, `v`, `v̇` and no forces of every state, one after another.
+    pub numbers: Vec<f64>,
+    /// Its accelerations in all states.
+    pub accelerations: Box<dyn Contender>,
+    /// Its motion from the first state, a hundred steps long.
+    pub motion: Box<dyn Contender>,
+}
+
+/// Accelerations and multipliers; the peers give only the first, though they find both.
+struct Solution<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
+
+impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
+    fn flat(&self) -> Vec<f64> {
+        self.0.flat()
+    }
+}
+
+/// A mechanism near a configuration, which is brought onto the constraints with a velocity: the first state. The others
+/// are random ones, as far as `spread` away.
+fn mechanism<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    (title, name): (&'static str, &'static str),
+    m: M,
+    (q, v): (impl Into<SVector<f64, NQ>>, impl Into<SVector<f64, NV>>),
+    (spread, step): (f64, f64),
+) -> Mechanism
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Clone + 'static,
+{
+    let (middle, start) = (q.into(), v.into());
+    let state = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| {
+        let q = m.assemble(0.0, q, &[]).ok()?;
+        let v = m.project_velocity(0.0, &q, v).ok()?;
+        let tau = SVector::zeros();
+        let a = m.constrained_dynamics(0.0, &q, &v, &tau).0;
+        Some(State { q, v, a, tau })
+    };
+    let mut random = Random::new(7);
+    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.within(limit));
+    let mut states = Vec::from_iter(state(&middle, &start));
+    while states.len() < STATES {
+        let speed = start.amax().max(1.0);
+        states.extend(state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
+    }
+    let states = Rc::new(states);
+    let numbers = states.iter().flat_map(State::numbers).collect();
+    let accelerations = Own {
+        owner: Owner::Linkwork,
+        mechanism: m.clone(),
+        states: states.clone(),
+        name: Function::Constrained.name(),
+        call: |m: &M, s: &State<NQ, NV>| {
+            let (a, lambda) = m.constrained_dynamics(0.0, &s.q, &s.v, &s.tau);
+            Solution(a, lambda)
+        },
+    };
+    let motion = Own {
+        owner: Owner::Linkwork,
+        mechanism: (m, step),
+        states: Rc::new(states[..1].to_vec()),
+        name: Function::Motion.name(),
+        call: |(m, step): &(M, f64), s: &State<NQ, NV>| {
+            let run = simulate(m).from(s.q, s.v).method(Rk4::step(*step));
+            run.duration(100.0 * step).finish().map_or(SVector::repeat(f64::NAN), |end| end.v)
+        },
+    };
+    let (accelerations, motion) = (Box::new(accelerations), Box::new(motion));
+    Mechanism { title, name, nq: NQ, nv: NV, nc: NC, numbers, accelerations, motion }
+}
+
+/// All mechanisms.
+pub fn mechanisms() -> Vec<fn() -> Mechanism> {
+    vec![
+        || {
+            let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
+            let start = ([0.3, 0.6, 1.8], [2.0, 0.0, 0.0]);
+            mechanism(("four-bar linkage", "four_bar"), m, start, (0.3, STEP))
+        },
+        || {
+            let m = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
+            let start = ([0.3, -0.4, 0.16], [20.0, 0.0, 0.0]);
+            mechanism(("slider-crank", "slider_crank"), m, start, (0.3, STEP))
+        },
+        || {
+            let start = (AndrewsSqueezer::START, [0.0; 7]);
+            mechanism(("Andrews' squeezer", "andrews_squeezer"), AndrewsSqueezer {}, start, (0.05, 3e-5))
+        },
+        || {
+            let m = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
+            let start = ([0.0; 5], [-1.0, 1.0, -1.0, 1.0, -1.0]);
+            mechanism(("two windows", "two_windows"), m, start, (0.3, STEP))
+        },
+        || {
+            let m = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
+            let start = ([0.3, -0.23, 0.3, -0.23, 0.3], [0.0; 5]);
+            mechanism(("Bricard's linkage", "bricard_linkage"), m, start, (0.1, STEP))
+        },
+        || {
+            let (crank_mass, forearm_mass, tool_mass) = (0.4, 0.3, 0.9);
+            let m = FiveBar {
+                g: 9.81,
+                crank_mass,
+                forearm_mass,
+                tool_mass,
+                base: 0.25,
+                crank: 0.3,
+                forearm: 0.4,
+            };
+            let start = ([2.0, -1.3, 0.9, 1.3], [1.0, 0.0, -1.0, 0.0]);
+            mechanism(("five-bar", "five_bar"), m, start, (0.2, STEP))
+        },
+        stewart,
+        || {
+            let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
+            let start = ([0.0, 0.0, 0.4, 0.0, 0.1, 0.0], [1.2, 0.0, 0.0, 0.0, 0.0, 3.0]);
+            mechanism(("rolling disk", "rolling_disk"), m, start, (0.3, STEP))
+        },
+        || {
+            let m = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
+            let start = ([0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.3, 0.2, 0.0, 1.0, 2.0, 3.0]);
+            mechanism(("ball in a bowl", "ball_in_bowl"), m, start, (0.1, STEP))
+        },
+        || {
+            let m = ChaplyginSleigh { m: 1.0, j: 0.5, a: 0.3 };
+            mechanism(("Chaplygin's sleigh", "chaplygin_sleigh"), m, ([0.0; 3], [1.0, 0.0, 2.0]), (1.0, STEP))
+        },
+        || {
+            let v = [4.6, 0.0, 0.0, 0.1, 0.0, 0.0, -15.3, 0.0, -13.1];
+            let m = Bicycle::BENCHMARK;
+            mechanism(("bicycle", "bicycle"), m, (m.neutral(), v), (0.2, STEP))
+        },
+        || {
+            let m = Rattleback {
+                g: 9.81,
+                mass: 1.0,
+                a: 0.2,
+                b: 0.03,
+                c: 0.02,
+                depth: 0.01,
+                ixx: 2e-4,
+                iyy: 1.6e-3,
+                izz: 1.7e-3,
+                ixy: -2e-5,
+            };
+            let start = ([0.0, 0.0, 0.02, 0.01, 0.01, 0.0, 0.9999], [0.0, 0.0, 0.0, 0.0, 0.0, -5.0]);
+            mechanism(("rattleback", "rattleback"), m, start, (0.1, STEP))
+        },
+    ]
+}
+
+fn stewart() -> Mechanism {
+    let m = StewartPlatform {
+        g: 9.81,
+        base_radius: 0.8,
+        platform_radius: 0.5,
+        platform_mass: 30.0,
+        across: 1.5,
+        axial: 2.5,
+        leg_mass: 2.0,
+        leg: 0.6,
+    };
+    let mut q = m.neutral();
+    q[2] = 0.9;
+    for leg in 0..6 {
+        q[9 + 3 * leg] = 1.0;
+    }
+    let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
+    v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
+    mechanism(("Stewart platform", "stewart_platform"), m, (q, v), (0.1, STEP))
+}

@@ -1,0 +1,175 @@
+//! Constrained mechanisms next to other libraries: accelerations, and a thousand steps.
+
+use crate::mechanisms::{Mechanism, mechanisms};
+use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::library::{self, Rows};
+use linkwork_benches::peers::turns::{Measured, TOLERANCE, agree, difference, largest, time};
+use linkwork_benches::states::STATES;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Motions of methods of the same order, with projections and without, differ by more than rounding.
+const MOTIONS: f64 = 1e-3;
+
+/// The peers, with the libraries that hold them: `*` stands for the folder of the mechanism.
+const LIBRARIES: [(&str, Owner); 4] = [
+    ("*/sympy.exact.so", Owner::Sympy),
+    ("*/sympy.fast.so", Owner::Sympy),
+    ("libpinocchio.so", Owner::Pinocchio),
+    ("libmujoco.so", Owner::Mujoco),
+];
+
+/// In the order of the table.
+const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
+
+/// Writes the states of every mechanism, each with its accelerations in a line; prints the names of the folders.
+pub fn write(folder: &Path) -> io::Result<()> {
+    for make in mechanisms() {
+        let m = make();
+        let folder = folder.join(m.name);
+        fs::create_dir_all(&folder)?;
+        let line = |row: &[f64]| {
+            let numbers: Vec<String> = row[..m.nq + 2 * m.nv].iter().map(|x| format!("{x:e}")).collect();
+            numbers.join(" ") + "\n"
+        };
+        let lines: String = m.numbers.chunks_exact(m.nq + 3 * m.nv).map(line).collect();
+        fs::write(folder.join("states"), lines)?;
+        println!("{}", m.name);
+    }
+    Ok(())
+}
+
+/// What is known of a mechanism.
+struct Line {
+    mechanism: Mechanism,
+    accelerations: Vec<Measured>,
+    steps: Vec<Measured>,
+    /// Nanoseconds of accelerations by lambdify and by PyDy, milliseconds of a thousand steps.
+    python: Option<[f64; 3]>,
+    /// By how much MuJoCo's accelerations differ.
+    soft: Option<f64>,
+}
+
+/// Measures all mechanisms and prints two tables; without a folder those of Linkwork alone.
+pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
+    let budget = if quick { 0.05 } else { 0.3 };
+    let (mut lines, mut wrong) = (Vec::new(), Vec::new());
+    for make in mechanisms() {
+        let mut mechanism = make();
+        let numbers: &'static [f64] = std::mem::take(&mut mechanism.numbers).leak();
+        let (mut soft, mut found) = (None, Vec::new());
+        for function in [Function::Constrained, Function::Motion] {
+            let (states, tolerance) =
+                if function == Function::Motion { (1, MOTIONS) } else { (STATES, TOLERANCE) };
+            let rows = Rows {
+                nq: mechanism.nq,
+                nv: mechanism.nv,
+                numbers: &numbers[..states * (mechanism.nq + 3 * mechanism.nv)],
+            };
+            let own = if function == Function::Motion {
+                &mut mechanism.motion
+            } else {
+                &mut mechanism.accelerations
+            };
+            let own = std::mem::replace(own, Box::new(Nobody));
+            let (mut exact, mut others) = (vec![own], Vec::new());
+            for peer in folder.into_iter().flat_map(|folder| peers(folder, mechanism.name, function, rows)) {
+                if peer.owner() == Owner::Mujoco { others.push(peer) } else { exact.push(peer) }
+            }
+            let what = format!("{} {}", mechanism.title, function.title());
+            wrong.extend(agree(&mut exact, &what, (rows.nv, states), tolerance));
+            if let (Some(other), Function::Constrained) = (others.first_mut(), function) {
+                let errors = (0..states).map(|k| difference(&other.result(k), &exact[0].result(k), rows.nv));
+                soft = Some(largest(errors));
+            }
+            exact.extend(others);
+            found.push(time(&mut exact, states, budget));
+        }
+        let steps = found.pop().unwrap_or_default();
+        let accelerations = found.pop().unwrap_or_default();
+        let python = folder.and_then(|folder| in_python(&folder.join(mechanism.name)));
+        lines.push(Line { mechanism, accelerations, steps, python, soft });
+    }
+    print(&lines);
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
+}
+
+/// All peers that know a mechanism.
+fn peers(folder: &Path, name: &str, function: Function, rows: Rows<'_>) -> Vec<Box<dyn Contender>> {
+    let own = folder.join(name);
+    let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {
+        let path = folder.join(path.replace('*', name));
+        library::peers(&path, *owner, &own, function, rows)
+    });
+    libraries.collect()
+}
+
+/// What `derive.py` has measured.
+fn in_python(folder: &Path) -> Option<[f64; 3]> {
+    let text = fs::read_to_string(folder.join("python")).ok()?;
+    let numbers: Vec<f64> = text.split_whitespace().filter_map(|x| x.parse().ok()).collect();
+    numbers.try_into().ok()
+}
+
+fn print(lines: &[Line]) {
+    let header =
+        "| mechanism | v | λ | Linkwork, ns | SymPy, C | Pinocchio | MuJoCo | PyDy | SymPy, lambdify";
+    let ratios =
+        ["SymPy C", "Pinocchio", "MuJoCo", "PyDy", "lambdify"].map(|peer| format!("{peer} : Linkwork"));
+    println!("{header} | {} | MuJoCo differs by |", ratios.join(" | "));
+    println!("| --- | {}", "---: | ".repeat(14).trim_end());
+    for line in lines {
+        let [lambdify, pydy, _] = line.python.map_or([None; 3], |times| times.map(Some));
+        let others = best(&line.accelerations).into_iter().chain([pydy, lambdify]);
+        let times: Vec<Option<f64>> = others.collect();
+        let mut cells = vec![line.mechanism.title.to_string()];
+        cells.extend([line.mechanism.nv, line.mechanism.nc].map(|n| n.to_string()));
+        cells.extend(times.iter().map(|t| number(*t, 3)));
+        cells.extend(times[1..].iter().map(|t| number(t.zip(times[0]).map(|(t, own)| t / own), 2)));
+        cells.push(line.soft.map_or("–".to_string(), |e| format!("{e:.0e}")));
+        println!("| {} |", cells.join(" | "));
+    }
+    println!("\n| mechanism: a thousand steps, ms | Linkwork | SymPy, C | Pinocchio | MuJoCo | PyDy |");
+    println!("| --- | {}", "---: | ".repeat(5).trim_end());
+    for line in lines {
+        let times = best(&line.steps).map(|t| t.map(|t| t * 10.0 / 1e6));
+        let mut cells = vec![line.mechanism.title.to_string()];
+        cells.extend(times.into_iter().chain([line.python.map(|t| t[2])]).map(|t| number(t, 3)));
+        println!("| {} |", cells.join(" | "));
+    }
+}
+
+/// The least times of Linkwork and of the peers.
+fn best(measured: &[Measured]) -> [Option<f64>; 4] {
+    COLUMNS.map(|owner| {
+        let all = measured.iter().filter(|m| m.owner == owner);
+        all.map(|m| m.time).min_by(f64::total_cmp)
+    })
+}
+
+/// With some digits.
+fn number(value: Option<f64>, digits: i32) -> String {
+    let Some(x) = value.filter(|x| *x > 0.0) else { return "–".to_string() };
+    let decimals = (digits - 1 - x.log10().floor() as i32).max(0) as usize;
+    format!("{x:.decimals$}")
+}
+
+/// In the place of what has been taken.
+struct Nobody;
+
+impl Contender for Nobody {
+    fn owner(&self) -> Owner {
+        Owner::Linkwork
+    }
+
+    fn variant(&self) -> String {
+        String::new()
+    }
+
+    fn pass(&mut self) {}
+
+    fn result(&mut self, _state: usize) -> Vec<f64> {
+        Vec::new()
+    }
+}

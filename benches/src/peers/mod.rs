@@ -1,0 +1,10 @@
+//! Generated functions next to other libraries, in one process, interleaved, on the same states: what the programs that
+//! compare them share.
+
+pub mod clock;
+mod code;
+pub mod contender;
+#[expect(unsafe_code, reason = "the peers are shared libraries with C interfaces")]
+pub mod library;
+pub mod own;
+pub mod turns;
