@@ -72,7 +72,7 @@ pub mod __private {
         abs, acos, asin, atan, atan2, constant, cos, cosh, exp, ln, mul_add, mul_sub, neg_mul_add, powf,
         signum, sin, sinh, sqrt, tan, tanh,
     };
-    pub use crate::product::minus_product;
+    pub use crate::product::{Columns, combine};
     pub use crate::trigonometry::{sin_cos, sin_cos_all};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,

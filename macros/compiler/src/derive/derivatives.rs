@@ -4,16 +4,21 @@ use super::signatures::{self, Sizes};
 use super::{Stage, done, in_lanes};
 use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::lower::Program;
-use crate::mechanics::derivatives::{self, ForceDerivatives, Linearized, Method, analytic, symbolic};
-use crate::mechanics::{self, Joint, constraints, crba, forces};
+use crate::lower::{Operand, Program};
+use crate::mechanics::derivatives::{
+    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, symbolic,
+};
+use crate::mechanics::{self, Joint, constraints, crba, forces, rnea};
 use crate::model::{Chart, Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Passes};
 
-/// Up to how many velocities all forms of the model are tried, and every function is written out; those of larger
-/// mechanisms call each other.
+/// Up to how many velocities all forms of the model are tried, and every function is written out.
 const SMALL: usize = 10;
+
+/// Up to how many velocities this is so for the derivatives of forward dynamics of mechanisms that branch. What stands in
+/// a single function needs stack where it is not optimised.
+const MEDIUM: usize = 24;
 
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
@@ -36,19 +41,33 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
             parts = other;
         }
     }
-    if passes.lanes && stage == Stage::Whole && derivatives::is_analytic(parts.model) {
-        let groups = limbs::find(parts.model, &parts.joints);
-        parts.limbs = Limbs::of(parts.model, &parts.joints, &groups);
+    if derivatives::is_analytic(parts.model) {
+        parts.take_apart(passes.lanes && stage == Stage::Whole);
     }
     let tau = forces::generalized_forces(model, &mechanics::joints(model));
     let mut functions = signatures::derivatives(&Sizes::of(model));
+    if model.constraints.is_empty() && parts.is_large() {
+        functions.push(signatures::accelerated(&Sizes::of(model)));
+    }
     for f in &mut functions {
         f.shape = match f.shape {
-            Shape::Forward(n) if n > SMALL => Shape::CalledForward(n),
+            Shape::Forward(n) if parts.is_large() => Shape::CalledForward(n),
             Shape::Linear(n, m) if n > SMALL => Shape::CalledLinear(n, m),
             shape => shape,
         };
         f.program = parts.program(f, &tau);
+    }
+    let is_zero = |o: &Operand| *o == Operand::Const(0.0);
+    let forces = functions.iter().find(|f| matches!(f.shape, Shape::Pair(_)));
+    let zeros: Vec<bool> = forces.map_or(Vec::new(), |f| f.program.outputs.iter().map(is_zero).collect());
+    for f in &mut functions {
+        f.structure.trunk = match (f.shape, &parts.trunk) {
+            (Shape::Linear(..), _) | (_, None) => Vec::new(),
+            (_, Some(trunk)) => trunk.velocities.clone(),
+        };
+        if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
+            f.structure.zeros.clone_from(&zeros);
+        }
     }
     if !model.constraints.is_empty() {
         functions.retain(|f| !matches!(f.name.as_str(), "forward_dynamics_derivatives" | "linearize"));
@@ -71,15 +90,43 @@ struct Parts<'a, 'g> {
     mass: crba::Matrix<'g>,
     method: Method,
     stage: Stage,
+    /// Of a large mechanism: its trunk, if it branches.
+    trunk: Option<Trunk>,
     /// The same with alike limbs as lanes.
-    limbs: Option<Limbs<'g>>,
+    limbs: Option<InLanes<'g>>,
+}
+
+/// A mechanism with alike limbs as lanes.
+struct InLanes<'g> {
+    limbs: Limbs<'g>,
+    mass: crba::Matrix<'g>,
+    trunk: Option<Trunk>,
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
     fn new(model: &'a Model<'g>, stage: Stage) -> Parts<'a, 'g> {
         let joints = mechanics::joints(model);
         let mass = crba::mass_matrix(model, &joints);
-        Parts { model, joints, mass, method: Method::Recursion, stage, limbs: None }
+        Parts { model, joints, mass, method: Method::Recursion, stage, trunk: None, limbs: None }
+    }
+
+    /// Finds alike limbs, and what all limbs hang from.
+    fn take_apart(&mut self, lanes: bool) {
+        let groups = if lanes { limbs::find(self.model, &self.joints) } else { Vec::new() };
+        let limbs = Limbs::of(self.model, &self.joints, &groups);
+        let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
+        if self.model.nv() > SMALL {
+            let whole = match (&limbs, &marked) {
+                (Some(limbs), Some(marked)) => limbs.alone_and(marked),
+                _ => Trunk::branching(&self.joints, self.model.nv()),
+            };
+            self.trunk = Trunk::of(&self.joints, &self.mass, &whole);
+        }
+        self.limbs = limbs.zip(marked).map(|(limbs, marked)| {
+            let mass = crba::mass_matrix(&limbs.model, &limbs.joints);
+            let trunk = self.trunk.as_ref().and_then(|_| Trunk::of(&limbs.joints, &mass, &marked));
+            InLanes { limbs, mass, trunk }
+        });
     }
 
     fn cost(&self) -> usize {
@@ -106,6 +153,58 @@ impl<'a, 'g> Parts<'a, 'g> {
             &tau,
             self.method,
         )))
+    }
+
+    /// The same with `M⁻¹` in parts.
+    fn forward_dynamics_in_parts(&self, trunk: &Trunk) -> Program {
+        let model = self.model;
+        let inverse = Inverse::of(&self.mass, trunk);
+        let a = inverse.solve(&self.unbalanced());
+        let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
+        let outputs = |forces: &ForceDerivatives<'g>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+            [force_columns(forces), columns(&inverse), factors.concat()].concat()
+        };
+        let program = self.stage.program(&outputs(&forces, [inverse.columns(), inverse.factors()]));
+        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
+            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+            let a = in_lanes::accelerations(&lanes.limbs, &inverse);
+            let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a);
+            Some(done(&outputs(&forces, in_lanes::inverse(&lanes.limbs, &inverse))))
+        }))
+    }
+
+    /// `M⁻¹`, in parts where there are some; on request after the accelerations.
+    fn inverse(&self, accelerated: bool) -> Program {
+        let outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+            [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
+        };
+        let Some(trunk) = &self.trunk else {
+            let factor = Factor::of(&self.mass, &self.joints);
+            let a = accelerated.then(|| factor.solve(self.unbalanced()));
+            return self.stage.program(&outputs(a, [factor.inverse(), Vec::new()]));
+        };
+        let inverse = Inverse::of(&self.mass, trunk);
+        let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
+        let program = self.stage.program(&outputs(a, [inverse.columns(), inverse.factors()]));
+        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
+            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+            let a =
+                accelerated.then(|| lanes.limbs.scattered(&in_lanes::accelerations(&lanes.limbs, &inverse)));
+            Some(done(&outputs(a, in_lanes::inverse(&lanes.limbs, &inverse))))
+        }))
+    }
+
+    /// `τ − h`.
+    fn unbalanced(&self) -> Vec<Expr<'g>> {
+        let (model, v) = (self.model, mechanics::velocities(self.model));
+        let bias = rnea::inverse_dynamics(model, &self.joints, &v, None);
+        let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
+        tau.zip(bias).map(|(tau, h)| tau - h).collect()
+    }
+
+    /// True if a single function of all is too large.
+    fn is_large(&self) -> bool {
+        self.model.nv() > if self.trunk.is_some() { MEDIUM } else { SMALL }
     }
 
     fn linearization(&self, tau: &[Expr<'g>]) -> Program {
@@ -156,19 +255,26 @@ impl<'a, 'g> Parts<'a, 'g> {
             _ => {}
         }
         match f.name.as_str() {
-            "mass_matrix_inverse" => {
-                self.stage.program(&columns(&derivatives::Factor::of(&self.mass, &self.joints).inverse()))
-            }
+            "mass_matrix_inverse" => self.inverse(false),
+            "__accelerations_and_inverse" => self.inverse(true),
             "coriolis_matrix" => {
                 let v = mechanics::velocities(self.model);
                 self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
             }
             "inverse_dynamics_derivatives" => {
-                self.inverse_dynamics().or_in_lanes(self.limbs.iter().map(|limbs| {
-                    done(&force_columns(&in_lanes::inverse_dynamics_derivatives(limbs, self.model)))
+                self.inverse_dynamics().or_in_lanes(self.limbs.iter().map(|lanes| {
+                    let a = lanes.limbs.symbols(Quantity::Acceleration);
+                    done(&force_columns(&in_lanes::inverse_dynamics_derivatives(
+                        &lanes.limbs,
+                        self.model,
+                        &a,
+                    )))
                 }))
             }
-            "forward_dynamics_derivatives" => self.forward_dynamics(),
+            "forward_dynamics_derivatives" => match &self.trunk {
+                Some(trunk) => self.forward_dynamics_in_parts(trunk),
+                None => self.forward_dynamics(),
+            },
             _ => self.linearization(tau),
         }
     }

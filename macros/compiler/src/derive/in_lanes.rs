@@ -2,7 +2,7 @@
 //! scattering the results.
 
 use crate::expr::Expr;
-use crate::mechanics::derivatives::{ForceDerivatives, analytic, symbolic};
+use crate::mechanics::derivatives::{ForceDerivatives, Inverse, analytic, symbolic};
 use crate::mechanics::{aba, crba, rnea};
 use crate::model::{Model, Quantity};
 use crate::passes::limbs::Limbs;
@@ -32,14 +32,43 @@ pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<E
     Some(limbs.scattered(&a))
 }
 
-/// Derivatives of inverse dynamics by the recursion, those of springs and the like taken from the whole mechanism.
-pub fn inverse_dynamics_derivatives<'g>(limbs: &Limbs<'g>, whole: &Model<'g>) -> ForceDerivatives<'g> {
+/// Derivatives of inverse dynamics at accelerations here by the recursion, those of springs and the like taken from the
+/// whole mechanism.
+pub fn inverse_dynamics_derivatives<'g>(
+    limbs: &Limbs<'g>,
+    whole: &Model<'g>,
+    a: &[Expr<'g>],
+) -> ForceDerivatives<'g> {
     let v = limbs.symbols(Quantity::Velocity);
-    let a = limbs.symbols(Quantity::Acceleration);
-    let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, &a);
-    let [by_q, by_v] = [found.by_q, found.by_v].map(|m| limbs.scattered_matrix(&m));
-    let rows = |m: Vec<Expr<'g>>| m.chunks(whole.nv().max(1)).map(<[Expr<'g>]>::to_vec).collect();
-    let mut scattered = ForceDerivatives { by_q: rows(by_q), by_v: rows(by_v) };
+    let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a);
+    let [by_q, by_v] = [found.by_q, found.by_v].map(|m| scattered_rows(limbs, &m));
+    let mut scattered = ForceDerivatives { by_q, by_v };
     symbolic::add_resistance(whole, &mut scattered);
     scattered
+}
+
+/// Accelerations here under forces, with the inverse of the mass matrix in its parts.
+pub fn accelerations<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
+    let v = limbs.symbols(Quantity::Velocity);
+    let tau = limbs.symbols(Quantity::Force);
+    let bias = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, None);
+    let resisted = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t - *h);
+    inverse.solve(&resisted.zip(bias).map(|(r, h)| r - h).collect::<Vec<_>>())
+}
+
+/// The inverse of the mass matrix of the whole mechanism in its parts: columns, and factors.
+pub fn inverse<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> [crba::Matrix<'g>; 2] {
+    let factors = inverse.factors();
+    let width = factors.first().map_or(0, Vec::len);
+    let column = |k: usize| limbs.scattered(&factors.iter().map(|row| row[k]).collect::<Vec<_>>());
+    let columns: Vec<Vec<Expr<'g>>> = (0..width).map(column).collect();
+    let rows = scattered_rows(limbs, &inverse.columns());
+    let factors = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+    [rows, factors]
+}
+
+fn scattered_rows<'g>(limbs: &Limbs<'g>, matrix: &crba::Matrix<'g>) -> crba::Matrix<'g> {
+    let whole = limbs.scattered_matrix(matrix);
+    let n = whole.len().isqrt();
+    whole.chunks(n.max(1)).map(<[Expr<'g>]>::to_vec).collect()
 }

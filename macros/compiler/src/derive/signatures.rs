@@ -3,7 +3,6 @@
 
 use crate::emit::Argument::{A, Q, T, Tau, U, V};
 use crate::emit::{Argument, Constant, Function, REACTION, Shape};
-use crate::lower::Program;
 use crate::mechanics::regressor::COUNT;
 use crate::model::{Model, Uses};
 use crate::syntax::Requests;
@@ -49,9 +48,7 @@ fn constant(name: &str, shape: Shape, docs: &[&str]) -> Function {
     Function {
         name: name.to_string(),
         docs: docs.iter().map(ToString::to_string).collect(),
-        arguments: Vec::new(),
-        shape,
-        program: Program::default(),
+        ..Function::new(shape)
     }
 }
 
@@ -329,7 +326,7 @@ pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
         sizes.function(
             "mass_matrix_inverse",
             &[Q],
-            Shape::Square(nv),
+            Shape::Inverse(nv),
             &[
                 "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
                 "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
@@ -361,7 +358,7 @@ pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
             &[
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
                 TANGENT,
-                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a mechanism with more than ten velocities it calls the other functions. The operations counted are those without calls and products.",
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a large mechanism it calls other functions. The operations counted are those without calls and products.",
             ],
         ),
         sizes.function(
@@ -375,6 +372,11 @@ pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
             ],
         ),
     ]
+}
+
+/// What the derivatives of forward dynamics of a large mechanism need, hidden.
+pub fn accelerated(sizes: &Sizes) -> Function {
+    sizes.function("__accelerations_and_inverse", &[Q, V, Tau], Shape::Accelerated(sizes.nv), &[])
 }
 
 /// The function of an output, and its Jacobian unless it depends on accelerations.

@@ -88,7 +88,8 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
     write_inputs(out, &late, s, &w);
     write_statements(out, &w.statements[head..], &outputs);
-    write_result(out, f.shape, &outputs, s);
+    let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
+    write_result(out, f, &Outputs { pieces: &outputs, is_zero: &is_zero }, s);
 }
 
 impl Writer<'_> {
@@ -422,34 +423,58 @@ fn write_let(out: &mut String, statement: &Statement) {
     let _ = writeln!(out, "let {} = {};", statement.pattern, statement.text);
 }
 
-fn write_result(out: &mut String, shape: Shape, outputs: &[Piece], s: &Signature<'_>) {
-    let list = |pieces: &[Piece]| {
-        let texts: Vec<&str> = pieces.iter().map(|p| p.text.as_str()).collect();
-        format!("[{}]", texts.join(", "))
-    };
-    let storage = |columns: String, matrix: &str| {
-        format!(
-            "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))\n"
-        )
-    };
-    let matrix = |pieces: &[Piece], rows: usize| {
-        let columns: Vec<String> = pieces.chunks(rows.max(1)).map(list).collect();
-        storage(format!("[{}]", columns.join(", ")), "SMatrix")
-    };
-    match shape {
-        Shape::Scalar => out.push_str(&outputs.first().map_or(String::new(), |p| p.text.clone())),
-        Shape::Array(_) => out.push_str(&list(outputs)),
-        Shape::Vector(_) => out.push_str(&storage(format!("[{}]", list(outputs)), "SVector")),
-        Shape::Square(n) | Shape::Matrix(n, _) => out.push_str(&matrix(outputs, n)),
-        Shape::Pair(_)
+fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signature<'_>) {
+    match f.shape {
+        Shape::Scalar => out.push_str(outputs.pieces.first().map_or("", |p| p.text.as_str())),
+        Shape::Array(_) => out.push_str(&outputs.list(0..outputs.pieces.len())),
+        Shape::Vector(n) => {
+            let _ = writeln!(out, "{}", storage(&format!("[{}]", outputs.list(0..n)), "SVector"));
+        }
+        Shape::Square(n) => {
+            let _ = writeln!(out, "{}", outputs.matrix(0, n, n));
+        }
+        Shape::Matrix(rows, columns) => {
+            let _ = writeln!(out, "{}", outputs.matrix(0, rows, columns));
+        }
+        Shape::Inverse(_)
+        | Shape::Pair(_)
         | Shape::Forward(_)
         | Shape::Linear(..)
+        | Shape::Accelerated(_)
         | Shape::CalledForward(_)
-        | Shape::CalledLinear(..) => {
-            let part = |first: usize, rows: usize, columns: usize| {
-                matrix(&outputs[first..first + rows * columns], rows)
-            };
-            out.push_str(&matrices::compose(shape, s, part));
-        }
+        | Shape::CalledLinear(..) => out.push_str(&matrices::compose(f, s, outputs)),
     }
+}
+
+/// The outputs of a program as texts.
+pub struct Outputs<'a> {
+    pieces: &'a [Piece],
+    is_zero: &'a dyn Fn(usize) -> bool,
+}
+
+impl Outputs<'_> {
+    /// An array of some of them.
+    pub fn list(&self, range: std::ops::Range<usize>) -> String {
+        let texts: Vec<&str> =
+            self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect();
+        format!("[{}]", texts.join(", "))
+    }
+
+    /// The matrix of so many rows and columns, from its columns after the first so many outputs.
+    pub fn matrix(&self, first: usize, rows: usize, columns: usize) -> String {
+        let column = |k: usize| self.list(first + k * rows..first + (k + 1) * rows);
+        let columns: Vec<String> = (0..columns).map(column).collect();
+        storage(&format!("[{}]", columns.join(", ")), "SMatrix")
+    }
+
+    /// True for a constant zero.
+    pub fn is_zero(&self, k: usize) -> bool {
+        (self.is_zero)(k)
+    }
+}
+
+fn storage(columns: &str, matrix: &str) -> String {
+    format!(
+        "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))"
+    )
 }

@@ -43,8 +43,7 @@ const PARENT: Argument = Argument::Given("p", 0, 12);
 /// Writes the private steps and the implementations of `NamedFrame`.
 pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
-        let f =
-            Function { name, docs: Vec::new(), arguments, shape: Shape::Array(n), program: program.clone() };
+        let f = Function { name, arguments, program: program.clone(), ..Function::new(Shape::Array(n)) };
         write_function(out, &f, s, false);
     };
     for (k, link) in links.iter().enumerate() {

@@ -73,15 +73,20 @@ pub enum Shape {
     Matrix(usize, usize),
     /// Two square matrices.
     Pair(usize),
-    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, and `M⁻¹`.
+    /// `M⁻¹`. The outputs are its columns, or what is left of them beside the product of the trunk's with the factors
+    /// that follow, a row of these for each velocity.
+    Inverse(usize),
+    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, and those of `Inverse`.
     Forward(usize),
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
-    /// The same as `Forward`, by calls of the other functions; no outputs.
+    /// Accelerations and `M⁻¹`; the outputs are the accelerations and those of `Inverse`.
+    Accelerated(usize),
+    /// The same as `Forward`, by calls of other functions; no outputs.
     CalledForward(usize),
-    /// The same as `Linear`, by calls of the other functions; the outputs are the forces of the inputs, their derivatives
-    /// by `q`, `v` and the inputs, and what turns displacements.
+    /// The same as `Linear`, from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
+    /// derivatives by `q`, `v` and the inputs, and what turns displacements.
     CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
@@ -99,6 +104,31 @@ pub struct Function {
     pub shape: Shape,
     /// What it computes.
     pub program: Program,
+    /// What is known of its matrices.
+    pub structure: Structure,
+}
+
+/// What is known of the matrices of a function.
+#[derive(Clone, Debug, Default)]
+pub struct Structure {
+    /// Where the inverse of the mass matrix is in parts: the velocities of the trunk, in the order of the factors.
+    pub trunk: Vec<usize>,
+    /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
+    pub zeros: Vec<bool>,
+}
+
+impl Function {
+    /// A hidden function without arguments that does nothing yet.
+    pub fn new(shape: Shape) -> Function {
+        Function {
+            name: String::new(),
+            docs: Vec::new(),
+            arguments: Vec::new(),
+            shape,
+            program: Program::default(),
+            structure: Structure::default(),
+        }
+    }
 }
 
 /// Dimensions and names that signatures need.
@@ -143,12 +173,15 @@ impl Signature<'_> {
         match shape {
             Shape::Scalar => s.to_string(),
             Shape::Vector(n) => self.vector(n),
-            Shape::Square(n) => format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>"),
+            Shape::Square(n) | Shape::Inverse(n) => {
+                format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>")
+            }
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
             Shape::Pair(_)
             | Shape::Forward(_)
             | Shape::Linear(..)
+            | Shape::Accelerated(_)
             | Shape::CalledForward(_)
             | Shape::CalledLinear(..) => matrices::several(shape, self),
         }

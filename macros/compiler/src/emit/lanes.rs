@@ -21,7 +21,7 @@ pub fn write_methods(
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
     let wanted = |f: &&Function| match f.name.as_str() {
-        "__constrained_dynamics" => true,
+        "__constrained_dynamics" | "__accelerations_and_inverse" => true,
         _ => !f.docs.is_empty() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
@@ -36,6 +36,7 @@ pub fn write_methods(
             arguments: f.arguments.clone(),
             shape: f.shape,
             program: f.program.clone(),
+            structure: f.structure.clone(),
         };
         write_function(out, &twin, &lanes, charts.is_none());
     }

@@ -1,6 +1,10 @@
 //! Results of several matrices, and what is composed of them at run time.
 
-use super::function::{Shape, Signature};
+use super::body::Outputs;
+use super::function::{Function, Shape, Signature, Structure};
+
+/// How many numbers of a column the runtime reads together.
+const WIDTH: usize = 8;
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -8,6 +12,7 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square(n)),
         Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
+        Shape::Accelerated(n) => format!("({}, {})", s.vector(n), square(n)),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
             format!("({}, {})", square(2 * n), s.shape(Shape::Matrix(2 * n, m)))
         }
@@ -15,64 +20,137 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     }
 }
 
-/// The result from the outputs; `part` writes the matrix of so many rows and columns from the outputs after the first so
-/// many.
-pub fn compose(shape: Shape, s: &Signature<'_>, part: impl Fn(usize, usize, usize) -> String) -> String {
-    let square = |k: usize, n: usize| part(k * n * n, n, n);
-    match shape {
+/// The result from the outputs.
+pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
+    match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
-        Shape::Forward(n) => {
-            let forces = (square(0, n), square(1, n));
+        Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
+        Shape::Accelerated(n) => {
+            let a = outputs.matrix(0, n, 1);
+            format!("{}({a}, inverse)\n", inverse(f, n, n, s, outputs))
+        }
+        Shape::Forward(n) => format!(
+            "{}let mut forces = ({}, {});\n{}(forces.0, forces.1, inverse)\n",
+            inverse(f, n, 2 * n * n, s, outputs),
+            square(0, n),
+            square(1, n),
+            solved(["forces.0", "forces.1"], "inverse", n, s, &f.structure),
+        ),
+        Shape::CalledForward(n) => called(f, n, s),
+        Shape::Linear(n, m) => {
             format!(
-                "let inverse = {};\n{}(by_q, by_v, inverse)\n",
-                square(2, n),
-                solved(&forces.0, &forces.1)
+                "{}let (mut by_q, mut by_v) = ({}, {});\n{}{}",
+                inverse(f, n, 2 * n * n, s, outputs),
+                square(0, n),
+                square(1, n),
+                solved(["by_q", "by_v"], "inverse", n, s, &f.structure),
+                assembled(n, m, 3 * n * n, s, outputs)
             )
         }
-        Shape::CalledForward(_) => format!("{}(by_q, by_v, inverse)\n", called(s, "")),
-        Shape::Linear(n, m) => {
-            let (by_u, turning) = (part(3 * n * n, n, m), part(3 * n * n + n * m, n, n));
-            let forces = solved(&square(0, n), &square(1, n));
-            format!("let inverse = {};\n{forces}{}", square(2, n), assembled(n, m, &by_u, &turning, s))
-        }
         Shape::CalledLinear(n, m) => {
-            let from = |k: usize| part(n + k * n * n, n, n);
-            let (by_u, turning) = (part(n + 2 * n * n, n, m), part(n + 2 * n * n + n * m, n, n));
-            let less = format!("forces.0 -= {};\nforces.1 -= {};\n", from(0), from(1));
-            let assembled = assembled(n, m, &by_u, &turning, s);
-            format!("let tau = &{};\n{}{assembled}", part(0, n, 1), called(s, &less))
+            let of_inputs = |k: usize| n + k * n * n;
+            let depend = (n..of_inputs(2)).any(|k| !outputs.is_zero(k));
+            let by_state = format!(
+                "let (mut more_by_q, mut more_by_v) = ({}, {});\n{}by_q -= more_by_q;\nby_v -= more_by_v;\n",
+                outputs.matrix(of_inputs(0), n, n),
+                outputs.matrix(of_inputs(1), n, n),
+                solved(["more_by_q", "more_by_v"], "inverse", n, s, &f.structure)
+            );
+            format!(
+                "let tau = &{};\n{}{}{}",
+                outputs.matrix(0, n, 1),
+                accelerated(depend, s),
+                if depend { by_state.as_str() } else { "" },
+                assembled(n, m, of_inputs(2), s, outputs)
+            )
         }
         _ => String::new(),
     }
 }
 
-/// Derivatives of the accelerations from those of the forces: `−M⁻¹ ∂τ/∂x`.
-fn solved(by_q: &str, by_v: &str) -> String {
+/// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
+fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let trunk = &f.structure.trunk;
+    let matrix = outputs.matrix(first, n, n);
+    let width = trunk.len();
+    let row = |j: usize| first + n * n + j * width..first + n * n + (j + 1) * width;
+    let combined = (0..n).filter(|j| !row(*j).all(|k| outputs.is_zero(k)));
+    let combined: Vec<String> = combined.map(|j| format!("({j}, {})", outputs.list(row(j)))).collect();
+    if combined.is_empty() {
+        return format!("let inverse = {matrix};\n");
+    }
     format!(
-        "use ::linkwork::__private::minus_product;
-        let by_q = minus_product(&inverse, &{by_q});
-        let by_v = minus_product(&inverse, &{by_v});\n"
+        "let mut inverse = {matrix};
+        ::linkwork::__private::combine::<{}, {}, {n}, {width}, {}>(&mut inverse, {trunk:?}, &[{}]);\n",
+        s.scalar.name(),
+        n.div_ceil(WIDTH),
+        combined.len(),
+        combined.join(", ")
     )
 }
 
-/// The same by calls of the other functions; `less` is taken from the derivatives of the forces first.
-fn called(s: &Signature<'_>, less: &str) -> String {
+/// Derivatives of the accelerations in the place of those of the forces: `−M⁻¹ ∂τ/∂x`.
+fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
+    let is_zero = |k: usize| structure.zeros.get(k).is_some_and(|zero| *zero);
+    let product = |k: usize| {
+        format!("columns.minus_times(&mut {}, {});\n", forces[k], groups(n, n, k * n * n, &is_zero))
+    };
+    format!("let columns = {};\n{}{}", packed(inverse, n, s), product(0), product(1))
+}
+
+/// The columns of the matrix after the first so many entries, those together whose entries are zero in the same rows:
+/// first, last but one, and the rows that are not zero.
+fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
+    let rows = |j: usize| (0..n).filter(|i| !is_zero(first + j * n + i)).collect::<Vec<usize>>();
+    let mut groups: Vec<(usize, usize, Vec<usize>)> = Vec::new();
+    for (j, rows) in (0..columns).map(|j| (j, rows(j))).filter(|(_, rows)| !rows.is_empty()) {
+        match groups.last_mut() {
+            Some((_, end, known)) if *end == j && *known == rows => *end = j + 1,
+            _ => groups.push((j, j + 1, rows)),
+        }
+    }
+    let texts: Vec<String> = groups.iter().map(|(j, end, rows)| format!("({j}, {end}, &{rows:?})")).collect();
+    format!("&[{}]", texts.join(", "))
+}
+
+/// The derivatives by calls of other functions. Large results are not moved before they are returned.
+fn called(f: &Function, n: usize, s: &Signature<'_>) -> String {
     let t = if s.time { "t, " } else { "" };
     let lanes = s.suffix();
     format!(
-        "let a = &self.forward_dynamics{lanes}({t}q, v, tau);
-        let mut forces = self.inverse_dynamics_derivatives{lanes}({t}q, v, a);
-        {less}let inverse = self.mass_matrix_inverse{lanes}({t}q);
-        {}",
-        solved("forces.0", "forces.1")
+        "let found = self.__accelerations_and_inverse{lanes}({t}q, v, tau);
+        let mut forces = self.inverse_dynamics_derivatives{lanes}({t}q, v, &found.0);
+        {}(forces.0, forces.1, found.1)\n",
+        solved(["forces.0", "forces.1"], "found.1", n, s, &f.structure)
     )
 }
 
-/// The system's two matrices from their blocks.
-fn assembled(n: usize, m: usize, by_u: &str, turning: &str, s: &Signature<'_>) -> String {
-    let number = |x: &str| format!("::linkwork::__private::constant::<{}>({x})", s.scalar.name());
+/// The derivatives of forward dynamics under the forces `tau`.
+fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
+    let t = if s.time { "t, " } else { "" };
+    let lanes = s.suffix();
+    let mutable = if mutable { "mut " } else { "" };
     format!(
-        "let by_u = minus_product(&inverse, &{by_u});
+        "let ({mutable}by_q, {mutable}by_v, inverse) = self.forward_dynamics_derivatives{lanes}({t}q, v, tau);\n"
+    )
+}
+
+fn packed(matrix: &str, n: usize, s: &Signature<'_>) -> String {
+    let blocks = n.div_ceil(WIDTH);
+    format!("::linkwork::__private::Columns::<{}, {blocks}, {n}>::of(&{matrix})", s.scalar.name())
+}
+
+fn number(x: &str, s: &Signature<'_>) -> String {
+    format!("::linkwork::__private::constant::<{}>({x})", s.scalar.name())
+}
+
+/// The system's two matrices, with the derivatives by the inputs and what turns displacements after the first so many
+/// outputs.
+fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    format!(
+        "let mut by_u = {by_u};
+        {columns}.minus_times(&mut by_u, {rows});
         let turning = {turning};
         let mut a = [[{zero}; {twice}]; {twice}];
         let mut b = [[{zero}; {twice}]; {m}];
@@ -88,8 +166,12 @@ fn assembled(n: usize, m: usize, by_u: &str, turning: &str, s: &Signature<'_>) -
             for i in 0..{n} {{ b[j][{n} + i] = -by_u.data.0[j][i]; }}
         }}
         ({storage}(a)), {storage}(b)))\n",
-        zero = number("0.0"),
-        one = number("1.0"),
+        by_u = outputs.matrix(first, n, m),
+        columns = packed("inverse", n, s),
+        rows = groups(n, m, first, &|k| outputs.is_zero(k)),
+        turning = outputs.matrix(first + n * m, n, n),
+        zero = number("0.0", s),
+        one = number("1.0", s),
         twice = 2 * n,
         storage = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage",
     )

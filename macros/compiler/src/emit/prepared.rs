@@ -66,10 +66,8 @@ pub fn write_prepared(
     );
     let numbers = Function {
         name: "__prepared_numbers".to_string(),
-        docs: Vec::new(),
-        arguments: Vec::new(),
-        shape: Shape::Array(count),
         program: content.numbers.cloned().unwrap_or_default(),
+        ..Function::new(Shape::Array(count))
     };
     write_function(out, &numbers, &Signature { prepared: 0, ..*s }, content.numbers.is_none());
     out.push_str("}\n");

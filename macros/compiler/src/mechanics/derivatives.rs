@@ -16,8 +16,10 @@ mod factor;
 pub mod parameters;
 mod subtree;
 pub mod symbolic;
+mod trunk;
 
 pub use factor::Factor;
+pub use trunk::{Inverse, Trunk};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {

@@ -18,8 +18,12 @@ pub struct Factor<'g> {
 impl<'g> Factor<'g> {
     /// Factorises.
     pub fn of(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
+        Factor::in_order(mass, &elimination_order(joints, mass.len()))
+    }
+
+    /// Factorises the block of some entries of `v`, from the leaves to the root.
+    pub fn in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
-        let order = elimination_order(joints, m.len());
         let mut rows = vec![Vec::new(); m.len()];
         let mut inverse = Vec::new();
         for k in 0..m.len() {
@@ -39,7 +43,7 @@ impl<'g> Factor<'g> {
                 rows[k].push((i, factor));
             }
         }
-        Factor { order, rows, inverse }
+        Factor { order: order.to_vec(), rows, inverse }
     }
 
     /// `M⁻¹ r`.
@@ -55,10 +59,10 @@ impl<'g> Factor<'g> {
         r
     }
 
-    /// `M⁻¹`, from the root to the leaves: a unit force on an entry reaches only those above it, so for all others the
+    /// The inverse, zero outside the block, from the root to the leaves: a unit force on an entry reaches only those above it, so for all others the
     /// substitution starts from zero, and symmetry gives the rest.
     pub fn inverse(&self) -> Matrix<'g> {
-        let n = self.order.len();
+        let n = self.rows.len();
         let mut out: Matrix<'g> = self.inverse.iter().map(|d| vec![d.zero(); n]).collect();
         for (step, &k) in self.order.iter().enumerate().rev() {
             for &c in self.order[step..].iter().rev() {
@@ -72,7 +76,8 @@ impl<'g> Factor<'g> {
     }
 }
 
-fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
+/// Entries of `v` from the leaves to the root.
+pub(super) fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
     let mut seen = vec![false; nv];
     let mut order = Vec::new();
     for dof in joints.iter().rev().flat_map(|joint| joint.dofs.iter().rev()) {

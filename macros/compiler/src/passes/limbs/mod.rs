@@ -152,6 +152,11 @@ impl<'g> Limbs<'g> {
         self.places.iter().map(scatter).collect()
     }
 
+    /// By velocity of the whole mechanism: whether it stands for itself here, and is one of those marked here.
+    pub fn alone_and(&self, marked: &[bool]) -> Vec<bool> {
+        self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
+    }
+
     /// The matrix of the whole mechanism, by rows, from that of the velocities here.
     pub fn scattered_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;

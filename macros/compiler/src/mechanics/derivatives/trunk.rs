@@ -1,0 +1,189 @@
+//! A tree as a trunk with limbs, and the inverse of its mass matrix. With the trunk's velocities first it is
+//! `M = [A B; Bᵀ C]`, `C` with a block for each limb; with `W = C⁻¹ Bᵀ`, `S = A − B W` and `G = [1; −W]`
+//!
+//! `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`, `H = G S⁻¹`
+//!
+//! (the inverse of a partitioned matrix; Golub and Van Loan, *Matrix Computations*, 2013, ch. 3). The columns of `H` are
+//! those of the trunk in `M⁻¹`. The part without the product is as sparse as the tree is branched.
+
+use super::super::crba::Matrix;
+use super::super::kinematics::Joint;
+use super::factor::{Factor, elimination_order};
+use crate::expr::Expr;
+
+/// Which velocities belong to the trunk, and which to each limb.
+#[derive(Clone, Debug)]
+pub struct Trunk {
+    /// From the leaves to the root.
+    pub velocities: Vec<usize>,
+    limbs: Vec<Limb>,
+}
+
+/// Velocities that no others of the mechanism but the trunk's depend on.
+#[derive(Clone, Debug)]
+struct Limb {
+    /// From the leaves to the root.
+    velocities: Vec<usize>,
+    /// How many limbs stand side by side in the lanes of the expressions.
+    alike: usize,
+}
+
+impl Trunk {
+    /// By velocity: true where the tree branches, or does so further out. Limbs that are lanes of one are not taken apart.
+    pub fn branching(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
+        let mut children = vec![0; joints.len()];
+        let mut branches = vec![false; joints.len()];
+        for (k, joint) in joints.iter().enumerate().rev() {
+            branches[k] |= children[k] > 1;
+            if let Some(parent) = joint.parent {
+                children[parent.0] += joint.limbs;
+                branches[parent.0] |= branches[k] && joint.limbs == 1;
+            }
+        }
+        let mut velocities = vec![false; nv];
+        for (k, joint) in joints.iter().enumerate() {
+            let inside = joint.limbs > 1 || joint.parent.is_some_and(|p| !branches[p.0]);
+            branches[k] &= !inside;
+            if branches[k] {
+                joint.dofs.iter().for_each(|dof| velocities[dof.index] = true);
+            }
+        }
+        velocities
+    }
+
+    /// The trunk of these velocities. `None` if there is a single limb, or something else couples several.
+    pub fn of(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
+        let order = elimination_order(joints, mass.len());
+        let mut limbs: Vec<Limb> = Vec::new();
+        let mut limb_of_joint: Vec<Option<usize>> = Vec::with_capacity(joints.len());
+        let mut limb_of = vec![None; mass.len()];
+        for joint in joints {
+            let carried = joint.parent.and_then(|p| limb_of_joint[p.0]);
+            let limb = match joint.dofs.iter().all(|dof| is_trunk[dof.index]) {
+                true => carried,
+                false => Some(carried.unwrap_or_else(|| {
+                    limbs.push(Limb { velocities: Vec::new(), alike: joint.limbs });
+                    limbs.len() - 1
+                })),
+            };
+            limb_of_joint.push(limb);
+            for dof in joint.dofs.iter().filter(|dof| !is_trunk[dof.index]) {
+                limb_of[dof.index] = limb;
+            }
+        }
+        for &k in &order {
+            if let Some(limb) = limb_of[k] {
+                limbs[limb].velocities.push(k);
+            }
+        }
+        let is_apart = |i: usize, j: usize| {
+            limb_of[i] == limb_of[j] || is_trunk[i] || is_trunk[j] || mass[i][j].is_zero()
+        };
+        let n = mass.len();
+        let velocities = order.into_iter().filter(|k| is_trunk[*k]).collect();
+        let several = limbs.iter().map(|limb| limb.alike).sum::<usize>() > 1;
+        (several && (0..n).all(|i| (0..i).all(|j| is_apart(i, j)))).then_some(Trunk { velocities, limbs })
+    }
+}
+
+impl Limb {
+    /// The sum over all limbs that are side by side.
+    fn gathered<'g>(&self, e: Expr<'g>) -> Expr<'g> {
+        if self.alike == 1 { e } else { e.lane_sum(self.alike) }
+    }
+}
+
+/// `M⁻¹` in its parts.
+pub struct Inverse<'a, 'g> {
+    trunk: &'a Trunk,
+    /// `C⁻¹` among the limbs, `S⁻¹` in the trunk, `W` in the rows of limbs and the columns of the trunk.
+    parts: Matrix<'g>,
+}
+
+impl<'a, 'g> Inverse<'a, 'g> {
+    /// Inverts the parts.
+    pub fn of(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
+        let n = mass.len();
+        let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
+            return Inverse { trunk, parts: Vec::new() };
+        };
+        let mut parts = vec![vec![zero; n]; n];
+        let mut rest = mass.clone();
+        for limb in &trunk.limbs {
+            let inverse = Factor::in_order(mass, &limb.velocities).inverse();
+            for &i in &limb.velocities {
+                parts[i].clone_from_slice(&inverse[i]);
+                for &t in &trunk.velocities {
+                    parts[i][t] = product(&limb.velocities, |k| (inverse[i][k], mass[k][t]), zero);
+                }
+            }
+            for (step, &i) in trunk.velocities.iter().enumerate() {
+                for &j in &trunk.velocities[..=step] {
+                    let taken = product(&limb.velocities, |k| (mass[i][k], parts[k][j]), zero);
+                    rest[i][j] -= limb.gathered(taken);
+                    rest[j][i] = rest[i][j];
+                }
+            }
+        }
+        let inverse = Factor::in_order(&rest, &trunk.velocities).inverse();
+        for &t in &trunk.velocities {
+            parts[t].clone_from_slice(&inverse[t]);
+        }
+        Inverse { trunk, parts }
+    }
+
+    /// `M⁻¹ r`.
+    pub fn solve(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let (parts, trunk) = (&self.parts, &self.trunk.velocities);
+        let mut x = r.to_vec();
+        for limb in &self.trunk.limbs {
+            for &t in trunk {
+                let taken = product(&limb.velocities, |k| (parts[k][t], r[k]), r[t].zero());
+                x[t] -= limb.gathered(taken);
+            }
+        }
+        let forces: Vec<Expr<'g>> = x.clone();
+        for &t in trunk {
+            x[t] = product(trunk, |k| (parts[t][k], forces[k]), r[t].zero());
+        }
+        for limb in &self.trunk.limbs {
+            for &i in &limb.velocities {
+                let own = product(&limb.velocities, |k| (parts[i][k], r[k]), r[i].zero());
+                x[i] = own - product(trunk, |t| (parts[i][t], x[t]), r[i].zero());
+            }
+        }
+        x
+    }
+
+    /// The columns of `H` where those of the trunk are, `C⁻¹` in the others.
+    pub fn columns(&self) -> Matrix<'g> {
+        let (parts, trunk) = (&self.parts, &self.trunk.velocities);
+        let mut columns = parts.clone();
+        for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {
+            for &t in trunk {
+                columns[i][t] = -product(trunk, |k| (parts[i][k], parts[k][t]), parts[i][t].zero());
+            }
+        }
+        columns
+    }
+
+    /// The rows of `G` for the limbs, zero for the trunk; its columns in the order of the trunk's velocities.
+    pub fn factors(&self) -> Matrix<'g> {
+        let mut factors: Matrix<'g> =
+            self.parts.iter().map(|row| vec![row[0].zero(); self.trunk.velocities.len()]).collect();
+        for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {
+            for (column, &t) in self.trunk.velocities.iter().enumerate() {
+                factors[i][column] = -self.parts[i][t];
+            }
+        }
+        factors
+    }
+}
+
+/// The sum of products over some indices.
+fn product<'g>(over: &[usize], of: impl Fn(usize) -> (Expr<'g>, Expr<'g>), zero: Expr<'g>) -> Expr<'g> {
+    over.iter().fold(zero, |sum, &k| {
+        let (a, b) = of(k);
+        sum + a * b
+    })
+}
