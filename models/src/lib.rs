@@ -79,6 +79,7 @@
 //! | [`CylinderInTrough`] | 1 | period by an elliptic integral |
 //! | [`RollerOnIncline`] (with contact forces) | 1 | accelerations, forces of the contact |
 //! | [`BallInBowl`] | 3 | swings by an elliptic integral, level circles |
+//! | [`BallInDish`] (a surface given by its points) | 3 | accelerations, level circles with spin, constant energy |
 //! | [`BallInFunnel`] | 3 | level circles with spin, two integrals of the motion |
 //! | [`BallInTube`] | 3 | rises again, with `√(2/7)` of the rate round |
 //! | [`BallOnTurntable`] (driven) | 3 | circles at 2/7 of the table's rate |
@@ -150,6 +151,7 @@ mod andrews_squeezer;
 mod arm6;
 mod arm7;
 mod ball_in_bowl;
+mod ball_in_dish;
 mod ball_in_funnel;
 mod ball_in_tube;
 mod ball_on_turntable;
@@ -211,6 +213,7 @@ pub use andrews_squeezer::AndrewsSqueezer;
 pub use arm6::Ur5;
 pub use arm7::{LoadedPanda, Panda, PandaArm};
 pub use ball_in_bowl::BallInBowl;
+pub use ball_in_dish::BallInDish;
 pub use ball_in_funnel::BallInFunnel;
 pub use ball_in_tube::BallInTube;
 pub use ball_on_turntable::BallOnTurntable;

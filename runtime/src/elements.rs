@@ -239,6 +239,7 @@ pub enum Nonholonomic {}
 /// | `torus(radius, tube_radius, axis)`, a tyre; `radius` is that of the tube's centre line | `plane(normal)` | |
 /// | `ellipsoid(a, b, c)`, semi-axes along the body's axes | `plane(normal)` | |
 /// | `cone(half_angle, axis)` | `plane(normal)`, `cone(half_angle, axis)` | `funnel(half_angle, axis)` |
+/// | all of these but the cone | `surface(u, w, point)` | |
 ///
 /// A plane's normal points to what rolls on it, a cone's axis from the apex into the cone, a funnel's from the apex to its
 /// opening; a half angle is that between axis and surface, rad.
@@ -249,6 +250,14 @@ pub enum Nonholonomic {}
 /// each other about the line alone. That adds `contact.tilt`, whose multiplier is the moment of the pressure about the
 /// apex, and `contact.spin`, the moment of friction about the normal, N·m. The rim of a cone, or of a disk, that rolls by
 /// itself is a `circle`.
+///
+/// A surface of any other form is given by its points: `surface(u, w, u * x + w * y + height * z)` with two coordinates of the
+/// struct, `u: Coordinate` and `w: Coordinate`, and a vector that depends on them and on parameters. Its derivatives by `u`
+/// and by `w`, crossed in this order, point to what rolls. Where the bodies touch is then part of the configuration: `u`
+/// and `w` need no inertia, and `contact.foot_first` and `contact.foot_second`, which carry no force, keep them there; bring a
+/// guess onto them by `assemble` or `project_configuration`. Each contact has coordinates of its own. The surface must be smooth,
+/// bent inwards less than what rolls, and regular in its coordinates (no poles); `mass_matrix` is singular, as `u` and `w` move
+/// nothing. A particle on a surface needs none of this: a [`Holonomic`] condition on its coordinates says it.
 ///
 /// The surfaces are held together, also where the normal force (`contact.normal`, positive where they press) would be
 /// negative and bodies would part.

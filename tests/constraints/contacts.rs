@@ -1,5 +1,6 @@
 //! Contacts between surfaces, where the gallery has no mechanism of its own.
 
+use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 
@@ -129,4 +130,174 @@ fn a_ball_rolls_down_a_cone() {
     assert!((a.fixed_rows::<3>(0) - down).amax() < 1e-13);
     assert!((a[4] - 5.0 / 7.0 * 9.81 * c / 0.05).abs() < 1e-11);
     assert!((lambda[0] - 0.3 * 9.81 * s).abs() < 1e-13);
+}
+
+/// A disk on a plane, and on the same plane given by its points.
+#[mechanism(gravity = -9.81 * z)]
+struct OnPlane {
+    #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
+    disk: Body,
+    #[joint(ground -> disk)]
+    pose: Free,
+    #[constraint(rolls(disk.torus(0.2, 0.03, y), ground.plane(unit(0.2 * x + z))))]
+    contact: Rolling,
+}
+
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct OnPoints {
+    u: Coordinate,
+    w: Coordinate,
+    #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
+    disk: Body,
+    #[joint(ground -> disk)]
+    pose: Free,
+    #[constraint(rolls(disk.torus(0.2, 0.03, y), ground.surface(u, w, u * x + w * y - 0.2 * u * z)))]
+    contact: Rolling,
+}
+
+#[mechanism(gravity = -9.81 * z, formulation = speeds)]
+struct BySpeeds {
+    u: Coordinate,
+    w: Coordinate,
+    #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
+    disk: Body,
+    #[joint(ground -> disk)]
+    pose: Free,
+    #[constraint(rolls(disk.torus(0.2, 0.03, y), ground.surface(u, w, u * x + w * y - 0.2 * u * z)))]
+    contact: Rolling,
+}
+
+/// The same accelerations and normal force, pressed or not.
+#[test]
+fn a_plane_is_a_surface() {
+    let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
+    let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
+    let on = OnPoints {}.assemble(&near, &[]).expect("it is near");
+    let q = on.fixed_rows::<7>(2).into_owned();
+    assert!(OnPlane {}.constraint_residuals(&q).amax() < 1e-14);
+    let v = OnPlane {}.project_velocity(&q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into()).expect("regular");
+    let all = SVector::from_fn(|k, _| if k < 2 { 0.0 } else { v[k - 2] });
+    let then = OnPoints {}.project_velocity(&on, &all).expect("regular");
+    assert!((then - all).rows(2, 6).amax() < 1e-12);
+    let (a, lambda) = OnPlane {}.constrained_dynamics(&q, &v, &SVector::zeros());
+    let (b, forces) = OnPoints {}.constrained_dynamics(&on, &then, &SVector::zeros());
+    assert!((a - b.rows(2, 6)).amax() < 1e-10, "{a} {b}");
+    assert_eq!(OnPoints::CONSTRAINTS[0], "contact.normal");
+    assert!((lambda[0] - forces[0]).abs() < 1e-10 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
+    let (c, others) = BySpeeds {}.constrained_dynamics(&on, &then, &SVector::zeros());
+    assert!((b - c).amax() < 1e-9 * b.amax() && (forces - others).amax() < 1e-9, "{b} {c} {forces} {others}");
+    // The inertia that stands in for what the coordinates of the contact lack does not show.
+    let held = OnPoints {}.constraint_jacobian(&on).transpose() * forces;
+    assert!((OnPoints {}.inverse_dynamics(&on, &then, &b) - held).amax() < 1e-11);
+}
+
+/// Derivatives against differences.
+#[test]
+fn derivatives_on_a_surface() {
+    let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
+    let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
+    let q = OnPoints {}.assemble(&near, &[]).expect("it is near");
+    let any = [0.0, 0.0, 0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into();
+    let v = OnPoints {}.project_velocity(&q, &any).expect("regular");
+    let (by_q, by_v, _) = OnPoints {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
+    let at = |q: &SVector<f64, 9>, v: &SVector<f64, 8>| OnPoints {}.forward_dynamics(q, v, &SVector::zeros());
+    for k in 0..8 {
+        let unit = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
+        let slope = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
+            ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+        };
+        let found = slope(&|h| at(&OnPoints {}.integrate(&q, &unit(h)), &v), 1e-3);
+        assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
+        let found = slope(&|h| at(&q, &(v + unit(h))), 1e-3);
+        assert!((found - by_v.column(k)).amax() < 1e-6 * by_v.amax(), "{found} {}", by_v.column(k));
+    }
+}
+
+/// A ball in a bowl that turns, by its angles; the normal points inwards. The friction is dry.
+#[mechanism(gravity = -9.81 * z)]
+struct InAngles {
+    polar: Coordinate,
+    around: Coordinate,
+    #[frame(ground, y(0.5 * t))]
+    turned: Frame,
+    #[body(massive, frame = turned)]
+    bowl: Body,
+    #[body(mass = 0.3, inertia = sphere(0.3, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[constraint(
+        slips(
+            ball.sphere(0.05),
+            bowl.surface(
+                around,
+                polar,
+                0.45 * (sin(polar) * (cos(around) * x + sin(around) * y) + cos(polar) * z)
+            )
+        ),
+        friction = 0.4
+    )]
+    contact: Slipping,
+}
+
+#[mechanism(gravity = -9.81 * z)]
+struct InBowl {
+    #[frame(ground, y(0.5 * t))]
+    turned: Frame,
+    #[body(massive, frame = turned)]
+    bowl: Body,
+    #[body(mass = 0.3, inertia = sphere(0.3, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[constraint(slips(ball.sphere(0.05), bowl.bowl(0.45)), friction = 0.4)]
+    contact: Slipping,
+}
+
+#[test]
+fn a_bowl_is_a_surface() {
+    let t = 0.7;
+    let near = [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into();
+    let q = InBowl {}.project_configuration(t, &near).expect("the bowl is near");
+    let v = InBowl {}.project_velocity(t, &q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into()).expect("regular");
+    let center =
+        UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -0.5 * t) * Vector3::new(q[0], q[1], q[2]);
+    let angles = [(center.z / center.norm()).acos(), center.y.atan2(center.x)];
+    let on = SVector::from_fn(|k, _| if k < 2 { angles[k] } else { q[k - 2] });
+    assert!(InAngles {}.constraint_residuals(t, &on).amax() < 1e-14);
+    let all = SVector::from_fn(|k, _| if k < 2 { 0.0 } else { v[k - 2] });
+    let then = InAngles {}.project_velocity(t, &on, &all).expect("regular");
+    let (a, lambda) = InBowl {}.constrained_dynamics(t, &q, &v, &SVector::zeros());
+    let (b, forces) = InAngles {}.constrained_dynamics(t, &on, &then, &SVector::zeros());
+    assert!((a - b.rows(2, 6)).amax() < 1e-10 * a.amax(), "{a} {b}");
+    assert!((lambda[0] - forces[0]).abs() < 1e-11 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
+}
+
+/// A particle in a paraboloid, by a condition on its coordinates.
+#[mechanism(gravity = -9.81 * z)]
+struct BeadInDish {
+    #[particle(mass = 0.1)]
+    bead: Particle,
+    #[joint(ground -> bead, along = (x, y, z))]
+    place: Stage,
+    #[constraint(place.z = (place.x * place.x + place.y * place.y) / (2 * 0.3))]
+    dish: Holonomic,
+}
+
+/// Level circles take `Ω² = g / c` at any height.
+#[test]
+fn a_particle_circles_in_a_dish() -> Result<(), Error> {
+    let rate = (9.81_f64 / 0.3).sqrt();
+    for radius in [0.01, 0.4] {
+        let q = [radius, 0.0, radius * radius / 0.6];
+        let method = DormandPrince::new().tolerance(1e-11, 1e-11);
+        let end = simulate(&BeadInDish {})
+            .from(q, [0.0, rate * radius, 0.0])
+            .method(method)
+            .duration(1.0)
+            .finish()?;
+        let expected = SVector::from([radius * rate.cos(), radius * rate.sin(), q[2]]);
+        assert!((end.q - expected).amax() < 1e-8, "{} {expected}", end.q);
+    }
+    Ok(())
 }

@@ -115,6 +115,8 @@ fn rolling_bodies() {
     check(&tube, &[0.2, -0.35, 0.1, 0.5, 0.5, -0.5, 0.5].into());
     let funnel = BallInFunnel { g: 9.81, mass: 0.3, radius: 0.05, half_angle: 0.6 };
     check(&funnel, &[0.2, -0.35, 0.7, 0.5, 0.5, -0.5, 0.5].into());
+    let dish = BallInDish { g: 9.81, mass: 0.3, radius: 0.05, curvature: 0.4 };
+    check(&dish, &[0.2, -0.1, 0.2, -0.1, 0.1, 0.5, 0.5, -0.5, 0.5].into());
     let cone = RollingCone { g: 9.81, mass: 0.3, height: 0.2, half_angle: 0.4, slope: 0.2 };
     check(&cone, &[0.1, 0.2, -0.02, 0.0, (1.0_f64 - 0.49).sqrt(), 0.0, 0.7].into());
     let stone = Rattleback {

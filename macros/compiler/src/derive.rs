@@ -7,7 +7,7 @@ use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
 use crate::lower::{Program, lower, lower_without};
-use crate::mechanics::{self, Joint, crba, energy, forces, frames, power, reactions};
+use crate::mechanics::{self, Joint, crba, energy, forces, frames, massless, power, reactions};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
@@ -42,7 +42,8 @@ pub fn derive_with<'g>(
 ) -> Option<Output> {
     let joints = mechanics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
-    if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &mass) {
+    let loaded = massless::loaded_mass(model, &joints, mass.clone());
+    if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &loaded) {
         let (name, place) = &model.velocities[k];
         let diagnostic =
             cx.error(place.clone(), format!("the coordinate `{name}` moves nothing that has inertia"));

@@ -35,21 +35,34 @@ pub fn regular<T: Real, const NV: usize, const NC: usize, const N: usize>(found:
 
 /// `v̇` and the multipliers of least norm: `M v̇ = f + Jᵀ λ`, `J v̇ = −b`. Constraints that follow from others are found by
 /// a factorisation with pivots (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 10.3); where they
-/// contradict each other, the least squares count. Constraints of one number in `groups` are components of one vector.
+/// contradict each other, the least squares count. Constraints of one number in `groups` are components of one vector; those in
+/// `determining` determine coordinates without inertia, and the mass matrix is made regular by them.
 pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
+    determining: &[usize],
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
     force: &SVector<T, NV>,
     bias: &SVector<T, NC>,
 ) -> Multipliers<T, NV, NC> {
-    let lower = factor(&mass.data.0);
+    let (mut mass, mut force) = (mass.data.0, force.data.0[0]);
+    let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
+    for (row, bias) in bias.data.0[0].iter().enumerate().filter(|(row, _)| determining.contains(row)) {
+        for i in 0..NV {
+            let heavy = jacobian.data.0[i][row] * weight;
+            force[i] -= heavy * *bias;
+            for j in 0..NV {
+                mass[j][i] += heavy * jacobian.data.0[j][row];
+            }
+        }
+    }
+    let lower = factor(&mass);
     let mut x = [[T::zero(); NV]; NC];
     for (k, x) in x.iter_mut().enumerate() {
         let row = core::array::from_fn(|i| jacobian.data.0[i][k]);
         *x = forward(&lower, row);
     }
-    let free = forward(&lower, force.data.0[0]);
+    let free = forward(&lower, force);
     let dot = |a: &[T; NV], b: &[T; NV]| a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
     let gram: [[T; NC]; NC] = core::array::from_fn(|i| core::array::from_fn(|j| dot(&x[i], &x[j])));
     let rhs: [T; NC] = core::array::from_fn(|k| -bias.data.0[0][k] - dot(&x[k], &free));
@@ -137,10 +150,27 @@ mod tests {
     fn redundant_constraints_share_the_force() {
         let mass = SMatrix::<f64, 2, 2>::identity() * 2.0;
         let jacobian = SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, 1.0);
-        let (a, lambda) =
-            least_multipliers(&[0, 1], &mass, &jacobian, &SVector::from([3.0, -20.0]), &SVector::zeros());
+        let (a, lambda) = least_multipliers(
+            &[0, 1],
+            &[],
+            &mass,
+            &jacobian,
+            &SVector::from([3.0, -20.0]),
+            &SVector::zeros(),
+        );
         assert!((a - SVector::from([1.5, 0.0])).norm() < 1e-14);
         assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
+    }
+
+    /// A mass on a line, and a coordinate without inertia that is twice its place: the force on both moves the mass.
+    #[test]
+    fn coordinates_without_inertia_are_determined() {
+        let mass = SMatrix::<f64, 2, 2>::new(4.0, 0.0, 0.0, 0.0);
+        let jacobian = SMatrix::<f64, 1, 2>::new(-2.0, 1.0);
+        let (force, bias) = (SVector::from([1.0, 3.0]), SVector::from([0.5]));
+        let (a, lambda) = least_multipliers(&[0], &[0], &mass, &jacobian, &force, &bias);
+        assert!((a - SVector::from([1.75, 3.0])).norm() < 1e-14, "{a}");
+        assert!((lambda[0] + 3.0).abs() < 1e-14, "{lambda}");
     }
 
     /// Regular constraints: the equations themselves hold.
@@ -149,7 +179,7 @@ mod tests {
         let mass = SMatrix::<f64, 3, 3>::new(4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0);
         let jacobian = SMatrix::<f64, 2, 3>::new(1.0, -2.0, 0.3, 0.4, 0.1, 2.0);
         let (force, bias) = (SVector::from([1.0, 2.0, 3.0]), SVector::from([0.7, -0.2]));
-        let (a, lambda) = least_multipliers(&[0, 1], &mass, &jacobian, &force, &bias);
+        let (a, lambda) = least_multipliers(&[0, 1], &[], &mass, &jacobian, &force, &bias);
         assert!((mass * a - force - jacobian.transpose() * lambda).norm() < 1e-13);
         assert!((jacobian * a + bias).norm() < 1e-13);
     }

@@ -8,7 +8,7 @@ use crate::lower::{Operand, Program};
 use crate::mechanics::derivatives::{
     self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, symbolic,
 };
-use crate::mechanics::{self, Joint, constraints, crba, forces, rnea};
+use crate::mechanics::{self, Joint, constraints, crba, forces, massless, rnea};
 use crate::model::{Chart, Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Passes};
@@ -49,6 +49,11 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
     if model.constraints.is_empty() && parts.is_large() {
         functions.push(signatures::accelerated(&Sizes::of(model)));
     }
+    if !model.constraints.is_empty() {
+        functions.retain(|f| !matches!(f.name.as_str(), "forward_dynamics_derivatives" | "linearize"));
+        // Coordinates without inertia leave the mass matrix singular.
+        functions.retain(|f| f.name != "mass_matrix_inverse" || massless::rows(model).is_empty());
+    }
     for f in &mut functions {
         f.shape = match f.shape {
             Shape::Forward(n) if parts.is_large() => Shape::CalledForward(n),
@@ -70,7 +75,6 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         }
     }
     if !model.constraints.is_empty() {
-        functions.retain(|f| !matches!(f.name.as_str(), "forward_dynamics_derivatives" | "linearize"));
         let mut hidden = signatures::constrained_derivatives(&Sizes::of(model), model.constraints.len());
         for f in &mut hidden {
             f.program = match f.name.as_str() {

@@ -4,7 +4,9 @@
 use super::{Stage, done, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
-use crate::mechanics::{self, Joint, aba, constraints, crba, energy, frames, friction, ldl, momentum, rnea};
+use crate::mechanics::{
+    self, Joint, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
+};
 use crate::model::{Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
@@ -173,25 +175,14 @@ impl<'g> Forms<'g> {
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
         let force: Vec<Expr<'g>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
-        if !friction::slipping(bias).is_empty() {
-            return cheapest(self.plain().map(|model| {
-                let mass = crba::mass_matrix(model, &self.joints);
-                self.stage.program(&friction::motion(model, &mass, &force))
-            }));
-        }
         let biases = constraints::biases(bias);
+        if !friction::slipping(bias).is_empty() {
+            return self.slipping(&force, &biases);
+        }
         let Some(pivots) = &bias.dependent else { return self.multipliers(&force, &biases) };
         cheapest(self.plain().map(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
             self.stage.program(&constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots))
-        }))
-    }
-
-    /// The same for forces and biases that are given, with friction.
-    fn slipping_response(&self) -> Program {
-        cheapest(self.plain().map(|model| {
-            let mass = crba::mass_matrix(model, &self.joints);
-            self.stage.program(&friction::response(model, &mass))
         }))
     }
 
@@ -202,12 +193,38 @@ impl<'g> Forms<'g> {
         self.multipliers(&force, &bias)
     }
 
+    /// The same with friction.
+    fn slipping_response(&self) -> Program {
+        let Some(form) = self.all.first() else { return Program::default() };
+        let (force, bias) = constraints::given(&form.model);
+        self.slipping(&force, &bias)
+    }
+
     fn multipliers(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         cheapest(self.plain().map(|model| {
-            let mass = crba::mass_matrix(model, &self.joints);
+            let (mass, force) = self.loaded(model, force, bias);
             let rows = constraints::jacobian(model);
-            self.stage.program(&constraints::solve(model, &mass, &rows, force.to_vec(), bias.to_vec()))
+            self.stage.program(&constraints::solve(model, &mass, &rows, force, bias.to_vec()))
         }))
+    }
+
+    fn slipping(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        cheapest(self.plain().map(|model| {
+            let (mass, force) = self.loaded(model, force, bias);
+            self.stage.program(&friction::solve(model, &mass, force, bias.to_vec()))
+        }))
+    }
+
+    /// Mass matrix and forces with what makes up for coordinates without inertia.
+    fn loaded(
+        &self,
+        model: &Model<'g>,
+        force: &[Expr<'g>],
+        bias: &[Expr<'g>],
+    ) -> (crba::Matrix<'g>, Vec<Expr<'g>>) {
+        let mass = crba::mass_matrix(model, &self.joints);
+        let force = massless::loaded_force(model, &self.joints, force, bias);
+        (massless::loaded_mass(model, &self.joints, mass), force)
     }
 }
 

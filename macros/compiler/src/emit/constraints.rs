@@ -20,6 +20,8 @@ pub struct Constraints {
     pub freedom: [usize; 2],
     /// Those whose multipliers are normal forces of friction.
     pub slipping: Vec<usize>,
+    /// Those that determine coordinates which may have no inertia.
+    pub determining: Vec<usize>,
 }
 
 impl Constraints {
@@ -32,20 +34,24 @@ impl Constraints {
             redundant: Vec::new(),
             freedom: [0; 2],
             slipping: Vec::new(),
+            determining: Vec::new(),
         }
     }
 
     /// Those of a model.
     pub fn of(model: &Model<'_>) -> Constraints {
+        let those = |is: fn(&crate::model::Constraint<'_>) -> bool| {
+            let all = model.constraints.iter().enumerate();
+            all.filter(|(_, c)| is(c)).map(|(k, _)| k).collect()
+        };
         Constraints {
             names: model.constraints.iter().map(|c| c.name.clone()).collect(),
             holonomic: model.holonomic(),
             redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
-            slipping: (0..model.constraints.len())
-                .filter(|k| !model.constraints[*k].drags.is_empty())
-                .collect(),
+            slipping: those(|c| !c.drags.is_empty()),
+            determining: those(|c| c.determines),
         }
     }
 }
@@ -117,7 +123,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             let found = self.__constraint_correction({pass}q, force, bias);
             match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
                 ::core::option::Option::Some(solution) => solution.0,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(*force).into(), &(*bias).into()).0,
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(*force).into(), &(*bias).into()).0,
             }}
         }}
         /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
@@ -134,6 +140,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         }}",
         c.names,
         groups = c.groups,
+        determining = c.determining,
         np = c.freedom[0],
         ns = c.freedom[1],
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
@@ -146,7 +153,8 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
 /// Accelerations and multipliers of a mechanism whose contacts do not slip.
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc, groups) = (s.scalar.name(), s.nv, c.names.len(), &c.groups);
+    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
+    let (groups, determining) = (&c.groups, &c.determining);
     let n = nv + 3 * nc;
     format!(
         "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
@@ -155,7 +163,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
             let found = self.__constrained_dynamics({pass}q, v, tau);
             match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
                 ::core::option::Option::Some(solution) => solution,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
+                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
             }}
         }}"
     )

@@ -17,7 +17,7 @@
 //! Where they do not, friction jams (Painlevé's paradox: Génot and Brogliato, *New results on Painlevé paradoxes*,
 //! Eur. J. Mech. A 18, 1999).
 
-use super::constraints::{biases, elimination_order, jacobian, system};
+use super::constraints::{elimination_order, jacobian, system};
 use super::crba::Matrix;
 use super::kinematics::velocity_gradients;
 use super::ldl::Solution;
@@ -101,15 +101,4 @@ fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first
         x[k] = later.fold(r[k], |sum, &j| sum - m[k][j] * x[j]) * inverse[k];
     }
     Solution { x, pivots, taken }
-}
-
-/// The same for forces and biases that are given numbers.
-pub fn response<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Vec<Expr<'g>> {
-    let (force, bias) = super::constraints::given(model);
-    solve(model, mass, force, bias)
-}
-
-/// Accelerations and multipliers under the forces `τ − h`.
-pub fn motion<'g>(model: &Model<'g>, mass: &Matrix<'g>, force: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    solve(model, mass, force.to_vec(), biases(model))
 }

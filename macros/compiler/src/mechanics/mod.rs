@@ -18,6 +18,7 @@ pub mod independence;
 pub mod inertances;
 pub mod lagrange;
 pub mod ldl;
+pub mod massless;
 pub mod momentum;
 pub mod power;
 pub mod reactions;

@@ -310,6 +310,7 @@ impl<'g> Builder<'_, 'g> {
             measure,
             transmits: vec![transmits],
             group: self.group,
+            determines: false,
             drags: Vec::new(),
         });
     }
@@ -338,6 +339,7 @@ impl<'g> Builder<'_, 'g> {
             measure,
             transmits: Vec::new(),
             group: self.group,
+            determines: false,
             drags: Vec::new(),
         });
     }

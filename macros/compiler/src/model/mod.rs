@@ -445,6 +445,8 @@ pub struct Constraint<'g> {
     pub transmits: Vec<Transmission<'g>>,
     /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
     pub group: usize,
+    /// It determines coordinates that may have no inertia.
+    pub determines: bool,
     /// Friction in proportion to its multiplier, the normal force of a contact that slips.
     pub drags: Vec<Drag<'g>>,
 }

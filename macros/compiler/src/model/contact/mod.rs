@@ -1,17 +1,20 @@
 //! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is found in closed
 //! form: where a convex body touches a plane is its point farthest along the normal (its support function), a sphere
-//! touches along the normal through its centre, and cones touch along a line.
+//! touches along the normal through its centre, and cones touch along a line. On a surface given by its points two
+//! coordinates say where.
 
 mod cones;
+mod foot;
 mod slipping;
 mod surface;
 
 pub use slipping::check_pressed;
 pub use surface::FORMS;
 
-use super::Measure;
 use super::build::Builder;
 use super::constraint::{Moving, Relative, perpendicular};
+use super::kinematics::time_derivative;
+use super::{Drag, Measure};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::syntax::{self, ExprKind};
@@ -25,6 +28,8 @@ struct Contact<'g> {
     point: Vec3<'g>,
     /// Normal and two tangents, with their names.
     axes: [(&'static str, Vec3<'g>); 3],
+    /// Distances that are zero where the coordinates of a surface are those of the contact.
+    foot: Vec<(&'static str, Expr<'g>)>,
 }
 
 /// Two surfaces with the motions of their bodies, relative to the link that carries both, in its axes.
@@ -39,7 +44,7 @@ struct Pair<'g> {
     base: Moving<'g>,
 }
 
-const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the rows of a rolling pair.
@@ -51,10 +56,40 @@ impl<'g> Builder<'_, 'g> {
         }
         let Some(contact) = self.contact(&pair) else { return };
         let slip = self.slip(&pair, contact.point);
-        for (k, (word, e)) in contact.axes.into_iter().enumerate() {
-            let residual = (k == 0).then_some(contact.gap);
+        self.hold(constraint, &contact, slip, Vec::new());
+        let [_, tangents @ ..] = contact.axes;
+        for (word, e) in tangents {
             let name = format!("{}.{word}", constraint.name.text);
-            self.push_rate((name, &constraint.name.place), Measure::Length, residual, e.dot(slip));
+            self.push_rate((name, &constraint.name.place), Measure::Length, None, e.dot(slip));
+        }
+    }
+
+    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal force, and the
+    /// place of the contact on a surface that is given by its points.
+    fn hold(
+        &mut self,
+        constraint: &syntax::Constraint,
+        contact: &Contact<'g>,
+        slip: Vec3<'g>,
+        drags: Vec<Drag<'g>>,
+    ) {
+        let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
+        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as well.
+        let rate = match contact.foot.is_empty() {
+            true => normal.dot(slip),
+            false => time_derivative(self.model.space(), contact.gap),
+        };
+        let name = |word| (format!("{}.{word}", constraint.name.text), place);
+        self.push_rate(name(word), Measure::Length, Some(contact.gap), rate);
+        if let Some(row) = self.model.constraints.last_mut() {
+            row.drags = drags;
+        }
+        for (word, distance) in &contact.foot {
+            let rate = time_derivative(self.model.space(), *distance);
+            self.push_rate(name(word), Measure::Length, Some(*distance), rate);
+            if let Some(row) = self.model.constraints.last_mut() {
+                row.determines = true;
+            }
         }
     }
 
@@ -118,12 +153,18 @@ impl<'g> Builder<'_, 'g> {
         let turned_b = |v| self.of_second(pair, v).value;
         let c = pair.center.value - pair.base.value;
         match (&pair.a.form, &pair.b.form) {
+            (_, Form::Sheet(sheet)) => self.foot(pair, sheet),
             (a, Form::Plane(n)) => {
                 let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
                 let normal = turned_b(*n);
                 let point = -farthest(a, normal, &turned_a)?;
                 let gap = normal.dot(c + point);
-                Some(Contact { gap, point, axes: [("normal", normal), (first, e1), (second, e2)] })
+                Some(Contact {
+                    gap,
+                    point,
+                    axes: [("normal", normal), (first, e1), (second, e2)],
+                    foot: Vec::new(),
+                })
             }
             (Form::Sphere(radius), b) => sphere_contact(*radius, b, c, &turned_b),
             _ => None,
@@ -147,6 +188,9 @@ impl Form<'_> {
             }
             Form::Sphere(_) | Form::Bowl(_) | Form::Cylinder(..) | Form::Tube(..) => {
                 matches!(self, Form::Sphere(_))
+            }
+            Form::Sheet(_) => {
+                matches!(self, Form::Circle(..) | Form::Torus(..) | Form::Sphere(_) | Form::Ellipsoid(_))
             }
             Form::Cone(..) | Form::Funnel(..) => matches!(self, Form::Sphere(_) | Form::Cone(..)),
             _ => false,
@@ -192,11 +236,8 @@ fn sphere_contact<'g>(
         _ => return None,
     };
     let [first, second] = tangents;
-    Some(Contact {
-        gap: distance - radius,
-        point: -(normal * radius),
-        axes: [("normal", normal), first, second],
-    })
+    let axes = [("normal", normal), first, second];
+    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, foot: Vec::new() })
 }
 
 /// The point of a convex body that is farthest along `n`, from its centre.

@@ -6,7 +6,7 @@ use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::model::build::Builder;
 use crate::model::world::{Level, View};
-use crate::model::{Constraint, Drag, Measure, Pose};
+use crate::model::{Constraint, Drag, Pose};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
@@ -21,16 +21,12 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let slip = self.slip(&pair, contact.point);
-        let [(word, normal), tangents @ ..] = contact.axes;
+        let [_, tangents @ ..] = contact.axes;
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
         let size = rates.iter().fold(speed.square(), |sum, rate| sum + rate.square()).sqrt();
         let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
         let drags = moving.map(|rate| Drag { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        let name = (format!("{}.{word}", constraint.name.text), &constraint.name.place);
-        self.push_rate(name, Measure::Length, Some(contact.gap), normal.dot(slip));
-        if let Some(row) = self.model.constraints.last_mut() {
-            row.drags = drags;
-        }
+        self.hold(constraint, &contact, slip, drags);
     }
 
     /// Coefficient of friction and speed of the regularisation.

@@ -29,6 +29,16 @@ pub enum Form<'g> {
     Cone(Expr<'g>, Vec3<'g>),
     /// The inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
+    /// A surface given by its points.
+    Sheet(Sheet<'g>),
+}
+
+/// Points of a surface as expressions of two coordinates, in body axes from its place.
+pub struct Sheet<'g> {
+    /// The point.
+    pub at: Vec3<'g>,
+    /// Its derivatives; their cross product points to what rolls.
+    pub tangents: [Vec3<'g>; 2],
 }
 
 /// A surface where it is.
@@ -40,7 +50,7 @@ pub struct Surface<'g> {
 }
 
 /// The surfaces with their arguments.
-pub const FORMS: [(&str, &[&str]); 10] = [
+pub const FORMS: [(&str, &[&str]); 11] = [
     ("circle", &["radius", "axis"]),
     ("torus", &["radius", "tube_radius", "axis"]),
     ("sphere", &["radius"]),
@@ -51,6 +61,7 @@ pub const FORMS: [(&str, &[&str]); 10] = [
     ("tube", &["radius", "axis"]),
     ("cone", &["half_angle", "axis"]),
     ("funnel", &["half_angle", "axis"]),
+    ("surface", &["u", "w", "point"]),
 ];
 
 impl<'g> Builder<'_, 'g> {
@@ -70,6 +81,11 @@ impl<'g> Builder<'_, 'g> {
             let usage = format!("this surface is written `{}({})`", word.text, names.join(", "));
             cx.error(word.place.clone(), usage);
             return None;
+        }
+        if let ("surface", [u, w, point]) = (word.text.as_str(), arguments.as_slice()) {
+            let home = home?;
+            let form = Form::Sheet(self.sheet(&home, [u, w, point], cx)?);
+            return Some(Surface { home, form });
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
         for (argument, name) in arguments.iter().zip(*names) {

@@ -272,6 +272,7 @@ impl<'a> Places<'a> {
                 match *name {
                     "axis" | "normal" => self.add(argument, &PLAIN, "1"),
                     "half_angle" => self.add(argument, &PLAIN, "rad"),
+                    "u" | "w" => {}
                     _ => self.add(argument, &LENGTH, "m"),
                 }
             }

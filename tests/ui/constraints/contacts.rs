@@ -1,4 +1,4 @@
-//! Surfaces that cannot slip, or not with this friction.
+//! Surfaces that cannot roll or slip as they are told to.
 
 mod says_too_little {
     use linkwork::prelude::*;
@@ -91,6 +91,50 @@ mod has_independent_speeds {
         pose: Free,
         #[constraint(slips(ball.sphere(1), ground.plane(z)), friction = 0.3)]
         contact: Slipping,
+    }
+}
+
+mod is_no_surface {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        u: Coordinate,
+        w: Coordinate,
+        height: Coordinate,
+        #[body(mass = 1, inertia = cone(1, 1, 1, z))]
+        body: Body,
+        #[joint(ground -> body)]
+        pose: Free,
+        #[constraint(rolls(body.sphere(1), ground.surface(u * x + w * y)))]
+        no_coordinates: Rolling,
+        #[constraint(rolls(body.sphere(1), ground.surface(u, v, u * x + w * y)))]
+        unknown: Rolling,
+        #[constraint(rolls(body.sphere(1), ground.surface(u, w, u * x + w * y + height * z)))]
+        of_another: Rolling,
+        #[constraint(rolls(body.sphere(1), ground.surface(u, w, u * x + u * y)))]
+        a_line: Rolling,
+        #[constraint(rolls(body.cone(0.5, z), ground.surface(u, w, u * x + w * y)))]
+        under_a_cone: Rolling,
+        #[constraint(rolls(body.sphere(1), ground.surface(u, w, u)))]
+        no_point: Rolling,
+    }
+}
+
+mod has_no_inertia {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        u: Coordinate,
+        w: Coordinate,
+        idle: Coordinate,
+        #[body(mass = 1, inertia = sphere(1, 1))]
+        ball: Body,
+        #[joint(ground -> ball)]
+        pose: Free,
+        #[constraint(rolls(ball.sphere(1), ground.surface(u, w, u * x + w * y)))]
+        contact: Rolling,
     }
 }
 

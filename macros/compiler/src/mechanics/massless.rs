@@ -1,0 +1,63 @@
+//! Coordinates without inertia, which constraints determine: the parameters of surfaces. The mass matrix `M` is singular,
+//! the system of accelerations and multipliers is not. The rows `J` that determine them are added to it with a weight `w`,
+//!
+//! ```text
+//! (M + w Jᵀ J) v̇ + h = τ − w Jᵀ b + Jᵀ λ,   J v̇ = −b,
+//! ```
+//!
+//! which has the same solution for any `w`, since `J v̇` is known (an augmented Lagrangian: Nocedal and Wright, *Numerical
+//! Optimization*, 2006, § 17.3).
+
+use super::crba::Matrix;
+use super::kinematics::Joint;
+use super::{constraints, energy};
+use crate::expr::Expr;
+use crate::model::Model;
+
+/// The constraints that determine coordinates without inertia.
+pub fn rows(model: &Model<'_>) -> Vec<usize> {
+    (0..model.constraints.len()).filter(|row| model.constraints[*row].determines).collect()
+}
+
+/// `w Jᵀ`: for each of the rows, its entries times the mass of all that moves, so that what is added is of the size of what is
+/// there.
+fn weighted<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    jacobian: &Matrix<'g>,
+) -> Vec<(usize, Vec<Expr<'g>>)> {
+    let (mass, _) = energy::mass_and_moment(model, joints);
+    let w = if mass.is_zero() { model.graph.one() } else { mass };
+    rows(model).into_iter().map(|row| (row, jacobian[row].iter().map(|e| *e * w).collect())).collect()
+}
+
+/// `M + w Jᵀ J`.
+pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
+    if rows(model).is_empty() {
+        return mass;
+    }
+    let jacobian = constraints::jacobian(model);
+    for (row, heavy) in weighted(model, joints, &jacobian) {
+        for (entries, heavy) in mass.iter_mut().zip(heavy).filter(|(_, heavy)| !heavy.is_zero()) {
+            entries.iter_mut().zip(&jacobian[row]).for_each(|(entry, e)| *entry += heavy * *e);
+        }
+    }
+    mass
+}
+
+/// `f − w Jᵀ b`.
+pub fn loaded_force<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    force: &[Expr<'g>],
+    bias: &[Expr<'g>],
+) -> Vec<Expr<'g>> {
+    let mut force = force.to_vec();
+    if rows(model).is_empty() {
+        return force;
+    }
+    for (row, heavy) in weighted(model, joints, &constraints::jacobian(model)) {
+        force.iter_mut().zip(heavy).for_each(|(f, heavy)| *f -= heavy * bias[row]);
+    }
+    force
+}
