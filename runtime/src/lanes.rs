@@ -6,18 +6,25 @@
 
 #[cfg(feature = "std")]
 pub(crate) mod angles;
+#[cfg(all(
+    feature = "std",
+    target_arch = "x86_64",
+    not(all(target_feature = "avx2", target_feature = "fma")),
+    any(test, not(debug_assertions))
+))]
+pub(crate) mod avx2;
 mod field;
 mod numeric;
-mod vector;
+mod registers;
 
 use crate::Real;
-use crate::private;
-use crate::trigonometry;
+use crate::arithmetic::{Arithmetic, Compiled};
 use core::fmt;
 use core::ops::{
     Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
 use nalgebra::SVector;
+pub(crate) use registers::Registers;
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///
@@ -119,19 +126,15 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     #[inline(always)]
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
-        #[cfg(feature = "std")]
-        if let Some(([s], [c])) = angles::sin_cos_all([self]) {
-            return (s, c);
-        }
-        let (s, c) = trigonometry::sin_cos_all(self.0);
-        (Self(s), Self(c))
+        let (s, c) = Compiled::sin_cos(Compiled::lanes(self.0));
+        (s.lanes(), c.lanes())
     }
 
     /// `self * b + c`, fused where the hardware can.
     #[inline(always)]
     #[must_use]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
-        if private::FUSED { Self(vector::fused(&self.0, &b.0, &c.0)) } else { self * b + c }
+        if Compiled::FUSED { Self(Compiled::fused(&self.0, &b.0, &c.0)) } else { self * b + c }
     }
 }
 
@@ -213,7 +216,7 @@ macro_rules! operators {
             #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn $function(self, other: Self) -> Self {
-                Self(vector::$function(&self.0, &other.0))
+                Self(operators!(@apply $function)(&self.0, &other.0))
             }
         }
 
@@ -244,6 +247,8 @@ macro_rules! operators {
             }
         }
     )+};
+    (@apply rem) => { registers::rem };
+    (@apply $function:ident) => { Compiled::$function };
 }
 
 operators! {
@@ -260,7 +265,7 @@ impl<T: Real, const N: usize> Neg for Lanes<T, N> {
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
-        Self(vector::neg(&self.0))
+        Self(Compiled::neg(&self.0))
     }
 }
 

@@ -11,6 +11,9 @@
 //!
 //! Nothing here allocates or panics, and nothing needs the standard library if the feature `libm` is chosen instead of
 //! `std`.
+//!
+//! With `std`, release builds for x86-64 compile large generated functions twice and run them with AVX2 and FMA where the
+//! processor has these: results are the same up to rounding. `#[mechanism(processor = target)]` leaves that out.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("linkwork needs one of its features `std` and `libm` for the elementary functions");
@@ -30,6 +33,7 @@ pub use nalgebra;
 pub use rheonomic::{At, Rheonomic, at};
 pub use simulate::simulate;
 
+mod arithmetic;
 pub mod batch;
 pub mod constraint;
 pub mod elements;
@@ -58,6 +62,8 @@ pub mod prelude {
 /// What generated code calls; no part of the public interface.
 #[doc(hidden)]
 pub mod __private {
+    pub use crate::arithmetic::dispatch::{Body, dispatch};
+    pub use crate::arithmetic::{Arithmetic, Compiled};
     pub use crate::constraint::{
         Motion, columns, constrained_derivatives, least_multipliers, pressing_solution, regular_solution,
         slipping_response, slipping_solution,
@@ -68,12 +74,8 @@ pub mod __private {
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,
     };
-    pub use crate::private::{
-        abs, acos, asin, atan, atan2, constant, cos, cosh, exp, ln, mul_add, mul_sub, neg_mul_add, powf,
-        signum, sin, sinh, sqrt, tan, tanh,
-    };
+    pub use crate::private::constant;
     pub use crate::product::{Columns, combine};
-    pub use crate::trigonometry::{sin_cos, sin_cos_all};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

@@ -5,8 +5,8 @@
 //! Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
 
 use crate::Real;
+use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::{constant, epsilon};
-use crate::trigonometry::{sin_cos, sin_cos_all};
 use core::cmp::Ordering;
 
 /// `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
@@ -96,7 +96,7 @@ pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
         |square| [constant::<T>(0.5) - square / constant(48.0), T::one() - square / constant(8.0)],
         |square| {
             let angle = square.sqrt();
-            let (sin, cos) = sin_cos(angle * constant(0.5));
+            let (sin, cos) = Compiled::sin_cos(angle * constant(0.5));
             [sin / angle, cos]
         },
     );
@@ -159,7 +159,7 @@ fn even_brackets<T: Real>(square: T) -> [T; 2] {
         |square| [series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k)],
         |square| {
             let half = square.sqrt() * constant(0.5);
-            let (sin, cos) = sin_cos(half);
+            let (sin, cos) = Compiled::sin_cos(half);
             let value = T::one() - half * cos / sin;
             let slope = (half * cos / sin - half * half / (sin * sin)) * constant(0.5);
             [(constant::<T>(2.0) * value + slope) / square, (value + slope) / (square * square)]
@@ -198,7 +198,7 @@ pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
         },
         |square| {
             let angle = square.sqrt();
-            let ([half_sin, sin], _) = sin_cos_all([angle * constant(0.5), angle]);
+            let ([half_sin, sin], _) = Compiled::sin_cos_all([angle * constant(0.5), angle]);
             [constant::<T>(2.0) * half_sin * half_sin / square, (angle - sin) / (angle * square)]
         },
     )

@@ -2,8 +2,8 @@
 //! matrices, and skip what is known to be zero.
 
 use crate::Real;
+use crate::arithmetic::{Arithmetic, Compiled};
 use crate::lanes::Lanes;
-use crate::private::mul_add;
 use nalgebra::SMatrix;
 
 /// How many numbers of a column are read together.
@@ -60,7 +60,7 @@ impl<T: Real, const B: usize, const N: usize> Columns<T, B, N> {
             for (sums, column) in sums.iter_mut().zip(columns) {
                 let factor = Lanes::splat(-column.get(k).copied().unwrap_or(T::zero()));
                 for (sum, x) in sums.iter_mut().zip(from) {
-                    *sum = mul_add(*x, factor, *sum);
+                    *sum = Compiled::mul_add(*x, factor, *sum);
                 }
             }
         }
@@ -86,7 +86,7 @@ pub fn combine<T: Real, const B: usize, const N: usize, const K: usize, const M:
         for (from, factor) in from.iter().zip(factors) {
             let factor = Lanes::splat(*factor);
             for (sum, x) in sums.iter_mut().zip(from) {
-                *sum = mul_add(*x, factor, *sum);
+                *sum = Compiled::mul_add(*x, factor, *sum);
             }
         }
         unpack(&sums, column);

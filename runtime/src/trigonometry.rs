@@ -5,39 +5,33 @@
 //! Without optimisation everything that is inlined takes room on the stack of its own, for every call: there nothing is.
 
 use crate::Real;
-use crate::private::{constant, mul_add, neg_mul_add};
+use crate::arithmetic::{Arithmetic, Number};
+use crate::lanes::Registers;
 use core::any::Any;
+use core::f64::consts::FRAC_2_PI;
 use nalgebra::ComplexField;
 
 /// Largest angle that the three-part reduction is exact for.
 pub(crate) const LARGEST: f64 = 1e5;
 
-/// Sine and cosine of an angle, rad.
-#[cfg_attr(debug_assertions, inline)]
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub fn sin_cos<T: Real>(x: T) -> (T, T) {
-    let ([s], [c]) = sin_cos_all([x]);
-    (s, c)
-}
-
 /// Sines and cosines of several angles, rad. Fastest for a multiple of eight.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub fn sin_cos_all<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
+pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
     if let Some(x) = same::<_, [f64; N]>(&x)
-        && let (s, c) = doubles(x)
+        && let (s, c) = doubles::<A, N>(x)
         && let (Some(s), Some(c)) = (same(&s), same(&c))
     {
         return (*s, *c);
     }
     if let Some(x) = same::<_, [f32; N]>(&x)
-        && let (s, c) = doubles(&x.map(f64::from))
+        && let (s, c) = doubles::<A, N>(&x.map(f64::from))
         && let (Some(s), Some(c)) = (same(&s.map(|s| s as f32)), same(&c.map(|c| c as f32)))
     {
         return (*s, *c);
     }
     #[cfg(feature = "std")]
-    if let Some(done) = crate::lanes::angles::sin_cos_all(x) {
+    if let Some(done) = crate::lanes::angles::of_lanes::<A, T, N>(&x) {
         return done;
     }
     one_by_one(&x)
@@ -60,29 +54,28 @@ fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
 
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn doubles<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     let mut small = true;
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         small &= x.abs() <= LARGEST;
-        (*s, *c) = small_angle(*x);
+        (*s, *c) = small_angle::<A>(*x);
     }
     if !small {
         // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
         let copy = *x;
-        (s, c) = with_large(&copy);
+        (s, c) = A::sin_cos_of_large(&copy);
     }
     (s, c)
 }
 
 /// Takes the library's values where angles are large: each result depends on its own angle alone.
-#[cold]
-#[inline(never)]
-pub(crate) fn with_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+#[inline(always)]
+pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         let small = x.abs() <= LARGEST;
-        (*s, *c) = if small { small_angle(*x) } else { ComplexField::sin_cos(*x) };
+        (*s, *c) = if small { small_angle::<A>(*x) } else { ComplexField::sin_cos(*x) };
     }
     (s, c)
 }
@@ -90,8 +83,8 @@ pub(crate) fn with_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
 /// Within the range of the reduction.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn small_angle(x: f64) -> (f64, f64) {
-    let (s, c, shifted) = kernel(x);
+fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
+    let (s, c, shifted) = kernel::<A, _>(x);
     turned(s, c, shifted)
 }
 
@@ -102,7 +95,7 @@ fn small_angle(x: f64) -> (f64, f64) {
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
-pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
+pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     // π / 2 in parts of 33 bits: products with quadrants below 2²⁰ are exact.
@@ -112,19 +105,19 @@ pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
         2.022_266_248_711_166_455_80e-21,
         8.478_427_660_368_899_569_97e-32,
     ];
-    let part = |k: usize| constant::<T>(PARTS[k]);
-    let shifted = mul_add(x, T::frac_2_pi(), constant(ROUND));
-    let quarters = shifted - constant(ROUND);
-    let first = neg_mul_add(quarters, part(0), x);
+    let part = |k: usize| X::constant(PARTS[k]);
+    let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
+    let quarters = shifted - X::constant(ROUND);
+    let first = A::neg_mul_add(quarters, part(0), x);
     let second = quarters * part(1);
     let near = first - second;
     let missing = (first - near) - second;
-    let missing = neg_mul_add(quarters, part(3), neg_mul_add(quarters, part(2), missing));
+    let missing = A::neg_mul_add(quarters, part(3), A::neg_mul_add(quarters, part(2), missing));
     let r = near + missing;
     let low = (near - r) + missing;
     let z = r * r;
-    let half = constant::<T>(0.5) * z;
-    let sine = horner(
+    let half = X::constant(0.5) * z;
+    let sine = horner::<A, _>(
         z,
         [
             1.589_690_995_211_550_102_21e-10,
@@ -135,7 +128,7 @@ pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
             -1.666_666_666_666_663_243_48e-1,
         ],
     );
-    let cosine = horner(
+    let cosine = horner::<A, _>(
         z,
         [
             -1.135_964_755_778_819_482_65e-11,
@@ -146,16 +139,16 @@ pub(crate) fn kernel<T: Real>(x: T) -> (T, T, T) {
             4.166_666_666_666_660_190_37e-2,
         ],
     );
-    let s = r + mul_add(r * z, sine, neg_mul_add(low, half, low));
-    let one = T::one() - half;
-    let c = one + (((T::one() - one) - half) + mul_add(z * z, cosine, -(r * low)));
+    let s = r + A::mul_add(r * z, sine, A::neg_mul_add(low, half, low));
+    let one = X::constant(1.0) - half;
+    let c = one + (((X::constant(1.0) - one) - half) + A::mul_add(z * z, cosine, -(r * low)));
     (s, c, shifted)
 }
 
 /// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
+pub(crate) fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     let quadrant = shifted.to_bits();
     let odd = (quadrant & 1).wrapping_neg();
     let (s, c) = (s.to_bits(), c.to_bits());
@@ -167,11 +160,11 @@ fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
 
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn horner<T: Real>(z: T, coefficients: [f64; 6]) -> T {
+fn horner<A: Registers, X: Number<A>>(z: X, coefficients: [f64; 6]) -> X {
     let [first, rest @ ..] = coefficients;
-    let mut sum = constant(first);
+    let mut sum = X::constant(first);
     for c in rest {
-        sum = mul_add(sum, z, constant(c));
+        sum = A::mul_add(sum, z, X::constant(c));
     }
     sum
 }
@@ -179,6 +172,7 @@ fn horner<T: Real>(z: T, coefficients: [f64; 6]) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::Compiled as A;
 
     /// Distance in units of the last place.
     fn ulps(a: f64, b: f64) -> u64 {
@@ -187,7 +181,7 @@ mod tests {
     }
 
     fn check(x: f64) {
-        let (s, c) = sin_cos(x);
+        let (s, c) = A::sin_cos(x);
         assert!(ulps(s, ComplexField::sin(x)) <= 1, "sin {x:e}: {s:e}");
         assert!(ulps(c, ComplexField::cos(x)) <= 1, "cos {x:e}: {c:e}");
     }
@@ -215,18 +209,18 @@ mod tests {
             check(x);
             check(-x);
         }
-        assert_eq!((sin_cos(0.0), sin_cos(-0.0)), ((0.0, 1.0), (0.0, 1.0)));
-        assert!(sin_cos(f64::INFINITY).0.is_nan() && sin_cos(f64::NAN).1.is_nan());
+        assert_eq!((A::sin_cos(0.0), A::sin_cos(-0.0)), ((0.0, 1.0), (0.0, 1.0)));
+        assert!(A::sin_cos(f64::INFINITY).0.is_nan() && A::sin_cos(f64::NAN).1.is_nan());
     }
 
     #[test]
     fn arrays_and_single_precision() {
         let x = [0.1, -2.0, 7.0, 3e5];
-        let (s, c) = sin_cos_all(x);
+        let (s, c) = A::sin_cos_all(x);
         for k in 0..4 {
             assert!(ulps(s[k], ComplexField::sin(x[k])) <= 1);
             assert!(ulps(c[k], ComplexField::cos(x[k])) <= 1);
-            let single = sin_cos(x[k] as f32);
+            let single = A::sin_cos(x[k] as f32);
             let exact = ComplexField::sin_cos(f64::from(x[k] as f32));
             assert_eq!(single, (exact.0 as f32, exact.1 as f32));
         }

@@ -12,6 +12,8 @@ const BUDGET: Duration = Duration::from_millis(700);
 
 fn main() {
     let fused = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+    #[cfg(target_arch = "x86_64")]
+    let fused = fused || std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
     println!(
         "{}, fused multiply-add {}; operations: mul + add + div (instructions if fused) + sin, cos\n",
         std::env::consts::ARCH,

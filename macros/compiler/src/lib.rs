@@ -218,6 +218,7 @@ impl Source {
             time: false,
             velocity_inputs: false,
             batch: self.mechanism.requests.batch,
+            detect: !self.mechanism.requests.target_only,
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }

@@ -1,7 +1,8 @@
 //! Lanes as a real field of nalgebra: every function from lane to lane.
 
-use super::{Lanes, vector};
+use super::{Lanes, Registers};
 use crate::Real;
+use crate::arithmetic::Compiled;
 use nalgebra::{ComplexField, RealField};
 use num_traits::Zero;
 
@@ -93,12 +94,12 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(vector::abs(&self.0))
+        Self(Compiled::magnitude(&self.0))
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(vector::sqrt(&self.0))
+        Self(Compiled::root(&self.0))
     }
 
     #[inline(always)]

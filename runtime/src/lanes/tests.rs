@@ -1,5 +1,6 @@
 use super::*;
-use crate::private::{atan2, constant, mul_add, mul_sub, neg_mul_add, powf};
+use crate::arithmetic::{Compiled as A, Elementary};
+use crate::private::constant;
 use core::cmp::Ordering;
 use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
 use std::format;
@@ -37,10 +38,10 @@ fn arithmetic<const N: usize>() {
     check::<N>(|a, b, _| a % b, |a, b, _| a % b);
     check::<N>(|a, _, _| -a, |a, _, _| -a);
     check::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
-    check::<N>(mul_add, mul_add);
-    check::<N>(mul_sub, mul_sub);
-    check::<N>(neg_mul_add, neg_mul_add);
-    check::<N>(|a, b, c| a.mul_add(b, c), mul_add);
+    check::<N>(A::mul_add, A::mul_add);
+    check::<N>(A::mul_sub, A::mul_sub);
+    check::<N>(A::neg_mul_add, A::neg_mul_add);
+    check::<N>(|a, b, c| a.mul_add(b, c), A::mul_add);
     check::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
     check::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
     check::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
@@ -90,10 +91,10 @@ fn functions_are_those_of_every_lane() {
     for (wide, narrow) in functions {
         check(|a, _, _| wide(a), |a, _, _| narrow(a));
     }
-    check::<8>(|a, b, _| atan2(a, b), |a, b, _| atan2(a, b));
-    check::<8>(|a, b, _| powf(a * a, b), |a, b, _| powf(a * a, b));
-    check::<8>(|a, _, _| a.sin_cos().0, |a, _, _| trigonometry::sin_cos(a).0);
-    check::<8>(|a, _, _| a.sin_cos().1, |a, _, _| trigonometry::sin_cos(a).1);
+    check::<8>(|a, b, _| A::atan2(a, b), |a, b, _| A::atan2(a, b));
+    check::<8>(|a, b, _| A::powf(a * a, b), |a, b, _| A::powf(a * a, b));
+    check::<8>(|a, _, _| a.sin_cos().0, |a, _, _| A::sin_cos(a).0);
+    check::<8>(|a, _, _| a.sin_cos().1, |a, _, _| A::sin_cos(a).1);
 }
 
 #[test]
@@ -101,7 +102,7 @@ fn a_large_angle_does_not_disturb_its_neighbours() {
     let x = Lanes([0.3, 1e9, -2.0, f64::INFINITY, 1e5, -1e6, f64::NAN, 0.0]);
     let (s, c) = x.sin_cos();
     for k in 0..8 {
-        let (sine, cosine) = trigonometry::sin_cos(x[k]);
+        let (sine, cosine) = A::sin_cos(x[k]);
         assert_eq!((s[k].to_bits(), c[k].to_bits()), (sine.to_bits(), cosine.to_bits()), "lane {k}");
     }
 }
@@ -158,8 +159,50 @@ fn nalgebra_computes_with_lanes() {
 #[test]
 fn lanes_of_lanes() {
     let x = Lanes([numbers::<4>(1), numbers::<4>(2)]);
-    let y = mul_add(x, x, constant(1.0));
-    assert_eq!(y[1][2], mul_add(x[1][2], x[1][2], 1.0));
+    let y = A::mul_add(x, x, constant(1.0));
+    assert_eq!(y[1][2], A::mul_add(x[1][2], x[1][2], 1.0));
     assert_eq!(x.sum(), x[0] + x[1]);
-    assert_eq!(ComplexField::sin_cos(x).0[0][3], trigonometry::sin_cos(x[0][3]).0);
+    assert_eq!(ComplexField::sin_cos(x).0[0][3], A::sin_cos(x[0][3]).0);
+}
+
+/// In the arithmetic of `R` every lane of a vector holds what its numbers alone give, to the bit.
+fn vectors_are_their_lanes<R: Registers, const N: usize>() {
+    fn several<R: Registers, X: Elementary<R>>(a: X, b: X, c: X) -> X {
+        let (s, c) = R::sin_cos(R::mul_add(a, X::constant(9.0), c));
+        let (large, _) = R::sin_cos(b * X::constant(1e6));
+        let sum = R::mul_sub(s, c, R::neg_mul_add(a, large, -b)) / (R::abs(b) + X::constant(0.1));
+        R::sqrt(R::mul_add(sum, sum, a * a)) - R::atan2(a, b)
+    }
+    let wide = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
+        several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
+    };
+    check::<N>(wide, several::<R, f64>);
+    let narrow = |a, b, c| several::<R, f32>(a, b, c);
+    let [a, b, c] = [3, 4, 5].map(|seed| numbers::<N>(seed).map(|x| x as f32));
+    let found = several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
+    for k in 0..N {
+        assert_eq!(found[k].to_bits(), narrow(a[k], b[k], c[k]).to_bits(), "lane {k} of {a}, {b}, {c}");
+    }
+}
+
+fn vectors_of_any_length<R: Registers>() {
+    vectors_are_their_lanes::<R, 1>();
+    vectors_are_their_lanes::<R, 2>();
+    vectors_are_their_lanes::<R, 3>();
+    vectors_are_their_lanes::<R, 4>();
+    vectors_are_their_lanes::<R, 8>();
+    vectors_are_their_lanes::<R, 16>();
+}
+
+#[test]
+fn vectors_compute_lane_by_lane() {
+    vectors_of_any_length::<A>();
+    #[cfg(all(
+        feature = "std",
+        target_arch = "x86_64",
+        not(all(target_feature = "avx2", target_feature = "fma"))
+    ))]
+    if avx2::is_available() && avx2::serves::<f64>() && avx2::serves::<f32>() {
+        vectors_of_any_length::<avx2::Avx2>();
+    }
 }

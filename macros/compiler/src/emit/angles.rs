@@ -126,12 +126,12 @@ impl Calls {
         self.loose.push((text, number));
         if self.loose.len() == WIDTH {
             let (texts, numbers): (Vec<String>, Vec<usize>) = self.loose.drain(..).unzip();
-            self.arguments.push((format!("Lanes([{}])", texts.join(", ")), numbers));
+            self.arguments.push((format!("[{}]", texts.join(", ")), numbers));
         }
     }
 
     /// The function that is called.
-    pub fn helper(&self) -> &'static str {
+    fn helper(&self) -> &'static str {
         if self.in_vectors || self.bound == 1 { "sin_cos" } else { "sin_cos_all" }
     }
 
@@ -145,8 +145,13 @@ impl Calls {
                 self.push_loose(zero.to_string(), self.bound - 1);
             }
             for (argument, numbers) in &self.arguments {
-                let (s, c) = (bundle('s', numbers), bundle('c', numbers));
-                let _ = write!(text, "let ({s}, {c}) = sin_cos({argument}); ");
+                let names =
+                    |letter| numbers.iter().map(|k| format!("{letter}{k}")).collect::<Vec<_>>().join(", ");
+                let (s, c) = (names('s'), names('c'));
+                let _ = match numbers.len() {
+                    1 => write!(text, "let ({s}, {c}) = Ops::sin_cos({argument}); "),
+                    _ => write!(text, "let ([{s}], [{c}]) = Ops::sin_cos_in_lanes({argument}); "),
+                };
             }
         } else {
             let width = match self.arguments.len() {
@@ -164,7 +169,7 @@ impl Calls {
                     |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
                 let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
                 let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
-                let _ = write!(text, "let ([{sines}], [{cosines}]) = sin_cos_all([{angles}]); ");
+                let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
             }
         }
         let _ = write!(text, "({},) }}", self.results.join(", "));
@@ -177,6 +182,6 @@ fn bundle(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {
         [one] => one.clone(),
-        names => format!("Lanes([{}])", names.join(", ")),
+        names => format!("Ops::lanes([{}])", names.join(", ")),
     }
 }

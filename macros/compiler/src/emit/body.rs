@@ -45,15 +45,13 @@ struct Writer<'a> {
     statements: Vec<Statement>,
     /// By value: its text if it is not bound.
     pieces: Vec<Option<Piece>>,
-    /// Functions of the runtime that are called.
-    helpers: Vec<&'static str>,
     /// How many statements end with the angles, and the arguments that these need.
     head: usize,
     early: Vec<Argument>,
 }
 
-/// Writes everything between the braces.
-pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
+/// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
+pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool) {
     // Several states fill the lanes by themselves.
     let in_lanes = f.program.in_lanes.as_deref().filter(|_| !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);
@@ -64,25 +62,23 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
         arguments: &f.arguments,
         statements: Vec::new(),
         pieces: vec![None; program.instructions.len()],
-        helpers: Vec::new(),
         head: 0,
         early: Vec::new(),
     };
     w.write_instructions();
-    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand(*o)).collect();
-    for helper in s.scalar.helpers() {
-        w.helper(helper);
+    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output(*o)).collect();
+    let mut helpers: Vec<&str> = s.scalar.helpers().collect();
+    if !is_parameter {
+        helpers.extend(["Arithmetic", "Compiled as Ops"]);
     }
-    if !program.gathers.is_empty() {
-        w.helper("Lanes");
-    }
-    if !w.helpers.is_empty() {
-        let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", w.helpers.join(", "));
+    let is_empty = program.instructions.is_empty() && program.outputs.is_empty();
+    if !helpers.is_empty() && (!is_empty || s.scalar.is_in_lanes()) {
+        let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }
     // What the angles do not need is read when they are done: it would wait in memory, not in registers.
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
-        f.arguments.iter().partition(|a| head == 0 || w.early.contains(a));
+        f.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
     write_prepared_numbers(out, program, s.prepared);
     write_inputs(out, &early, s, &w);
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
@@ -93,13 +89,6 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>) {
 }
 
 impl Writer<'_> {
-    fn helper(&mut self, name: &'static str) -> &'static str {
-        if !self.helpers.contains(&name) {
-            self.helpers.push(name);
-        }
-        name
-    }
-
     fn write_instructions(&mut self) {
         let angles = Angles::find(self.program);
         for k in 0..self.program.instructions.len() {
@@ -166,7 +155,6 @@ impl Writer<'_> {
         if calls.names.is_empty() {
             return;
         }
-        self.helper(calls.helper());
         let (names, text) = calls.text(&self.constant(0.0));
         let list: Vec<String> = names.iter().map(|k| format!("t{k}")).collect();
         self.statements.push(Statement { pattern: format!("({},)", list.join(", ")), names, text, needs });
@@ -190,7 +178,7 @@ impl Writer<'_> {
         needs.extend(piece.needs);
         match lanes {
             1 | WIDTH => vec![piece.text],
-            _ => (0..lanes).map(|k| format!("{}.0[{k}]", piece.text)).collect(),
+            _ => (0..lanes).map(|k| format!("{}.lane::<{k}>()", piece.text)).collect(),
         }
     }
 
@@ -198,13 +186,13 @@ impl Writer<'_> {
     fn in_lanes(&mut self, lanes: &[String]) -> String {
         match lanes {
             [one] => one.clone(),
-            _ => format!("{}([{}])", self.helper("Lanes"), lanes.join(", ")),
+            _ => format!("Ops::lanes([{}])", lanes.join(", ")),
         }
     }
 
     fn gathered(&self, gather: &[Symbol]) -> String {
         let symbols: Vec<String> = gather.iter().map(|s| self.symbol(*s)).collect();
-        format!("Lanes([{}])", symbols.join(", "))
+        format!("Ops::lanes([{}])", symbols.join(", "))
     }
 
     fn width(&self, o: Operand) -> usize {
@@ -223,8 +211,7 @@ impl Writer<'_> {
         if own == lanes {
             return piece;
         }
-        let helper = self.helper("splat");
-        Piece { text: format!("{helper}::<_, {lanes}>({})", piece.text), needs: piece.needs, level: 3 }
+        Piece { text: format!("Ops::splat::<_, {lanes}>({})", piece.text), needs: piece.needs, level: 3 }
     }
 
     fn operand(&mut self, o: Operand) -> Piece {
@@ -254,6 +241,15 @@ impl Writer<'_> {
         }
     }
 
+    /// A result: of several states no longer as a vector, but as lanes.
+    fn output(&mut self, o: Operand) -> Piece {
+        let piece = self.operand(o);
+        match self.scalar.is_in_lanes() {
+            true => Piece { text: format!("{}.lanes()", wrap(&piece, 3)), level: 3, ..piece },
+            false => piece,
+        }
+    }
+
     fn constant(&mut self, c: f64) -> String {
         let text = self.scalar.constant(c);
         if c < 0.0 { format!("({text})") } else { text }
@@ -262,7 +258,7 @@ impl Writer<'_> {
     fn symbol(&self, s: Symbol) -> String {
         let quantity = Quantity::of(s);
         if quantity == Quantity::Time {
-            return "t".to_string();
+            return if self.scalar.is_in_lanes() { "time" } else { "t" }.to_string();
         }
         match quantity {
             Quantity::Parameter(k) => return self.scalar.value(k),
@@ -295,7 +291,7 @@ impl Writer<'_> {
             Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
             Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
             Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
-            Op::Lane(k, a) => self.suffix(a, &format!(".0[{k}]")),
+            Op::Lane(k, a) => self.suffix(a, &format!(".lane::<{k}>()")),
         }
     }
 
@@ -312,8 +308,7 @@ impl Writer<'_> {
         Piece { text, needs, level }
     }
 
-    fn call(&mut self, helper: &'static str, arguments: &[Operand], lanes: usize) -> Piece {
-        let helper = self.helper(helper);
+    fn call(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
         let mut needs = Vec::new();
         let mut list = Vec::new();
         for argument in arguments {
@@ -321,7 +316,7 @@ impl Writer<'_> {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece { text: format!("{helper}({})", list.join(", ")), needs, level: 3 }
+        Piece { text: format!("Ops::{function}({})", list.join(", ")), needs, level: 3 }
     }
 }
 
@@ -353,9 +348,13 @@ fn write_prepared_numbers(out: &mut String, program: &Program, count: usize) {
 
 /// The numbers of arguments, and those of them that are lanes.
 fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
+    let in_lanes = s.scalar.is_in_lanes();
     for argument in arguments {
         let (n, given) = match argument {
-            Argument::T => continue,
+            Argument::T => {
+                out.push_str(if in_lanes { "let time = Ops::lanes(t.0);\n" } else { "" });
+                continue;
+            }
             Argument::Q => (s.nq, false),
             Argument::V | Argument::A | Argument::Tau => (s.nv, false),
             Argument::U => (s.nu, false),
@@ -368,10 +367,11 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
         let name = argument.name();
         let list: Vec<String> = (0..n).map(|k| format!("{name}{k}")).collect();
         let list = list.join(", ");
-        let _ = if given {
-            writeln!(out, "let [{list}] = *{name};")
-        } else {
-            writeln!(out, "let [[{list}]] = {name}.data.0;")
+        let _ = match (given, in_lanes) {
+            (true, false) => writeln!(out, "let [{list}] = *{name};"),
+            (true, true) => writeln!(out, "let [{list}] = *Ops::each({name});"),
+            (false, false) => writeln!(out, "let [[{list}]] = {name}.data.0;"),
+            (false, true) => writeln!(out, "let [{list}] = *Ops::each(&{name}.data.0[0]);"),
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
             if gather.iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {

@@ -212,8 +212,8 @@ impl Signature<'_> {
     }
 }
 
-/// Writes a function; without a program its body never returns, for a mechanism that failed to compile.
-pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
+/// Writes what stands before a function's body, with the brace.
+pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");
     }
@@ -228,10 +228,15 @@ pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: b
         s.parameters(&f.arguments),
         s.shape(f.shape)
     );
+}
+
+/// Writes a function; without a program its body never returns, for a mechanism that failed to compile.
+pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
+    write_head(out, f, s);
     if stub {
         out.push_str("loop {}\n");
     } else {
-        write_body(out, f, s);
+        write_body(out, f, s, false);
     }
     out.push_str("}\n");
 }

@@ -2,6 +2,7 @@
 
 use super::constants::write_constants;
 use super::constraints::{self, Constraints};
+use super::dispatch::Bodies;
 use super::docs::struct_docs;
 use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
 use super::function::{Argument, Function, Shape, Signature, write_function};
@@ -48,6 +49,8 @@ pub struct Interface<'a> {
     pub velocity_inputs: bool,
     /// There are functions of several states at once.
     pub batch: bool,
+    /// Large functions choose their arithmetic at run time.
+    pub detect: bool,
 }
 
 /// What was derived.
@@ -121,13 +124,14 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let s = signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &output.equations, &output.constants);
+    let mut bodies = Bodies::new(interface.detect);
     for f in &output.functions {
-        write_function(&mut methods, f, &s, false);
+        bodies.write_function(&mut methods, f, &s);
     }
     constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
     reactions::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
     write_manifold(&mut methods, Some(&output.charts), &s);
-    lanes::write_methods(&mut methods, interface, &output.functions, Some(&output.charts), &s);
+    lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
         (0..interface.shell.parameters.len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
@@ -151,6 +155,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         frames.push(text);
     }
     let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
+    bodies.write(&mut emitted.text, &interface.shell.ident.to_string(), &Head::new(interface, &s));
     if let Some(prepared) = &output.prepared {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
         write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
@@ -174,7 +179,7 @@ pub fn emit_failed(
     }
     constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
     write_manifold(&mut methods, None, &s);
-    lanes::write_methods(&mut methods, interface, functions, None, &s);
+    lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");

@@ -1,5 +1,6 @@
 //! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
 
+use super::dispatch::Bodies;
 use super::function::{Argument, Function, Signature, write_function};
 use super::item::{Interface, TRAIT_FUNCTIONS, needed, result_of};
 use super::manifold::write_manifold;
@@ -10,6 +11,7 @@ use std::fmt::Write;
 /// the configuration space, for a mechanism that failed to compile, as stubs.
 pub fn write_methods(
     out: &mut String,
+    bodies: &mut Bodies,
     i: &Interface<'_>,
     functions: &[Function],
     charts: Option<&[Chart]>,
@@ -38,7 +40,10 @@ pub fn write_methods(
             program: f.program.clone(),
             structure: f.structure.clone(),
         };
-        write_function(out, &twin, &lanes, charts.is_none());
+        match charts {
+            Some(_) => bodies.write_function(out, &twin, &lanes),
+            None => write_function(out, &twin, &lanes, true),
+        }
     }
     if !i.constraints.names.is_empty() {
         write_constrained(out, i, &lanes);

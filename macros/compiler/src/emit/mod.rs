@@ -5,6 +5,7 @@ mod angles;
 mod body;
 mod constants;
 mod constraints;
+mod dispatch;
 mod docs;
 pub mod frames;
 mod function;

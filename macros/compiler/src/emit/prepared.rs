@@ -3,6 +3,7 @@
 
 use super::constants::write_sizes;
 use super::constraints;
+use super::dispatch::Bodies;
 use super::docs::operations;
 use super::function::{Function, Shape, Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
@@ -46,14 +47,19 @@ pub fn write_prepared(
     let s = &Signature { prepared: count, ..*s };
     let mut methods = String::new();
     write_sizes(&mut methods, i);
+    let mut bodies = Bodies::new(i.detect);
     for f in functions {
-        write_function(&mut methods, f, s, content.numbers.is_none());
+        match content.numbers {
+            Some(_) => bodies.write_function(&mut methods, f, s),
+            None => write_function(&mut methods, f, s, true),
+        }
     }
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     reactions::write_methods(&mut methods, &i.constraints, functions, s);
     write_manifold(&mut methods, content.charts, s);
-    lanes::write_methods(&mut methods, i, functions, content.charts, s);
+    lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);
+    bodies.write(out, &name, &head);
 
     let Head { generics, arguments, bounds } = &head;
     let _ = writeln!(

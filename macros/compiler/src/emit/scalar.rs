@@ -24,7 +24,7 @@ impl ScalarSpelling {
     }
 
     /// The type of one lane.
-    fn one(&self) -> &str {
+    pub fn one(&self) -> &str {
         match &self.scalar {
             ScalarType::F64 => "f64",
             ScalarType::F32 => "f32",
@@ -47,10 +47,9 @@ impl ScalarSpelling {
         self.lanes.is_some()
     }
 
-    /// The functions of the runtime that constants and parameters may call.
+    /// The functions of the runtime that constants may call.
     pub fn helpers(&self) -> impl Iterator<Item = &'static str> {
-        let constant = self.is_generic().then_some("constant");
-        constant.into_iter().chain(self.is_in_lanes().then_some("splat"))
+        self.is_generic().then_some("constant").into_iter()
     }
 
     /// The field of a parameter.
@@ -75,7 +74,7 @@ impl ScalarSpelling {
     /// The same number in all lanes.
     pub fn spread(&self, number: String) -> String {
         match self.is_in_lanes() {
-            true => format!("splat::<{}, LANES>({number})", self.one()),
+            true => format!("Ops::splat::<{}, LANES>({number})", self.one()),
             false => number,
         }
     }

@@ -39,6 +39,8 @@ pub struct Requests {
     pub prepare: bool,
     /// Functions of several states at once, in lanes.
     pub batch: bool,
+    /// No instructions beside those of the compilation's target.
+    pub target_only: bool,
 }
 
 /// The struct without its elements.
@@ -81,7 +83,7 @@ const REQUESTS: [&str; 7] =
     ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
 
 /// The options that have a value.
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 13] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -94,6 +96,7 @@ const OPTIONS: [&str; 12] = [
     "inertia",
     "inputs",
     "lock",
+    "processor",
 ];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
@@ -370,6 +373,7 @@ fn read_options(
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     let trust_inertia = choice("inertia", ["check", "trust"]).unwrap_or(false);
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
+    requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     let lock = arguments.take_texts("lock", cx);
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     Some(UrdfOptions {
@@ -412,6 +416,7 @@ fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut 
         packed: asked("packed").is_some(),
         prepare: prepare.is_some(),
         batch: asked("batch").is_some(),
+        target_only: false,
     };
     for (place, word) in [(sensitivities, "sensitivities"), (prepare, "prepare")] {
         if let Some(place) = place.filter(|_| description.parameters.is_empty()) {

@@ -1,0 +1,84 @@
+//! Large functions choose their arithmetic at run time: their bodies stand in implementations of a trait of the runtime,
+//! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
+
+use super::body::write_body;
+use super::function::{Function, Signature, write_function, write_head};
+use super::item::{ALLOW, Head};
+use std::fmt::Write;
+
+/// Fewest operations of a function that chooses. The choice costs about two nanoseconds, and a function that is called
+/// cannot be inlined.
+const LARGE: usize = 60;
+
+/// The bodies of a type's functions that choose.
+pub struct Bodies {
+    /// There are any.
+    wanted: bool,
+    list: Vec<Body>,
+}
+
+struct Body {
+    /// The types of the arguments, a tuple.
+    types: String,
+    /// Their names.
+    names: String,
+    result: String,
+    /// It takes several states at once.
+    in_lanes: bool,
+    text: String,
+}
+
+impl Bodies {
+    /// None so far, and none ever if they are not wanted.
+    pub fn new(wanted: bool) -> Bodies {
+        Bodies { wanted, list: Vec::new() }
+    }
+
+    /// Writes a function; its body stays here if it is large.
+    pub fn write_function(&mut self, out: &mut String, f: &Function, s: &Signature<'_>) {
+        // A function of several states does what that of one state does, whatever its lanes.
+        if !self.wanted || f.program.instructions.len() < LARGE {
+            return write_function(out, f, s, false);
+        }
+        let types: Vec<String> = f.arguments.iter().map(|a| s.argument(*a)).collect();
+        let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+        let tuple = |list: String| if list.is_empty() { "()".to_string() } else { format!("({list},)") };
+        let (types, names) = (tuple(types.join(", ")), tuple(names.join(", ")));
+        write_head(out, f, s);
+        let _ = writeln!(
+            out,
+            "::linkwork::__private::dispatch::<{}, {}, _, _>(self, {names})\n}}",
+            self.list.len(),
+            s.scalar.one()
+        );
+        let mut text = String::new();
+        write_body(&mut text, f, s, true);
+        self.list.push(Body {
+            types,
+            names,
+            result: s.shape(f.shape),
+            in_lanes: s.scalar.is_in_lanes(),
+            text,
+        });
+    }
+
+    /// Writes the bodies of the functions of a type of this name.
+    pub fn write(&self, out: &mut String, name: &str, head: &Head) {
+        let Head { generics, arguments, bounds } = head;
+        for (k, body) in self.list.iter().enumerate() {
+            let Body { types, names, result, text, .. } = body;
+            let own =
+                generics.trim().trim_start_matches('<').trim_end_matches('>').trim().trim_end_matches(',');
+            let lanes = if body.in_lanes { "const LANES: usize" } else { "" };
+            let comma = if own.is_empty() || lanes.is_empty() { "" } else { ", " };
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl<{own}{comma}{lanes}> ::linkwork::__private::Body<{k}, {types}> for {name}{arguments} {bounds} {{
+                type Output = {result};
+                #[inline(always)]
+                fn evaluate<Ops: ::linkwork::__private::Arithmetic>(&self, {names}: {types}) -> {result} {{\n{text}}}
+                }}"
+            );
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The arithmetic of generated functions: that of the target they are compiled for, or that of the processor they run on.
+//!
+//! A generated body is written once, generic over [`Arithmetic`]: [`Compiled`] has the instructions of the compilation's
+//! target; large functions may run with more of them ([`dispatch`](dispatch::dispatch)). Everything of a body is inlined, so that it is compiled
+//! with the features of the function that it ends up in.
+
+pub(crate) mod dispatch;
+mod number;
+mod vector;
+
+use crate::lanes::Registers;
+use crate::{Lanes, Real};
+pub use number::{Elementary, Number};
+pub use vector::Vector;
+
+/// The instructions of the compilation's target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compiled;
+
+macro_rules! elementary {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident),+);)+) => {$(
+        $(#[$doc])*
+        #[inline(always)]
+        fn $name<X: Elementary<Self>>($($argument: X),+) -> X {
+            X::$name($($argument),+)
+        }
+    )+};
+}
+
+/// What generated bodies call: operations on numbers (every [`Real`](crate::Real)) and on lanes ([`Vector`]).
+pub trait Arithmetic: Registers {
+    /// `a b + c`, fused where the hardware can.
+    #[inline(always)]
+    fn mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
+        if Self::FUSED { X::fused(a, b, c) } else { a * b + c }
+    }
+
+    /// `a b - c`, fused where the hardware can.
+    #[inline(always)]
+    fn mul_sub<X: Number<Self>>(a: X, b: X, c: X) -> X {
+        if Self::FUSED { X::fused(a, b, -c) } else { a * b - c }
+    }
+
+    /// `c - a b`, fused where the hardware can.
+    #[inline(always)]
+    fn neg_mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
+        if Self::FUSED { X::fused(-a, b, c) } else { c - a * b }
+    }
+
+    /// Numbers as lanes.
+    #[inline(always)]
+    fn lanes<T, const N: usize>(numbers: [T; N]) -> Vector<Self, T, N> {
+        Vector::from(Lanes(numbers))
+    }
+
+    /// The same number in every lane.
+    #[inline(always)]
+    fn splat<T: Copy, const N: usize>(x: T) -> Vector<Self, T, N> {
+        Vector::from(Lanes([x; N]))
+    }
+
+    /// Arguments in lanes.
+    #[inline(always)]
+    fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {
+        Vector::from_lanes(numbers)
+    }
+
+    /// Sine and cosine of an angle, or of one in each lane, rad.
+    #[inline(always)]
+    fn sin_cos<X: Elementary<Self>>(x: X) -> (X, X) {
+        let ([s], [c]) = X::sin_cos_all([x]);
+        (s, c)
+    }
+
+    /// Sines and cosines of several angles, rad. Of numbers it is fastest for a multiple of eight.
+    #[inline(always)]
+    fn sin_cos_all<X: Elementary<Self>, const N: usize>(x: [X; N]) -> ([X; N], [X; N]) {
+        X::sin_cos_all(x)
+    }
+
+    /// Sines and cosines of several angles, evaluated as lanes.
+    #[inline(always)]
+    fn sin_cos_in_lanes<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
+        let (s, c) = Self::sin_cos(Self::lanes(x));
+        (*s.numbers(), *c.numbers())
+    }
+
+    elementary! {
+        /// The square root; NaN for `x < 0`.
+        sqrt(x);
+        /// The sine of `x`, rad.
+        sin(x);
+        /// The cosine of `x`, rad.
+        cos(x);
+        /// The tangent of `x`, rad.
+        tan(x);
+        /// The arc sine, rad; NaN outside [−1, 1].
+        asin(x);
+        /// The arc cosine, rad; NaN outside [−1, 1].
+        acos(x);
+        /// The arc tangent, rad.
+        atan(x);
+        /// The angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
+        atan2(y, x);
+        /// The hyperbolic sine.
+        sinh(x);
+        /// The hyperbolic cosine.
+        cosh(x);
+        /// The hyperbolic tangent.
+        tanh(x);
+        /// The exponential.
+        exp(x);
+        /// The natural logarithm; NaN for `x < 0`.
+        ln(x);
+        /// The power `x` to `y`; NaN for `x < 0` and a `y` that is no integer.
+        powf(x, y);
+        /// The magnitude.
+        abs(x);
+        /// 1 or −1 with the sign of `x`, also for zeros.
+        signum(x);
+    }
+}
+
+impl<A: Registers> Arithmetic for A {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_agree_with_the_standard_library() {
+        type A = Compiled;
+        assert_eq!(A::atan2(1.0_f64, -2.0), 1.0_f64.atan2(-2.0));
+        assert_eq!(A::powf(2.0_f64, 0.5), 2.0_f64.powf(0.5));
+        assert_eq!(A::mul_add(2.0_f64, 3.0, 4.0), 10.0);
+        assert_eq!(A::mul_sub(2.0_f64, 3.0, 4.0), 2.0);
+        assert_eq!(A::neg_mul_add(2.0_f64, 3.0, 4.0), -2.0);
+        assert_eq!(A::signum(-3.0_f64), -1.0);
+    }
+}

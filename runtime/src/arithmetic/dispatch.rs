@@ -1,0 +1,51 @@
+//! Which arithmetic a body runs with.
+//!
+//! Where the target is x86-64 without fused multiplication and addition, large functions are compiled twice: for the target,
+//! and for processors with AVX2 and FMA, which are asked for once. Not so in debug builds, where time of compilation
+//! matters more, and not without the standard library, which asks the processor.
+
+use super::{Arithmetic, Compiled};
+use crate::Real;
+
+/// The body of function number `K` of a mechanism, which takes `Arguments`.
+pub trait Body<const K: usize, Arguments> {
+    /// What it returns.
+    type Output;
+
+    /// The body, always inlined.
+    fn evaluate<A: Arithmetic>(&self, arguments: Arguments) -> Self::Output;
+}
+
+/// Runs a body on numbers of type `T` with the best instructions that there are.
+#[inline(always)]
+pub fn dispatch<const K: usize, T: Real, M: Body<K, Arguments>, Arguments>(
+    mechanism: &M,
+    arguments: Arguments,
+) -> M::Output {
+    #[cfg(all(
+        feature = "std",
+        target_arch = "x86_64",
+        not(all(target_feature = "avx2", target_feature = "fma")),
+        any(test, not(debug_assertions))
+    ))]
+    if crate::lanes::avx2::serves::<T>() && crate::lanes::avx2::is_available() {
+        #[expect(unsafe_code, reason = "calls of functions with target features are")]
+        // SAFETY: the processor has the features.
+        return unsafe { with_avx2(mechanism, arguments) };
+    }
+    mechanism.evaluate::<Compiled>(arguments)
+}
+
+#[cfg(all(
+    feature = "std",
+    target_arch = "x86_64",
+    not(all(target_feature = "avx2", target_feature = "fma")),
+    any(test, not(debug_assertions))
+))]
+#[target_feature(enable = "avx2,fma")]
+fn with_avx2<const K: usize, M: Body<K, Arguments>, Arguments>(
+    mechanism: &M,
+    arguments: Arguments,
+) -> M::Output {
+    mechanism.evaluate::<crate::lanes::avx2::Avx2>(arguments)
+}

@@ -1,0 +1,131 @@
+//! What bodies compute with: numbers and vectors of them.
+
+use super::Vector;
+use crate::Real;
+use crate::lanes::Registers;
+use crate::trigonometry;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number, or one in each lane.
+pub trait Number<A: Registers>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The nearest number to `x`.
+    fn constant(x: f64) -> Self;
+    /// `a b + c`, rounded once.
+    fn fused(a: Self, b: Self, c: Self) -> Self;
+}
+
+impl<A: Registers, T: Real> Number<A> for T {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        nalgebra::convert(x)
+    }
+
+    #[inline(always)]
+    fn fused(a: Self, b: Self, c: Self) -> Self {
+        a.mul_add(b, c)
+    }
+}
+
+impl<A: Registers, T: Real, const N: usize> Number<A> for Vector<A, T, N> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self::splat(nalgebra::convert(x))
+    }
+
+    #[inline(always)]
+    fn fused(a: Self, b: Self, c: Self) -> Self {
+        Self::of(A::fused(a.numbers(), b.numbers(), c.numbers()))
+    }
+}
+
+macro_rules! elementary {
+    ($($name:ident($x:ident $(, $y:ident)?);)+) => {
+        /// A number with elementary functions.
+        pub trait Elementary<A: Registers>: Number<A> {
+            $(
+                #[doc = concat!("`", stringify!($name), "`, lane by lane.")]
+                fn $name($x: Self $(, $y: Self)?) -> Self;
+            )+
+            /// Sines and cosines of several angles.
+            fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]);
+        }
+
+        impl<A: Registers, T: Real> Elementary<A> for T {
+            $(
+                #[inline(always)]
+                fn $name($x: Self $(, $y: Self)?) -> Self {
+                    $x.$name($($y)?)
+                }
+            )+
+
+            #[inline(always)]
+            fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]) {
+                trigonometry::sin_cos_all::<A, T, N>(x)
+            }
+        }
+
+        impl<A: Registers, T: Real, const L: usize> Elementary<A> for Vector<A, T, L> {
+            $(elementary!(@vector $name $x $($y)?);)+
+
+            #[inline(always)]
+            fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]) {
+                #[cfg(feature = "std")]
+                if let Some(done) = crate::lanes::angles::sin_cos_all(x) {
+                    return done;
+                }
+                let (mut s, mut c) = (x, x);
+                for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
+                    let (sines, cosines) = trigonometry::sin_cos_all::<A, T, L>(*x.numbers());
+                    (*s, *c) = (Self::of(sines), Self::of(cosines));
+                }
+                (s, c)
+            }
+        }
+    };
+    (@vector sqrt $x:ident) => {
+        #[inline(always)]
+        fn sqrt($x: Self) -> Self {
+            Self::of(A::root($x.numbers()))
+        }
+    };
+    (@vector abs $x:ident) => {
+        #[inline(always)]
+        fn abs($x: Self) -> Self {
+            Self::of(A::magnitude($x.numbers()))
+        }
+    };
+    (@vector $name:ident $x:ident) => {
+        #[inline(always)]
+        fn $name($x: Self) -> Self {
+            Self::of($x.numbers().map(|x| x.$name()))
+        }
+    };
+    (@vector $name:ident $x:ident $y:ident) => {
+        #[inline(always)]
+        fn $name($x: Self, $y: Self) -> Self {
+            let ($x, $y) = ($x.numbers(), $y.numbers());
+            Self::of(core::array::from_fn(|k| $x[k].$name($y[k])))
+        }
+    };
+}
+
+elementary! {
+    sqrt(x);
+    sin(x);
+    cos(x);
+    tan(x);
+    asin(x);
+    acos(x);
+    atan(x);
+    atan2(y, x);
+    sinh(x);
+    cosh(x);
+    tanh(x);
+    exp(x);
+    ln(x);
+    powf(x, y);
+    abs(x);
+    signum(x);
+}

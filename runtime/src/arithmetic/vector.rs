@@ -1,0 +1,105 @@
+//! Lanes within a generated body.
+
+use crate::lanes::Registers;
+use crate::{Lanes, Real};
+use core::marker::PhantomData;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Lanes that are calculated with by the registers of `A`.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Vector<A, T, const N: usize>(Lanes<T, N>, PhantomData<A>);
+
+impl<A, T, const N: usize> From<Lanes<T, N>> for Vector<A, T, N> {
+    #[inline(always)]
+    fn from(lanes: Lanes<T, N>) -> Self {
+        Self(lanes, PhantomData)
+    }
+}
+
+impl<A, T, const N: usize> Vector<A, T, N> {
+    /// Lanes as vectors.
+    #[inline(always)]
+    pub fn from_lanes<const R: usize>(lanes: &[Lanes<T, N>; R]) -> &[Self; R] {
+        #[expect(unsafe_code, reason = "no safe function converts references to transparent types")]
+        // SAFETY: a vector is transparent over its lanes, and arrays of the two have the same layout.
+        unsafe {
+            &*core::ptr::from_ref(lanes).cast()
+        }
+    }
+}
+
+impl<A, T: Copy, const N: usize> Vector<A, T, N> {
+    #[inline(always)]
+    pub(crate) fn of(numbers: [T; N]) -> Self {
+        Self(Lanes(numbers), PhantomData)
+    }
+
+    #[inline(always)]
+    pub(crate) fn splat(x: T) -> Self {
+        Self::of([x; N])
+    }
+
+    #[inline(always)]
+    pub(crate) fn numbers(&self) -> &[T; N] {
+        &self.0.0
+    }
+
+    /// As a result.
+    #[inline(always)]
+    pub fn lanes(self) -> Lanes<T, N> {
+        self.0
+    }
+
+    /// One lane. Does not compile if there are fewer.
+    #[inline(always)]
+    pub fn lane<const K: usize>(self) -> T {
+        const { assert!(K < N, "there are not so many lanes") };
+        self.0.0[K]
+    }
+
+    /// The first `M` lanes. Does not compile if there are fewer.
+    #[inline(always)]
+    pub fn first<const M: usize>(self) -> Vector<A, T, M> {
+        Vector::from(self.0.first())
+    }
+}
+
+impl<A, T: Real, const N: usize> Vector<A, T, N> {
+    /// The sum of all lanes, in the order of [`Lanes::sum`].
+    #[inline(always)]
+    pub fn sum(self) -> T {
+        self.0.sum()
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $function:ident;)+) => {$(
+        impl<A: Registers, T: Real, const N: usize> $operator for Vector<A, T, N> {
+            type Output = Self;
+
+            #[cfg_attr(debug_assertions, inline)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            fn $function(self, other: Self) -> Self {
+                Self::of(A::$function(self.numbers(), other.numbers()))
+            }
+        }
+    )+};
+}
+
+operators! {
+    Add add;
+    Sub sub;
+    Mul mul;
+    Div div;
+}
+
+impl<A: Registers, T: Real, const N: usize> Neg for Vector<A, T, N> {
+    type Output = Self;
+
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn neg(self) -> Self {
+        Self::of(A::neg(self.numbers()))
+    }
+}

@@ -1,0 +1,236 @@
+//! The registers and the fused operations of processors with AVX2 and FMA, whatever the compilation's target.
+#![expect(unsafe_code, reason = "instructions that the target does not promise")]
+
+use super::registers::Registers;
+use crate::Real;
+use crate::arithmetic::Compiled;
+use crate::trigonometry::{self, LARGEST, same};
+use core::any::TypeId;
+use core::arch::x86_64::*;
+use core::mem::transmute;
+
+/// Bodies with these instructions run within a function that has the target features, where the processor has them. The
+/// type is known to this crate alone, so that nobody else can run one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx2;
+
+/// The processor has the instructions.
+#[inline(always)]
+pub(crate) fn is_available() -> bool {
+    std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
+}
+
+/// Numbers of this type profit.
+#[inline(always)]
+pub(crate) fn serves<T: Real>() -> bool {
+    TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
+}
+
+/// Returns the result if the lanes fill so many registers.
+macro_rules! registers {
+    ([$number:ident; $lanes:literal] as [$register:ident; $count:literal]: ($($a:ident)+) => $f:expr) => {
+        if N == $lanes
+            && let ($(Some($a),)+) = ($(same::<_, [$number; $lanes]>($a),)+)
+        {
+            // SAFETY: numbers and registers have the same bits; the processor has the instructions.
+            let result: [$number; $lanes] = unsafe {
+                $(let $a: [$register; $count] = transmute(*$a);)+
+                let mut result: [$register; $count] = transmute([0.0 as $number; $lanes]);
+                for k in 0..$count {
+                    $(let $a = $a[k];)+
+                    result[k] = $f;
+                }
+                transmute(result)
+            };
+            if let Some(result) = same(&result) {
+                return *result;
+            }
+        }
+    };
+}
+
+/// A list of operations with the registers that they use, for another macro.
+macro_rules! list {
+    ($then:ident) => {
+        $then! {
+            add(a b) = _mm256_add_pd(a, b), _mm256_add_ps(a, b);
+            sub(a b) = _mm256_sub_pd(a, b), _mm256_sub_ps(a, b);
+            mul(a b) = _mm256_mul_pd(a, b), _mm256_mul_ps(a, b);
+            div(a b) = _mm256_div_pd(a, b), _mm256_div_ps(a, b);
+            root(a) = _mm256_sqrt_pd(a), _mm256_sqrt_ps(a);
+            neg(a) = _mm256_xor_pd(a, _mm256_set1_pd(-0.0)), _mm256_xor_ps(a, _mm256_set1_ps(-0.0));
+            magnitude(a) =
+                _mm256_andnot_pd(_mm256_set1_pd(-0.0), a), _mm256_andnot_ps(_mm256_set1_ps(-0.0), a);
+        }
+    };
+}
+
+/// Functions with the target features: each is optimised by itself before it is inlined into a body of many operations.
+mod with_features {
+    use super::*;
+
+    macro_rules! functions {
+        ($($name:ident($($a:ident)+) = $doubles:expr, $singles:expr;)+) => {$(
+            #[inline]
+            #[target_feature(enable = "avx2,fma")]
+            pub(super) fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
+                registers!([f64; 4] as [__m256d; 1]: ($($a)+) => $doubles);
+                registers!([f64; 8] as [__m256d; 2]: ($($a)+) => $doubles);
+                registers!([f32; 8] as [__m256; 1]: ($($a)+) => $singles);
+                registers!([f32; 16] as [__m256; 2]: ($($a)+) => $singles);
+                Compiled::$name($($a),+)
+            }
+        )+};
+    }
+    list!(functions);
+
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N] {
+        registers!([f64; 2] as [__m128d; 1]: (a b c) => _mm_fmadd_pd(a, b, c));
+        registers!([f64; 4] as [__m256d; 1]: (a b c) => _mm256_fmadd_pd(a, b, c));
+        registers!([f64; 8] as [__m256d; 2]: (a b c) => _mm256_fmadd_pd(a, b, c));
+        registers!([f32; 4] as [__m128; 1]: (a b c) => _mm_fmadd_ps(a, b, c));
+        registers!([f32; 8] as [__m256; 1]: (a b c) => _mm256_fmadd_ps(a, b, c));
+        registers!([f32; 16] as [__m256; 2]: (a b c) => _mm256_fmadd_ps(a, b, c));
+        let mut result = *c;
+        for (k, result) in result.iter_mut().enumerate() {
+            *result = a[k].mul_add(b[k], *result);
+        }
+        result
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+        macro_rules! case {
+            ($lanes:literal in $count:literal) => {
+                if L == $lanes
+                    && let (Some(s), Some(c), Some(shifted)) = (
+                        same::<_, [f64; $lanes]>(s),
+                        same::<_, [f64; $lanes]>(c),
+                        same::<_, [f64; $lanes]>(shifted),
+                    )
+                {
+                    // SAFETY: numbers and registers have the same bits; the processor has the instructions.
+                    let result: [[f64; $lanes]; 2] = unsafe {
+                        let (s, c): ([__m256i; $count], [__m256i; $count]) = (transmute(*s), transmute(*c));
+                        let shifted: [__m256i; $count] = transmute(*shifted);
+                        let (mut sines, mut cosines) = (s, c);
+                        for k in 0..$count {
+                            [sines[k], cosines[k]] = turned_register(s[k], c[k], shifted[k]);
+                        }
+                        [transmute(sines), transmute(cosines)]
+                    };
+                    if let Some(result) = same(&result) {
+                        return *result;
+                    }
+                }
+            };
+        }
+        case!(4 in 1);
+        case!(8 in 2);
+        Compiled::turned(s, c, shifted)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
+        crate::lanes::angles::of_small::<Avx2, L>(x)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+        macro_rules! case {
+            ($lanes:literal in $count:literal) => {
+                if L == $lanes
+                    && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
+                {
+                    // SAFETY: numbers and registers have the same bits; the processor has the instructions.
+                    return unsafe {
+                        let mut small = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+                        for x in x {
+                            let x: [__m256d; $count] = transmute(*x);
+                            for x in x {
+                                let magnitude = _mm256_andnot_pd(_mm256_set1_pd(-0.0), x);
+                                let less = _mm256_cmp_pd::<_CMP_LE_OQ>(magnitude, _mm256_set1_pd(LARGEST));
+                                small = _mm256_and_pd(small, less);
+                            }
+                        }
+                        _mm256_movemask_pd(small) == 0b1111
+                    };
+                }
+            };
+        }
+        case!(4 in 1);
+        case!(8 in 2);
+        Compiled::are_small(x)
+    }
+}
+
+macro_rules! methods {
+    ($($name:ident($($a:ident)+) = $doubles:expr, $singles:expr;)+) => {$(
+        #[inline(always)]
+        fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
+            // SAFETY: the processor has the instructions.
+            unsafe { with_features::$name($($a),+) }
+        }
+    )+};
+}
+
+impl Registers for Avx2 {
+    const FUSED: bool = true;
+
+    list!(methods);
+
+    #[inline(always)]
+    fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N] {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::fused(a, b, c) }
+    }
+
+    #[inline(always)]
+    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::turned(s, c, shifted) }
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::sin_cos_of_small(x) }
+    }
+
+    #[inline(always)]
+    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::are_small(x) }
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+        // SAFETY: the processor has the instructions.
+        unsafe { sin_cos_of_large(x) }
+    }
+}
+
+#[cold]
+#[inline(never)]
+#[target_feature(enable = "avx2,fma")]
+fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+    trigonometry::with_large::<Avx2, N>(x)
+}
+
+/// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn turned_register(s: __m256i, c: __m256i, quadrant: __m256i) -> [__m256i; 2] {
+    let (one, sign) = (_mm256_set1_epi64x(1), _mm256_set1_epi64x(i64::MIN));
+    let odd = _mm256_sub_epi64(_mm256_setzero_si256(), _mm256_and_si256(quadrant, one));
+    let exchange = _mm256_and_si256(_mm256_xor_si256(s, c), odd);
+    let bit = |quadrant| _mm256_and_si256(_mm256_slli_epi64::<62>(quadrant), sign);
+    let (sine, cosine) = (_mm256_xor_si256(s, exchange), _mm256_xor_si256(c, exchange));
+    let next = _mm256_add_epi64(quadrant, one);
+    [_mm256_xor_si256(sine, bit(quadrant)), _mm256_xor_si256(cosine, bit(next))]
+}

@@ -1,0 +1,181 @@
+//! Arithmetic of lanes in vector registers.
+//!
+//! The compiler's own vectorisation finds isolated loops, but not the vectors of a long straight-line program. `wide`,
+//! which nalgebra brings along with the standard library, names the registers of the compilation's target; without it every
+//! operation is a loop.
+
+use crate::Real;
+use crate::arithmetic::Compiled;
+use crate::trigonometry;
+#[cfg(feature = "std")]
+use crate::trigonometry::{LARGEST, same};
+
+/// The instructions that there are: for numbers one after another, and for those of several lanes at once.
+pub trait Registers: Copy + 'static {
+    /// One instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
+    const FUSED: bool;
+
+    /// `a + b`, lane by lane.
+    fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
+    /// `a - b`, lane by lane.
+    fn sub<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
+    /// `a b`, lane by lane.
+    fn mul<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
+    /// `a / b`, lane by lane.
+    fn div<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
+    /// `-a`, lane by lane.
+    fn neg<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
+    /// The magnitude, lane by lane.
+    fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
+    /// The square root, lane by lane.
+    fn root<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
+    /// `a b + c`, rounded once, lane by lane.
+    fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N];
+
+    /// Sines and cosines from those of the reduced angles: the last bits of `shifted` are the quadrants.
+    #[cfg(feature = "std")]
+    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
+    /// Sines and cosines of angles within the range of the reduction.
+    #[cfg(feature = "std")]
+    fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2];
+    /// All angles are within the range of the reduction.
+    #[cfg(feature = "std")]
+    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
+    /// Sines and cosines of angles that are not all within the range of the reduction.
+    fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]);
+}
+
+/// Returns the result if the lanes fill this register.
+#[cfg(not(feature = "std"))]
+macro_rules! register {
+    ($($anything:tt)*) => {};
+}
+#[cfg(feature = "std")]
+macro_rules! register {
+    ($number:ident $lanes:literal $register:ident: ($($a:ident)+) => $f:expr) => {
+        if N == $lanes
+            && size_of::<T>() == size_of::<$number>()
+            && let ($(Some($a),)+) = ($(same::<_, [$number; $lanes]>($a),)+)
+        {
+            $(let $a = wide::$register::new(*$a);)+
+            let result = $f.to_array();
+            if let Some(result) = same(&result) {
+                return *result;
+            }
+        }
+    };
+}
+
+macro_rules! operations {
+    ($($name:ident($($a:ident)+) = $f:expr;)+) => {$(
+        #[inline]
+        fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
+            register!(f64 2 f64x2: ($($a)+) => $f);
+            register!(f64 4 f64x4: ($($a)+) => $f);
+            register!(f64 8 f64x8: ($($a)+) => $f);
+            register!(f32 4 f32x4: ($($a)+) => $f);
+            register!(f32 8 f32x8: ($($a)+) => $f);
+            register!(f32 16 f32x16: ($($a)+) => $f);
+            // Plain loops are unrolled where functions of arrays are not always inlined.
+            let mut result = [T::zero(); N];
+            for (k, result) in result.iter_mut().enumerate() {
+                $(let $a = $a[k];)+
+                *result = $f;
+            }
+            result
+        }
+    )+};
+}
+
+impl Registers for Compiled {
+    const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+
+    operations! {
+        add(a b) = a + b;
+        sub(a b) = a - b;
+        mul(a b) = a * b;
+        div(a b) = a / b;
+        neg(a) = -a;
+        root(a) = a.sqrt();
+        fused(a b c) = a.mul_add(b, c);
+    }
+
+    #[inline]
+    fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N] {
+        register!(f64 2 f64x2: (a) => a.abs());
+        register!(f64 4 f64x4: (a) => a.abs());
+        register!(f64 8 f64x8: (a) => a.abs());
+        a.map(nalgebra::ComplexField::abs)
+    }
+
+    #[cfg(feature = "std")]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+        macro_rules! case {
+            ($lanes:literal $register:ident $bits:ident) => {
+                if L == $lanes
+                    && let (Some(s), Some(c), Some(shifted)) = (same(s), same(c), same(shifted))
+                {
+                    use wide::{$bits, $register};
+                    let [s, c, quadrant] = [s, c, shifted].map(|x| $register::new(*x).to_bits());
+                    let (one, sign) = ($bits::splat(1), $bits::splat(1 << 63));
+                    let exchange = (s ^ c) & ($bits::splat(0) - (quadrant & one));
+                    let s = s ^ exchange ^ ((quadrant << 62_u32) & sign);
+                    let c = c ^ exchange ^ (((quadrant + one) << 62_u32) & sign);
+                    let result: [[f64; $lanes]; 2] = [s, c].map(|x| $register::from_bits(x).to_array());
+                    if let Some(result) = same(&result) {
+                        return *result;
+                    }
+                }
+            };
+        }
+        case!(2 f64x2 u64x2);
+        case!(4 f64x4 u64x4);
+        case!(8 f64x8 u64x8);
+        let turned = core::array::from_fn::<_, L, _>(|k| trigonometry::turned(s[k], c[k], shifted[k]));
+        [turned.map(|(s, _)| s), turned.map(|(_, c)| c)]
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
+        super::angles::of_small::<Self, L>(x)
+    }
+
+    #[cfg(feature = "std")]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+        macro_rules! case {
+            ($lanes:literal $register:ident) => {
+                if L == $lanes
+                    && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
+                {
+                    use wide::$register;
+                    let mut small = $register::new([f64::from_bits(u64::MAX); $lanes]);
+                    for x in x {
+                        small &= $register::new(*x).abs().simd_le($register::splat(LARGEST));
+                    }
+                    return small.all();
+                }
+            };
+        }
+        case!(2 f64x2);
+        case!(4 f64x4);
+        case!(8 f64x8);
+        x.iter().flatten().all(|x| x.abs() <= LARGEST)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+        trigonometry::with_large::<Self, N>(x)
+    }
+}
+
+/// The remainder, for which there are no instructions.
+#[inline]
+pub(super) fn rem<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
+    core::array::from_fn(|k| a[k] % b[k])
+}
