@@ -203,7 +203,7 @@ fn operation_counts_in_lanes() {
         })
     };
     // Derivatives of inverse dynamics, and the inverse of the mass matrix.
-    let expected = [[(1380, 897), (791, 498)], [(9244, 5829), (6297, 3667)]];
+    let expected = [[(1377, 894), (789, 493)], [(9244, 5829), (6297, 3667)]];
     assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
 }
 

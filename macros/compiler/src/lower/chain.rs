@@ -98,7 +98,7 @@ impl Program {
     }
 
     /// True for a product whose only use is here.
-    fn lone_product(&self, o: Operand) -> bool {
+    pub(super) fn lone_product(&self, o: Operand) -> bool {
         matches!(o, Operand::Value(k) if matches!(self.instructions[k], Op::Mul(..)) && self.uses[k] == 1)
     }
 

@@ -13,6 +13,12 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
+    /// For a program with the constants and inputs of another.
+    pub(super) fn of_inputs(program: &Program) -> Lanes {
+        let gathers = program.gathers.iter().map(Vec::len).collect();
+        Lanes { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
+    }
+
     /// The operand that a node is without an instruction of its own.
     pub(super) fn leaf(
         &mut self,
@@ -61,7 +67,8 @@ impl Lanes {
         width
     }
 
-    fn width(&self, o: Operand) -> usize {
+    /// Lanes of an operand.
+    pub(super) fn width(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
             Operand::Value(k) => self.widths[k],

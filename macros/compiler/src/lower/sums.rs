@@ -3,15 +3,20 @@
 //! again (the greedy elimination of common subexpressions of linear systems, as for digital filters: Hartley 1996).
 //! What comes of it is kept if it takes fewer instructions.
 
+use super::lanes::Lanes;
 use super::{Op, Operand, Program};
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest program that is looked at, in instructions.
 const MOST_INSTRUCTIONS: usize = 3000;
+/// Most times that sums are shared again where that has helped.
+const ROUNDS: usize = 3;
 /// Longest sum that is written out.
 const MOST_TERMS: usize = 8;
-/// Up to how many terms a sum is written out in another: each is tried.
-const SHORT: [usize; 4] = [1, 2, 3, 5];
+/// Up to how many terms a sum is written out in another, and whether also if products would not fuse into it any more:
+/// each is tried.
+const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), (4, false)];
 
 /// What is summed: the number 1, a value that is no sum, or a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -27,6 +32,8 @@ type Terms = Vec<(Key, f64)>;
 /// The sums of a program.
 struct Sums {
     atoms: Vec<Operand>,
+    /// By atom: a product that is used once.
+    lone_products: Vec<bool>,
     sums: Vec<Terms>,
     /// By instruction: the sum that it ends.
     ends: Vec<Option<usize>>,
@@ -39,20 +46,33 @@ impl Program {
         if self.instructions.len() > MOST_INSTRUCTIONS {
             return self;
         }
-        let plain = self.unfused();
-        for short in SHORT {
-            let mut sums = Sums::of(&plain);
-            sums.write_out(short);
-            sums.share();
-            let mut program = plain.with_sums(&sums);
-            program.counts = program.count();
-            let program = program.fused();
-            let cost = |p: &Program| (p.instructions.len(), p.counts.total());
-            if cost(&program) < cost(&self) && program.counts.total() <= self.counts.total() {
-                self = Program { in_lanes: self.in_lanes, ..program };
+        for _ in 0..ROUNDS {
+            if !self.share_sums() {
+                break;
             }
         }
         self
+    }
+
+    /// Shares sums in the way that takes the fewest instructions; false if all take more than before.
+    fn share_sums(&mut self) -> bool {
+        let plain = self.unfused();
+        let mut better = false;
+        for (short, products) in SHORT {
+            let mut sums = Sums::of(&plain);
+            sums.write_out(short, products);
+            sums.share();
+            // Sums are as cheap with the opposite sign.
+            let mut program = plain.with_sums(&sums).with_cheap_signs();
+            program.counts = program.count();
+            let program = program.fused();
+            let cost = |p: &Program| (p.instructions.len(), p.counts.total());
+            if cost(&program) < cost(self) && program.counts.total() <= self.counts.total() {
+                *self = Program { in_lanes: self.in_lanes.take(), ..program };
+                better = true;
+            }
+        }
+        better
     }
 
     /// The same program with products and sums apart.
@@ -89,6 +109,7 @@ impl Program {
         let mut out = Writer {
             sums,
             instructions: Vec::new(),
+            lanes: Lanes::of_inputs(self),
             values: Vec::new(),
             written: vec![None; sums.sums.len()],
         };
@@ -97,8 +118,12 @@ impl Program {
                 Some(sum) => out.sum(sum),
                 None => {
                     let values = &out.values;
-                    let op = op.mapped(|o| placed(o, values));
-                    out.push(op)
+                    // What had lanes may have lost them with the terms that cancel.
+                    match op.mapped(|o| placed(o, values)) {
+                        Op::Lane(_, a) if out.lanes.width(a) == 1 => a,
+                        Op::Sum(n, a) => out.push(out.lanes.sum(n, a)),
+                        op => out.push(op),
+                    }
                 }
             };
             out.values.push(value);
@@ -119,7 +144,8 @@ impl Program {
 impl Sums {
     fn of(program: &Program) -> Sums {
         let n = program.instructions.len();
-        let mut sums = Sums { atoms: Vec::new(), sums: Vec::new(), ends: vec![None; n] };
+        let mut sums =
+            Sums { atoms: Vec::new(), lone_products: Vec::new(), sums: Vec::new(), ends: vec![None; n] };
         let mut known: BTreeMap<(u8, u64), usize> = BTreeMap::new();
         for (k, op) in program.instructions.iter().enumerate() {
             let signed = match *op {
@@ -151,6 +177,8 @@ impl Sums {
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
         }
+        let lone = |o: &Operand| program.lone_product(*o);
+        sums.lone_products = sums.atoms.iter().map(lone).collect();
         sums
     }
 
@@ -170,18 +198,22 @@ impl Sums {
     }
 
     /// Writes sums of up to so many terms out where they are terms of others.
-    fn write_out(&mut self, short: usize) {
+    fn write_out(&mut self, short: usize, products: bool) {
+        let fuses = |key: &Key| matches!(key, Key::Atom(a) if self.lone_products[*a]);
+        let keeps: Vec<bool> =
+            self.sums.iter().map(|terms| !products && terms.iter().any(|(key, _)| fuses(key))).collect();
         for k in 0..self.sums.len() {
             let mut terms = Terms::new();
             for (key, c) in &self.sums[k] {
                 match *key {
-                    Key::Sum(inner) if self.sums[inner].len() <= short => {
+                    Key::Sum(inner) if self.sums[inner].len() <= short && !keeps[inner] => {
                         self.sums[inner].iter().for_each(|(key, d)| add(&mut terms, *key, c * d));
                     }
                     key => add(&mut terms, key, *c),
                 }
             }
-            if terms.len() <= MOST_TERMS && !terms.is_empty() && terms.iter().any(|(_, c)| *c > 0.0) {
+            let is_value = |(key, c): &(Key, f64)| *key != Key::One && *c > 0.0;
+            if terms.len() <= MOST_TERMS && terms.iter().any(is_value) {
                 self.sums[k] = terms;
             }
         }
@@ -189,42 +221,65 @@ impl Sums {
 
     /// Makes sums of the pairs of terms that are shared most.
     fn share(&mut self) {
-        let mut pairs: BTreeMap<Pair, Vec<usize>> = BTreeMap::new();
+        let mut pairs = Pairs::default();
         for (k, terms) in self.sums.iter().enumerate() {
-            for pair in pairs_of(terms) {
-                pairs.entry(pair).or_default().push(k);
-            }
+            pairs_of(terms).for_each(|pair| pairs.add(pair, k));
         }
-        // Pairs once shared, so that what is new is looked for among what it can be in.
-        let mut shared: Vec<Pair> =
-            pairs.iter().filter(|(_, list)| list.len() > 1).map(|(p, _)| *p).collect();
-        shared.sort_unstable();
-        while let Some(at) = most_shared(&shared, &pairs) {
-            let pair = shared[at];
-            let list = pairs.remove(&pair).unwrap_or_default();
-            shared.swap_remove(at);
+        while let Some((pair, list)) = pairs.take_most_shared() {
             let new = Key::Sum(self.sums.len());
             self.sums.push(pair.terms());
             for k in list {
                 let terms = &mut self.sums[k];
-                for old in pairs_of(terms) {
-                    if let Some(list) = pairs.get_mut(&old) {
-                        list.retain(|other| *other != k);
-                    }
-                }
-                let Some(at) = terms.iter().position(|(key, _)| *key == pair.first) else { continue };
-                let c = terms[at].1;
-                terms.retain(|(key, _)| *key != pair.first && *key != pair.second);
+                let Some(c) = terms.iter().find(|(key, _)| *key == pair.first).map(|(_, c)| *c) else {
+                    continue;
+                };
+                let gone = |key: Key| key == pair.first || key == pair.second;
+                pairs_of(terms).filter(|p| gone(p.first) || gone(p.second)).for_each(|p| pairs.remove(p, k));
+                terms.retain(|(key, _)| !gone(*key));
                 terms.push((new, c));
-                for next in pairs_of(terms) {
-                    let list = pairs.entry(next).or_default();
-                    list.push(k);
-                    if list.len() == 2 && !shared.contains(&next) {
-                        shared.push(next);
-                    }
-                }
+                pairs_of(terms).filter(|p| p.first == new || p.second == new).for_each(|p| pairs.add(p, k));
             }
         }
+    }
+}
+
+/// Which sums have which pairs of terms.
+#[derive(Default)]
+struct Pairs {
+    lists: BTreeMap<Pair, Vec<usize>>,
+    /// Those of several sums, by how many.
+    shared: BTreeSet<(usize, Reverse<Pair>)>,
+}
+
+impl Pairs {
+    fn add(&mut self, pair: Pair, sum: usize) {
+        let list = self.lists.entry(pair).or_default();
+        list.push(sum);
+        let n = list.len();
+        self.count(pair, n - 1, n);
+    }
+
+    fn remove(&mut self, pair: Pair, sum: usize) {
+        let Some(list) = self.lists.get_mut(&pair) else { return };
+        let before = list.len();
+        list.retain(|other| *other != sum);
+        let n = list.len();
+        self.count(pair, before, n);
+    }
+
+    fn count(&mut self, pair: Pair, before: usize, now: usize) {
+        if before > 1 {
+            self.shared.remove(&(before, Reverse(pair)));
+        }
+        if now > 1 {
+            self.shared.insert((now, Reverse(pair)));
+        }
+    }
+
+    /// The pair that most sums share, of equals the first in order, with those; none if no two share one.
+    fn take_most_shared(&mut self) -> Option<(Pair, Vec<usize>)> {
+        let (_, Reverse(pair)) = self.shared.pop_last()?;
+        Some((pair, self.lists.remove(&pair)?))
     }
 }
 
@@ -242,23 +297,13 @@ impl Pair {
     }
 }
 
-fn pairs_of(terms: &Terms) -> Vec<Pair> {
-    let mut pairs = Vec::new();
-    for (i, a) in terms.iter().enumerate() {
-        for b in &terms[i + 1..] {
-            // The number comes second: a sum begins with a value.
-            let (a, b) = if a.0 == Key::One || (b.0 != Key::One && b.0 < a.0) { (b, a) } else { (a, b) };
-            pairs.push(Pair { first: a.0, second: b.0, ratio: (b.1 / a.1).to_bits() });
-        }
-    }
-    pairs
-}
-
-/// Where the pair is that most sums share, of equals the first in order; none if no two do.
-fn most_shared(shared: &[Pair], pairs: &BTreeMap<Pair, Vec<usize>>) -> Option<usize> {
-    let count = |pair: &Pair| pairs.get(pair).map_or(0, Vec::len);
-    let all = shared.iter().enumerate().filter(|(_, pair)| count(pair) > 1);
-    all.max_by_key(|(_, pair)| (count(pair), std::cmp::Reverse(**pair))).map(|(at, _)| at)
+fn pairs_of(terms: &Terms) -> impl Iterator<Item = Pair> {
+    let all = terms.iter().enumerate().flat_map(|(i, a)| terms[i + 1..].iter().map(move |b| (a, b)));
+    all.map(|(a, b)| {
+        // The number comes second: a sum begins with a value.
+        let (a, b) = if a.0 == Key::One || (b.0 != Key::One && b.0 < a.0) { (b, a) } else { (a, b) };
+        Pair { first: a.0, second: b.0, ratio: (b.1 / a.1).to_bits() }
+    })
 }
 
 fn add(terms: &mut Terms, key: Key, c: f64) {
@@ -273,6 +318,7 @@ fn add(terms: &mut Terms, key: Key, c: f64) {
 struct Writer<'a> {
     sums: &'a Sums,
     instructions: Vec<Op>,
+    lanes: Lanes,
     /// By instruction of the first program.
     values: Vec<Operand>,
     /// By sum.
@@ -281,6 +327,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn push(&mut self, op: Op) -> Operand {
+        self.lanes.push(&op);
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
