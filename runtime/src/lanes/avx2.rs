@@ -114,13 +114,16 @@ mod with_features {
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     let result: [[f64; $lanes]; 2] = unsafe {
-                        let (s, c): ([__m256i; $count], [__m256i; $count]) = (transmute(*s), transmute(*c));
+                        let s: [__m256i; $count] = transmute(*s);
+                        let c: [__m256i; $count] = transmute(*c);
                         let shifted: [__m256i; $count] = transmute(*shifted);
                         let (mut sines, mut cosines) = (s, c);
                         for k in 0..$count {
                             [sines[k], cosines[k]] = turned_register(s[k], c[k], shifted[k]);
                         }
-                        [transmute(sines), transmute(cosines)]
+                        let sines: [f64; $lanes] = transmute(sines);
+                        let cosines: [f64; $lanes] = transmute(cosines);
+                        [sines, cosines]
                     };
                     if let Some(result) = same(&result) {
                         return *result;
