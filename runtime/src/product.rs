@@ -9,6 +9,9 @@ use nalgebra::SMatrix;
 /// How many numbers of a column are read together.
 const WIDTH: usize = 8;
 
+/// Two columns are multiplied at once only where their sums have registers enough.
+const IN_PAIRS: bool = cfg!(target_feature = "avx512f");
+
 /// A column in `B` registers, the last filled up.
 type Column<T, const B: usize> = [Lanes<T, WIDTH>; B];
 
@@ -38,13 +41,15 @@ impl<T: Real, const B: usize, const N: usize> Columns<T, B, N> {
     ) {
         for (first, end, rows) in columns {
             let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
+            let paired = if IN_PAIRS { some.len() } else { 0 };
+            let (some, single) = some.split_at_mut(paired);
             let (pairs, rest) = some.as_chunks_mut::<2>();
             for [x, y] in pairs {
                 let [x_sums, y_sums] = self.sums([x, y], rows);
                 unpack(&x_sums, x);
                 unpack(&y_sums, y);
             }
-            for x in rest {
+            for x in rest.iter_mut().chain(single) {
                 let [sums] = self.sums([x], rows);
                 unpack(&sums, x);
             }
