@@ -27,7 +27,7 @@ macro_rules! elementary {
     )+};
 }
 
-/// What generated bodies call: operations on numbers (every [`Real`](crate::Real)) and on lanes ([`Vector`]).
+/// What generated bodies call: operations on numbers (every [`Real`](crate::Real)) and on lanes (`Vector`).
 pub trait Arithmetic: Registers {
     /// `a b + c`, fused where the hardware can.
     #[inline(always)]
