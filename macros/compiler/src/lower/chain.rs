@@ -1,8 +1,12 @@
 //! Sums put in the order in which their products fuse. A sum of two products is a product and a fused one; where it is
 //! added to something else by an addition of its own, as in `a + (b c + d e)`, beginning with that saves an instruction:
-//! `(a + b c) + d e`. The numbers of multiplications and additions stay the same.
+//! `(a + b c) + d e`. The numbers of multiplications and additions stay the same. Where `a` is known too late, the sum
+//! would have to wait for it: then it stays as it is.
 
 use super::{Op, Operand, Program};
+
+/// Cycles of an addition or a multiplication, or of both fused.
+const LATENCY: u32 = 4;
 
 /// A term of a sum.
 #[derive(Clone, Copy)]
@@ -22,15 +26,61 @@ impl Program {
     pub(super) fn chained(mut self) -> Program {
         // Rewritten additions stand where their sum is used, since they need all that it does.
         let mut late = vec![false; self.instructions.len()];
+        let mut ready: Vec<u32> = Vec::with_capacity(self.instructions.len());
         for k in 0..self.instructions.len() {
-            let Some(sum) = self.sum_to_chain(k) else { continue };
-            let Some(ops) = sum.chain() else { continue };
+            ready.push(self.ready(k, &ready));
+            let Some((sum, ops)) = self.sum_to_chain(k).and_then(|sum| sum.chain().map(|ops| (sum, ops)))
+            else {
+                continue;
+            };
+            let time = self.chain_ready(&sum, &ready);
+            if time > ready[k] {
+                continue;
+            }
+            ready[k] = time;
             for (at, op) in sum.additions.iter().zip(ops) {
                 self.instructions[*at] = op;
                 late[*at] = *at != k;
             }
         }
         self.sorted(&late)
+    }
+
+    /// When the result of instruction `k` is there at the earliest, in cycles, if products fuse.
+    fn ready(&self, k: usize, ready: &[u32]) -> u32 {
+        let op = &self.instructions[k];
+        if let Some(terms) = self.terms(k) {
+            let [a, b] = terms.map(|t| self.term_ready(t.operand, ready));
+            return match terms.map(|t| self.lone_product(t.operand)) {
+                [true, true] => a.min(b).saturating_add(LATENCY).max(a.max(b)) + LATENCY,
+                _ => a.max(b) + LATENCY,
+            };
+        }
+        let mut start = 0;
+        op.operands(|o| start = start.max(value_ready(o, ready)));
+        start
+            + match op {
+                Op::Lane(..) => 1,
+                Op::Div(..) | Op::Sum(..) => 3 * LATENCY,
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 10 * LATENCY,
+                _ => LATENCY,
+            }
+    }
+
+    /// When a term can be added: a product that fuses, as soon as its factors are there.
+    fn term_ready(&self, o: Operand, ready: &[u32]) -> u32 {
+        let mut start = value_ready(o, ready);
+        if let (true, Operand::Value(k)) = (self.lone_product(o), o) {
+            start = 0;
+            self.instructions[k].operands(|o| start = start.max(value_ready(o, ready)));
+        }
+        start
+    }
+
+    /// When the last of a chain's additions is done.
+    fn chain_ready(&self, sum: &Sum, ready: &[u32]) -> u32 {
+        let times = sum.terms.iter().map(|t| self.term_ready(t.operand, ready));
+        times.reduce(|sum, term| sum.max(term) + LATENCY).unwrap_or(0)
     }
 
     /// The sum that ends with instruction `k`, if another order of its terms saves an instruction.
@@ -154,6 +204,13 @@ impl Sum {
 fn number(o: Operand) -> usize {
     match o {
         Operand::Value(k) => k,
+        _ => 0,
+    }
+}
+
+fn value_ready(o: Operand, ready: &[u32]) -> u32 {
+    match o {
+        Operand::Value(k) => ready.get(k).copied().unwrap_or(0),
         _ => 0,
     }
 }
