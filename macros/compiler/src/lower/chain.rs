@@ -112,7 +112,7 @@ impl Program {
         match products {
             [true, true] => {
                 // The earlier one is there first.
-                if number(terms[0].operand) > number(terms[1].operand) {
+                if terms[0].operand.number() > terms[1].operand.number() {
                     terms.swap(0, 1);
                 }
                 sum.terms.extend([terms[1], terms[0]]);
@@ -198,13 +198,6 @@ impl Sum {
             sum = Term { operand: Operand::Value(*at), negative: sum.negative && term.negative };
         }
         (!sum.negative).then_some(ops)
-    }
-}
-
-fn number(o: Operand) -> usize {
-    match o {
-        Operand::Value(k) => k,
-        _ => 0,
     }
 }
 

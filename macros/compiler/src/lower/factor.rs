@@ -27,16 +27,16 @@ impl Program {
             let value = match sum.and_then(|terms| grouped(&terms)) {
                 Some(groups) => {
                     changed = true;
-                    out.add_groups(&groups, &|o| renumbered(o, &values))
+                    out.add_groups(&groups, &|o| o.among(&values))
                 }
-                None => out.push(op.mapped(|o| renumbered(o, &values))),
+                None => out.push(op.mapped(|o| o.among(&values))),
             };
             values.push(value);
         }
         if !changed {
             return self;
         }
-        out.outputs = self.outputs.iter().map(|o| renumbered(*o, &values)).collect();
+        out.outputs = self.outputs.iter().map(|o| o.among(&values)).collect();
         out.gathers = self.gathers;
         out.sweep();
         out
@@ -163,7 +163,7 @@ fn grouped(terms: &[Term]) -> Option<Vec<Group>> {
         groups.push(Group { factor: Some(factor), others });
     }
     // What is there first comes first.
-    groups.sort_by_key(|g| g.others.iter().map(|(o, _)| number(*o)).max());
+    groups.sort_by_key(|g| g.others.iter().map(|(o, _)| o.number()).max());
     saved.then_some(groups)
 }
 
@@ -197,19 +197,5 @@ fn signed_constant((o, negative): (Operand, bool)) -> Option<f64> {
     match o {
         Operand::Const(c) => Some(if negative { -c } else { c }),
         _ => None,
-    }
-}
-
-fn renumbered(o: Operand, values: &[Operand]) -> Operand {
-    match o {
-        Operand::Value(k) => values[k],
-        other => other,
-    }
-}
-
-fn number(o: Operand) -> usize {
-    match o {
-        Operand::Value(k) => k,
-        _ => 0,
     }
 }

@@ -29,6 +29,24 @@ pub enum Operand {
     Gather(usize),
 }
 
+impl Operand {
+    /// The number of the instruction that computes it, zero if none does.
+    fn number(self) -> usize {
+        match self {
+            Operand::Value(k) => k,
+            _ => 0,
+        }
+    }
+
+    /// What a value has become in another program, given by number.
+    fn among(self, values: &[Operand]) -> Operand {
+        match self {
+            Operand::Value(k) => values[k],
+            other => other,
+        }
+    }
+}
+
 /// What an instruction computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Op {

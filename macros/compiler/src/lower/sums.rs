@@ -85,7 +85,7 @@ impl Program {
         };
         let mut values = Vec::with_capacity(self.instructions.len());
         for op in &self.instructions {
-            let op = op.mapped(|o| placed(o, &values));
+            let op = op.mapped(|o| o.among(&values));
             let mut product = |a, b| {
                 program.instructions.push(Op::Mul(a, b));
                 Operand::Value(program.instructions.len() - 1)
@@ -99,7 +99,7 @@ impl Program {
             program.instructions.push(op);
             values.push(Operand::Value(program.instructions.len() - 1));
         }
-        program.outputs = self.outputs.iter().map(|o| placed(*o, &values)).collect();
+        program.outputs = self.outputs.iter().map(|o| o.among(&values)).collect();
         program.sweep();
         program
     }
@@ -119,7 +119,7 @@ impl Program {
                 None => {
                     let values = &out.values;
                     // What had lanes may have lost them with the terms that cancel.
-                    match op.mapped(|o| placed(o, values)) {
+                    match op.mapped(|o| o.among(values)) {
                         Op::Lane(_, a) if out.lanes.width(a) == 1 => a,
                         Op::Sum(n, a) => out.push(out.lanes.sum(n, a)),
                         op => out.push(op),
@@ -128,7 +128,7 @@ impl Program {
             };
             out.values.push(value);
         }
-        let outputs = self.outputs.iter().map(|o| placed(*o, &out.values)).collect();
+        let outputs = self.outputs.iter().map(|o| o.among(&out.values)).collect();
         let mut program = Program {
             instructions: out.instructions,
             outputs,
@@ -359,12 +359,12 @@ impl Writer<'_> {
         for (key, c) in &self.sums.sums[k] {
             terms.push(match *key {
                 Key::One => (Operand::Const(c.abs()), c.signum()),
-                Key::Atom(a) => (placed(self.sums.atoms[a], &self.values), *c),
+                Key::Atom(a) => (self.sums.atoms[a].among(&self.values), *c),
                 Key::Sum(s) => (self.written[s].unwrap_or(Operand::Const(0.0)), *c),
             });
         }
         // What is there first comes first, but not a negative one if there is another.
-        terms.sort_by_key(|(o, c)| (*c < 0.0, number(*o)));
+        terms.sort_by_key(|(o, c)| (*c < 0.0, o.number()));
         let mut sum: Option<Operand> = None;
         for (o, c) in terms {
             let size = c.abs();
@@ -377,19 +377,5 @@ impl Writer<'_> {
             });
         }
         sum.unwrap_or(Operand::Const(0.0))
-    }
-}
-
-fn placed(o: Operand, values: &[Operand]) -> Operand {
-    match o {
-        Operand::Value(k) => values[k],
-        other => other,
-    }
-}
-
-fn number(o: Operand) -> usize {
-    match o {
-        Operand::Value(k) => k,
-        _ => 0,
     }
 }
