@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST_INSTRUCTIONS: usize = 3000;
 /// Most times that sums are shared again where that has helped.
 const ROUNDS: usize = 3;
+/// Longest sum that is looked at as one: there are as many pairs as half its square.
+const LONGEST: usize = 32;
 /// Longest sum that is written out.
 const MOST_TERMS: usize = 8;
 /// Up to how many terms a sum is written out in another, and whether also if products would not fuse into it any more:
@@ -162,7 +164,7 @@ impl Sums {
                     }
                     // A sum that is used here alone is a part of this one.
                     Operand::Value(a) => match sums.ends[a] {
-                        Some(sum) if program.uses[a] == 1 => {
+                        Some(sum) if program.uses[a] == 1 && sums.sums[sum].len() + terms.len() < LONGEST => {
                             let inner = std::mem::take(&mut sums.sums[sum]);
                             inner.iter().for_each(|(key, c)| add(&mut terms, *key, sign * c));
                             continue;
