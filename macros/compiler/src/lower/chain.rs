@@ -3,17 +3,11 @@
 //! `(a + b c) + d e`. The numbers of multiplications and additions stay the same. Where `a` is known too late, the sum
 //! would have to wait for it: then it stays as it is.
 
+use super::terms::Term;
 use super::{Op, Operand, Program};
 
 /// Cycles of an addition or a multiplication, or of both fused.
 const LATENCY: u32 = 4;
-
-/// A term of a sum.
-#[derive(Clone, Copy)]
-struct Term {
-    operand: Operand,
-    negative: bool,
-}
 
 /// A sum that can be rewritten: the additions that are its own, innermost first, and its terms in a new order.
 struct Sum {
@@ -49,9 +43,9 @@ impl Program {
     /// When the result of instruction `k` is there at the earliest, in cycles, if products fuse.
     fn ready(&self, k: usize, ready: &[u32]) -> u32 {
         let op = &self.instructions[k];
-        if let Some(terms) = self.terms(k) {
+        if let Some(terms) = op.terms() {
             let [a, b] = terms.map(|t| self.term_ready(t.operand, ready));
-            return match terms.map(|t| self.lone_product(t.operand)) {
+            return match terms.map(|t| self.fuses(t)) {
                 [true, true] => a.min(b).saturating_add(LATENCY).max(a.max(b)) + LATENCY,
                 _ => a.max(b) + LATENCY,
             };
@@ -69,12 +63,10 @@ impl Program {
 
     /// When a term can be added: a product that fuses, as soon as its factors are there.
     fn term_ready(&self, o: Operand, ready: &[u32]) -> u32 {
-        let mut start = value_ready(o, ready);
-        if let (true, Operand::Value(k)) = (self.lone_product(o), o) {
-            start = 0;
-            self.instructions[k].operands(|o| start = start.max(value_ready(o, ready)));
+        match self.lone_product(o) {
+            Some((a, b)) => value_ready(a, ready).max(value_ready(b, ready)),
+            None => value_ready(o, ready),
         }
-        start
     }
 
     /// When the last of a chain's additions is done.
@@ -85,15 +77,14 @@ impl Program {
 
     /// The sum that ends with instruction `k`, if another order of its terms saves an instruction.
     fn sum_to_chain(&self, k: usize) -> Option<Sum> {
-        let ends = self.terms(k)?;
+        let ends = self.instructions[k].terms()?;
         // With a product among its terms it is fused as it stands.
-        if ends.iter().any(|t| self.lone_product(t.operand)) {
+        if ends.iter().any(|t| self.fuses(*t)) {
             return None;
         }
         let joined = |from: usize| {
-            let Operand::Value(top) = ends[1 - from].operand else { return None };
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
-            self.descend(top, ends[1 - from].negative, &mut sum).then(|| {
+            self.descend(ends[1 - from], &mut sum).then(|| {
                 sum.additions.reverse();
                 sum.terms.push(ends[from]);
                 sum.terms.reverse();
@@ -104,11 +95,11 @@ impl Program {
     }
 
     /// Collects the terms of a sum from the last to the first, which is a product; false if it is none.
-    fn descend(&self, k: usize, negative: bool, sum: &mut Sum) -> bool {
-        let Some(terms) = self.terms(k).filter(|_| self.uses[k] == 1) else { return false };
-        let mut terms = terms.map(|t| Term { negative: t.negative != negative, ..t });
-        sum.additions.push(k);
-        let products = terms.map(|t| self.lone_product(t.operand));
+    fn descend(&self, top: Term, sum: &mut Sum) -> bool {
+        let Some(terms) = self.lone_addition(top.operand) else { return false };
+        let mut terms = terms.map(|t| t.within(top.negative));
+        sum.additions.push(top.operand.number());
+        let products = terms.map(|t| self.fuses(t));
         match products {
             [true, true] => {
                 // The earlier one is there first.
@@ -121,13 +112,12 @@ impl Program {
             [true, false] | [false, true] => {
                 let rest = usize::from(products[0]);
                 sum.terms.push(terms[1 - rest]);
-                matches!(terms[rest].operand, Operand::Value(a) if self.descend(a, terms[rest].negative, sum))
+                self.descend(terms[rest], sum)
             }
             [false, false] => [0, 1].into_iter().any(|rest| {
-                let Operand::Value(a) = terms[rest].operand else { return false };
                 let before = (sum.additions.len(), sum.terms.len());
                 sum.terms.push(terms[1 - rest]);
-                let found = self.descend(a, terms[rest].negative, sum);
+                let found = self.descend(terms[rest], sum);
                 if !found {
                     sum.additions.truncate(before.0);
                     sum.terms.truncate(before.1);
@@ -137,19 +127,9 @@ impl Program {
         }
     }
 
-    /// The two terms of an addition.
-    fn terms(&self, k: usize) -> Option<[Term; 2]> {
-        let positive = |operand| Term { operand, negative: false };
-        match self.instructions[k] {
-            Op::Add(a, b) => Some([positive(a), positive(b)]),
-            Op::Sub(a, b) => Some([positive(a), Term { operand: b, negative: true }]),
-            _ => None,
-        }
-    }
-
     /// True for a product whose only use is here.
-    pub(super) fn lone_product(&self, o: Operand) -> bool {
-        matches!(o, Operand::Value(k) if matches!(self.instructions[k], Op::Mul(..)) && self.uses[k] == 1)
+    fn fuses(&self, term: Term) -> bool {
+        self.lone_product(term.operand).is_some()
     }
 
     /// The same instructions with operands before operations, those that are `late` not before they are needed.
@@ -190,12 +170,9 @@ impl Sum {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;
         for (term, at) in self.terms[1..].iter().zip(&self.additions) {
-            ops.push(match (sum.negative, term.negative) {
-                (false, false) | (true, true) => Op::Add(sum.operand, term.operand),
-                (false, true) => Op::Sub(sum.operand, term.operand),
-                (true, false) => Op::Sub(term.operand, sum.operand),
-            });
-            sum = Term { operand: Operand::Value(*at), negative: sum.negative && term.negative };
+            let (op, negative) = Term::sum(sum, *term);
+            ops.push(op);
+            sum = Term { operand: Operand::Value(*at), negative };
         }
         (!sum.negative).then_some(ops)
     }

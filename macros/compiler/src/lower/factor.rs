@@ -1,18 +1,8 @@
 //! Common factors of a sum are taken out: `a b + a c` is `a (b + c)`, with a multiplication less. As many instructions as
 //! before are left where products are fused into sums.
 
+use super::terms::{LONGEST, Term};
 use super::{Op, Operand, Program};
-
-/// Longest sum that is looked at.
-const MOST: usize = 64;
-
-/// A term of a sum.
-#[derive(Clone, Copy)]
-struct Term {
-    /// The value, or the product that it is, if nothing else uses it.
-    value: Result<(Operand, Operand), Operand>,
-    negative: bool,
-}
 
 impl Program {
     /// The same program with common factors of the terms of its sums taken out.
@@ -24,7 +14,7 @@ impl Program {
         let mut changed = false;
         for (k, op) in self.instructions.iter().enumerate() {
             let sum = if inner[k] { None } else { self.terms_of(k) };
-            let value = match sum.and_then(|terms| grouped(&terms)) {
+            let value = match sum.and_then(|terms| self.grouped(terms)) {
                 Some(groups) => {
                     changed = true;
                     out.add_groups(&groups, &|o| o.among(&values))
@@ -51,151 +41,127 @@ impl Program {
     fn inner_additions(&self) -> Vec<bool> {
         let mut inner = vec![false; self.instructions.len()];
         for op in &self.instructions {
-            if let Op::Add(a, b) | Op::Sub(a, b) = *op {
-                for o in [a, b] {
-                    if let Operand::Value(k) = o {
-                        inner[k] = self.is_lone_addition(k);
-                    }
+            for term in op.terms().into_iter().flatten() {
+                if let Operand::Value(k) = term.operand {
+                    inner[k] = self.lone_addition(term.operand).is_some();
                 }
             }
         }
         inner
     }
 
-    fn is_lone_addition(&self, k: usize) -> bool {
-        self.uses[k] == 1 && matches!(self.instructions[k], Op::Add(..) | Op::Sub(..))
-    }
-
     /// The terms of the sum that ends with instruction `k`, from left to right.
     fn terms_of(&self, k: usize) -> Option<Vec<Term>> {
         let mut terms = Vec::new();
-        let mut todo = match self.instructions[k] {
-            Op::Add(a, b) => vec![(b, false), (a, false)],
-            Op::Sub(a, b) => vec![(b, true), (a, false)],
-            _ => return None,
-        };
-        while let Some((o, negative)) = todo.pop() {
-            if terms.len() + todo.len() > MOST {
+        let [a, b] = self.instructions[k].terms()?;
+        let mut todo = vec![b, a];
+        while let Some(term) = todo.pop() {
+            if terms.len() + todo.len() > LONGEST {
                 return None;
             }
-            let Operand::Value(k) = o else {
-                terms.push(Term { value: Err(o), negative });
-                continue;
-            };
-            match self.instructions[k] {
-                Op::Add(a, b) if self.uses[k] == 1 => todo.extend([(b, negative), (a, negative)]),
-                Op::Sub(a, b) if self.uses[k] == 1 => todo.extend([(b, !negative), (a, negative)]),
-                Op::Mul(a, b) if self.uses[k] == 1 => terms.push(Term { value: Ok((a, b)), negative }),
-                _ => terms.push(Term { value: Err(o), negative }),
+            match self.lone_addition(term.operand) {
+                Some([a, b]) => todo.extend([b.within(term.negative), a.within(term.negative)]),
+                None => terms.push(term),
             }
         }
         Some(terms)
     }
 
+    /// The terms of a sum by common factors. `None` if there are none.
+    fn grouped(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
+        let mut groups = Vec::new();
+        let mut saved = false;
+        while let Some(factor) = self.most_common_factor(&open) {
+            saved = true;
+            let mut others = Vec::new();
+            open.retain(|t| match self.cofactor(*t, factor) {
+                Some(other) => {
+                    others.push(other);
+                    false
+                }
+                None => true,
+            });
+            groups.push(Group { factor: Some(factor), others });
+        }
+        // What has nothing in common stays as it is, a product with its own factor.
+        groups.extend(open.into_iter().map(|t| match self.lone_product(t.operand) {
+            Some((a, b)) => Group { factor: Some(a), others: vec![Term { operand: b, ..t }] },
+            None => Group { factor: None, others: vec![t] },
+        }));
+        // What is there first comes first.
+        groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.number()).max());
+        saved.then_some(groups)
+    }
+
+    /// The factor that two terms or more have, that of most terms.
+    fn most_common_factor(&self, terms: &[Term]) -> Option<Operand> {
+        let mut best: Option<(usize, Operand)> = None;
+        for term in terms {
+            let Some((a, b)) = self.lone_product(term.operand) else { continue };
+            for factor in [a, b] {
+                let count = terms.iter().filter(|t| self.cofactor(**t, factor).is_some()).count();
+                if count > best.map_or(1, |(most, _)| most) {
+                    best = Some((count, factor));
+                }
+            }
+        }
+        best.map(|(_, factor)| factor)
+    }
+
+    /// What a term that is a product multiplies its factor by.
+    fn cofactor(&self, term: Term, factor: Operand) -> Option<Term> {
+        let (a, b) = self.lone_product(term.operand)?;
+        let opposite = |x: Operand| match (x, factor) {
+            (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
+            (x, f) if x == f => Some(false),
+            _ => None,
+        };
+        let (other, opposite) = opposite(a).map(|o| (b, o)).or_else(|| opposite(b).map(|o| (a, o)))?;
+        Some(Term { operand: other, negative: term.negative != opposite })
+    }
+
     /// The sum of products of a factor and a sum each, or of a value.
     fn add_groups(&mut self, groups: &[Group], at: &dyn Fn(Operand) -> Operand) -> Operand {
-        let mut sum: Option<(Operand, bool)> = None;
+        let mut sum: Option<Term> = None;
         for group in groups {
             let mut value = self.sum_of(&group.others, at);
             if let Some(factor) = group.factor {
-                value = (self.push(Op::Mul(at(factor), value.0)), value.1);
+                value.operand = self.push(Op::Mul(at(factor), value.operand));
             }
             sum = Some(sum.map_or(value, |sum| self.sum_of_two(sum, value)));
         }
         match sum {
-            Some((value, true)) => self.push(Op::Neg(value)),
-            Some((value, false)) => value,
+            Some(Term { operand, negative: true }) => self.push(Op::Neg(operand)),
+            Some(Term { operand, negative: false }) => operand,
             None => Operand::Const(0.0),
         }
     }
 
-    /// A sum and whether it is meant negative.
-    fn sum_of(&mut self, terms: &[(Operand, bool)], at: &dyn Fn(Operand) -> Operand) -> (Operand, bool) {
-        let known: f64 = terms.iter().map(|t| signed_constant(*t).unwrap_or(0.0)).sum();
-        let is_known = terms.iter().any(|t| signed_constant(*t).is_some());
-        let constant = is_known.then_some((Operand::Const(known), false));
-        let rest = terms.iter().filter(|t| signed_constant(**t).is_none());
-        let mut all = rest.map(|(o, negative)| (at(*o), *negative)).chain(constant);
-        let first = all.next().unwrap_or((Operand::Const(0.0), false));
+    fn sum_of(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
+        let known: f64 = terms.iter().filter_map(signed_constant).sum();
+        let is_known = terms.iter().any(|t| signed_constant(t).is_some());
+        let constant = is_known.then_some(Term::positive(Operand::Const(known)));
+        let rest = terms.iter().filter(|t| signed_constant(t).is_none());
+        let mut all = rest.map(|t| Term { operand: at(t.operand), ..*t }).chain(constant);
+        let first = all.next().unwrap_or(Term::positive(Operand::Const(0.0)));
         all.fold(first, |sum, term| self.sum_of_two(sum, term))
     }
 
-    fn sum_of_two(&mut self, a: (Operand, bool), b: (Operand, bool)) -> (Operand, bool) {
-        match (a.1, b.1) {
-            (false, false) | (true, true) => (self.push(Op::Add(a.0, b.0)), a.1),
-            (false, true) => (self.push(Op::Sub(a.0, b.0)), false),
-            (true, false) => (self.push(Op::Sub(b.0, a.0)), false),
-        }
+    fn sum_of_two(&mut self, a: Term, b: Term) -> Term {
+        let (op, negative) = Term::sum(a, b);
+        Term { operand: self.push(op), negative }
     }
 }
 
-/// A factor, if there is one, and what it multiplies, with signs.
+/// A factor, if there is one, and what it multiplies.
 struct Group {
     factor: Option<Operand>,
-    others: Vec<(Operand, bool)>,
+    others: Vec<Term>,
 }
 
-/// The terms of a sum by common factors. `None` if there are none.
-fn grouped(terms: &[Term]) -> Option<Vec<Group>> {
-    let mut open: Vec<Term> = terms.to_vec();
-    let mut groups = Vec::new();
-    let mut saved = false;
-    while !open.is_empty() {
-        let factor = most_common_factor(&open);
-        let Some(factor) = factor else {
-            // What has nothing in common stays as it is, a product with its own factor.
-            let single = |t: Term| match t.value {
-                Ok((a, b)) => Group { factor: Some(a), others: vec![(b, t.negative)] },
-                Err(o) => Group { factor: None, others: vec![(o, t.negative)] },
-            };
-            groups.extend(open.drain(..).map(single));
-            break;
-        };
-        saved = true;
-        let mut others = Vec::new();
-        open.retain(|t| match t.value.ok().and_then(|product| cofactor(product, factor)) {
-            Some((other, opposite)) => {
-                others.push((other, t.negative != opposite));
-                false
-            }
-            None => true,
-        });
-        groups.push(Group { factor: Some(factor), others });
-    }
-    // What is there first comes first.
-    groups.sort_by_key(|g| g.others.iter().map(|(o, _)| o.number()).max());
-    saved.then_some(groups)
-}
-
-/// The factor that two terms or more have, that of most terms.
-fn most_common_factor(terms: &[Term]) -> Option<Operand> {
-    let mut best: Option<(usize, Operand)> = None;
-    for term in terms {
-        let Ok((a, b)) = term.value else { continue };
-        for factor in [a, b] {
-            let has = |t: &&Term| t.value.is_ok_and(|product| cofactor(product, factor).is_some());
-            let count = terms.iter().filter(has).count();
-            if count > best.map_or(1, |(most, _)| most) {
-                best = Some((count, factor));
-            }
-        }
-    }
-    best.map(|(_, factor)| factor)
-}
-
-/// The other factor of a product, and whether the product has the opposite sign.
-fn cofactor((a, b): (Operand, Operand), factor: Operand) -> Option<(Operand, bool)> {
-    let opposite = |x: Operand| match (x, factor) {
-        (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
-        (x, f) if x == f => Some(false),
-        _ => None,
-    };
-    opposite(a).map(|o| (b, o)).or_else(|| opposite(b).map(|o| (a, o)))
-}
-
-fn signed_constant((o, negative): (Operand, bool)) -> Option<f64> {
-    match o {
-        Operand::Const(c) => Some(if negative { -c } else { c }),
+fn signed_constant(term: &Term) -> Option<f64> {
+    match term.operand {
+        Operand::Const(c) => Some(if term.negative { -c } else { c }),
         _ => None,
     }
 }

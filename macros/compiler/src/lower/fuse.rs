@@ -1,6 +1,6 @@
 //! Fused multiply-add: a product whose only use is a sum becomes one instruction with it.
 
-use super::{Op, Operand, Program};
+use super::{Op, Program};
 
 impl Program {
     /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
@@ -22,30 +22,21 @@ impl Program {
         match self.instructions[k] {
             Op::Add(a, b) => {
                 // Of two products the later one is fused: the earlier is ready when it is needed.
-                let (first, second) = match (self.product(a), self.product(b)) {
-                    (Some((x, _)), Some((y, _))) if x > y => (a, b),
+                let (first, second) = match (self.lone_product(a), self.lone_product(b)) {
+                    (Some(_), Some(_)) if a.number() > b.number() => (a, b),
                     (Some(_), None) => (a, b),
                     _ => (b, a),
                 };
-                let (_, (x, y)) = self.product(first)?;
+                let (x, y) = self.lone_product(first)?;
                 Some(Op::MulAdd(x, y, second))
             }
             Op::Sub(a, b) => {
-                if let Some((_, (x, y))) = self.product(b) {
+                if let Some((x, y)) = self.lone_product(b) {
                     return Some(Op::NegMulAdd(x, y, a));
                 }
-                let (_, (x, y)) = self.product(a)?;
+                let (x, y) = self.lone_product(a)?;
                 Some(Op::MulSub(x, y, b))
             }
-            _ => None,
-        }
-    }
-
-    /// The factors of a value that is a product with one use.
-    fn product(&self, o: Operand) -> Option<(usize, (Operand, Operand))> {
-        let Operand::Value(k) = o else { return None };
-        match self.instructions[k] {
-            Op::Mul(a, b) if self.uses[k] == 1 => Some((k, (a, b))),
             _ => None,
         }
     }

@@ -11,6 +11,7 @@ mod hoist;
 mod lanes;
 mod signs;
 mod sums;
+mod terms;
 
 pub use hoist::{hoisted, place_hoisted};
 

@@ -6,6 +6,7 @@
 //! from all free signs positive, single signs are changed as long as that saves negations.
 
 use super::hoist::{self, is_known as is_constant};
+use super::terms::Term;
 use super::{Op, Operand, Program};
 use crate::expr::Function;
 use std::collections::BTreeSet;
@@ -75,24 +76,13 @@ impl<'a> Signs<'a> {
     /// The sign of a value, by those of its operands and by its choice where it is free.
     fn sign(&self, k: usize) -> bool {
         match self.program.instructions[k] {
+            _ if self.is_free(k) => self.choice[k],
             Op::Neg(a) => !self.of(a),
-            Op::Add(a, b) => self.sum(k, a, b, false),
-            Op::Sub(a, b) => self.sum(k, a, b, true),
-            Op::Mul(a, b) | Op::Div(a, b) => match is_constant(a) || is_constant(b) {
-                true => self.choice[k],
-                false => self.of(a) != self.of(b),
-            },
+            Op::Add(a, _) | Op::Sub(a, _) => self.of(a),
+            Op::Mul(a, b) | Op::Div(a, b) => self.of(a) != self.of(b),
             Op::Call(f, a) => is_odd(f) && self.of(a),
             Op::Sum(_, a) => self.of(a),
             _ => false,
-        }
-    }
-
-    fn sum(&self, k: usize, a: Operand, b: Operand, difference: bool) -> bool {
-        let (first, second) = (self.of(a), self.of(b) != difference);
-        match is_constant(a) || is_constant(b) || first != second {
-            true => self.choice[k],
-            false => first,
         }
     }
 
@@ -243,8 +233,6 @@ impl Rewrite<'_> {
         let stored = match signs.program.instructions[k] {
             // The operand itself is its negative, or what that one is stored as.
             Op::Neg(a) => self.stored(a),
-            Op::Add(a, b) => self.sum((a, signs.of(a) != negative), (b, signs.of(b) != negative)),
-            Op::Sub(a, b) => self.sum((a, signs.of(a) != negative), (b, signs.of(b) == negative)),
             Op::Mul(a, b) => {
                 let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
                 self.push(Op::Mul(a, b))
@@ -261,26 +249,27 @@ impl Rewrite<'_> {
                 let a = self.stored(a);
                 self.push(Op::Sum(n, a))
             }
-            op => {
-                let op = op.mapped(|o| self.positive(o));
-                self.push(op)
-            }
+            op => match op.terms() {
+                Some(terms) => self.sum(terms.map(|t| t.within(signs.of(t.operand) != negative))),
+                None => {
+                    let op = op.mapped(|o| self.positive(o));
+                    self.push(op)
+                }
+            },
         };
         self.stored.push(stored);
         self.positive.push((!negative).then_some(stored));
     }
 
-    /// The sum of two terms with signs, of which at most one is negative or a constant has the other.
-    fn sum(&mut self, (a, a_negative): (Operand, bool), (b, b_negative): (Operand, bool)) -> Operand {
-        let (x, y) = (self.stored(a), self.stored(b));
-        let op = match (a_negative, b_negative) {
-            (false, false) => Op::Add(x, y),
-            (false, true) => Op::Sub(x, y),
-            (true, false) => Op::Sub(y, x),
-            (true, true) if is_constant(x) => Op::Sub(self.negated(x), y),
-            (true, true) => Op::Sub(self.negated(y), x),
-        };
-        self.push(op)
+    /// The sum of two terms, of which at most one is negative or one is a constant.
+    fn sum(&mut self, terms: [Term; 2]) -> Operand {
+        let mut terms = terms.map(|t| Term { operand: self.stored(t.operand), ..t });
+        if terms.iter().all(|t| t.negative) {
+            let constant = usize::from(!is_constant(terms[0].operand));
+            terms[constant] = Term::positive(self.negated(terms[constant].operand));
+        }
+        let [a, b] = terms;
+        self.push(Term::sum(a, b).0)
     }
 
     fn factors(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {

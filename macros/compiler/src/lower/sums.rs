@@ -150,14 +150,11 @@ impl Sums {
             Sums { atoms: Vec::new(), lone_products: Vec::new(), sums: Vec::new(), ends: vec![None; n] };
         let mut known: BTreeMap<(u8, u64), usize> = BTreeMap::new();
         for (k, op) in program.instructions.iter().enumerate() {
-            let signed = match *op {
-                Op::Add(a, b) => [(a, 1.0), (b, 1.0)],
-                Op::Sub(a, b) => [(a, 1.0), (b, -1.0)],
-                _ => continue,
-            };
+            let Some(signed) = op.terms() else { continue };
             let mut terms = Terms::new();
-            for (o, sign) in signed {
-                let key = match o {
+            for term in signed {
+                let sign = if term.negative { -1.0 } else { 1.0 };
+                let key = match term.operand {
                     Operand::Const(c) => {
                         add(&mut terms, Key::One, sign * c);
                         continue;
@@ -170,16 +167,16 @@ impl Sums {
                             continue;
                         }
                         Some(sum) => Key::Sum(sum),
-                        None => sums.atom(o, &mut known),
+                        None => sums.atom(term.operand, &mut known),
                     },
-                    _ => sums.atom(o, &mut known),
+                    o => sums.atom(o, &mut known),
                 };
                 add(&mut terms, key, sign);
             }
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
         }
-        let lone = |o: &Operand| program.lone_product(*o);
+        let lone = |o: &Operand| program.lone_product(*o).is_some();
         sums.lone_products = sums.atoms.iter().map(lone).collect();
         sums
     }
