@@ -421,8 +421,20 @@ fn sharing_does_not_explode() {
         ("small axes", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = unit(1e-200 * x + 1e-200 * y))] j: Pin }".into()),
         ("large leads", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = z, pitch = 1e300)] j: Screw }".into()),
         ("large gravity", with_mass("m").replace("j: Sleeve", "j: Sleeve, #[joint(b -> c, along = 1e-300 * x)] k: Pin")),
+        ("a sum of many parameters", sum_of_parameters(40, 250)),
     ];
     run_cases(cases);
+}
+
+/// A mass that is a sum of sums of parameters.
+fn sum_of_parameters(sums: usize, terms: usize) -> String {
+    let name = |k: usize, i: usize| format!("m{k}_{i}");
+    let sum = |k: usize| (0..terms).map(|i| name(k, i)).collect::<Vec<_>>().join(" + ");
+    let declared = |k: usize| (0..terms).map(|i| name(k, i) + ": f64, ").collect::<String>();
+    let defined = |k: usize| format!("{} #[define({})] sum{k}: Scalar, ", declared(k), sum(k));
+    let all = (0..sums).map(|k| format!("sum{k}")).collect::<Vec<_>>().join(" + ");
+    let fields: String = (0..sums).map(defined).collect();
+    with_mass(&all).replace("m: f64, ", &fields)
 }
 
 fn run_cases(cases: Vec<(&'static str, String)>) {

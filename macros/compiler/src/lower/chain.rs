@@ -3,7 +3,7 @@
 //! `(a + b c) + d e`. The numbers of multiplications and additions stay the same. Where `a` is known too late, the sum
 //! would have to wait for it: then it stays as it is.
 
-use super::terms::Term;
+use super::terms::{LONGEST, Term};
 use super::{Op, Operand, Program};
 
 /// Cycles of an addition or a multiplication, or of both fused.
@@ -94,9 +94,11 @@ impl Program {
         joined(0).or_else(|| joined(1))
     }
 
-    /// Collects the terms of a sum from the last to the first, which is a product; false if it is none.
+    /// Collects the terms of a sum from the last to the first, which is a product; false if it is none or too long.
     fn descend(&self, top: Term, sum: &mut Sum) -> bool {
-        let Some(terms) = self.lone_addition(top.operand) else { return false };
+        let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
+            return false;
+        };
         let mut terms = terms.map(|t| t.within(top.negative));
         sum.additions.push(top.operand.number());
         let products = terms.map(|t| self.fuses(t));
@@ -182,5 +184,27 @@ fn value_ready(o: Operand, ready: &[u32]) -> u32 {
     match o {
         Operand::Value(k) => ready.get(k).copied().unwrap_or(0),
         _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Graph, Symbol};
+    use crate::lower::lower;
+
+    /// Tens of thousands of terms, of which two products come first or last, with the small stack of a test's thread.
+    #[test]
+    fn long_sums_need_no_stack() {
+        let g = Graph::new();
+        let symbols: Vec<_> = (0..40_000).map(|k| g.symbol(Symbol(k))).collect();
+        let products = symbols[0] * symbols[1] + symbols[2] * symbols[3];
+        let rest = symbols[5..].iter().fold(symbols[4], |sum, s| sum + *s);
+        let first = symbols[4..].iter().fold(products, |sum, s| sum + *s);
+        for (sum, fused) in [(first, 2), (rest + products, 1)] {
+            let program = lower(&[sum]).fused();
+            assert_eq!(program.instructions.len() + fused, program.counts.total());
+            // As many of each of 0, 1, … 7, where 0 · 1 + 2 · 3 stands for the sum of the four.
+            assert_eq!(program.run(&|s| f64::from(s.0 % 8)), [140_000.0]);
+        }
     }
 }
