@@ -4,7 +4,7 @@ use linkwork::prelude::*;
 
 /// A linkage twice: `$branch` is empty, or names the branch of the closed form.
 macro_rules! linkages {
-    ($four_bar:ident, $slider:ident $(, $branch:expr)?) => {
+    ($four_bar:ident, $slider:ident, $six_bar:ident $(, $branch:expr)?) => {
         /// A four-bar linkage on a cart, with joints placed on turned axes.
         #[mechanism(gravity = -9.81 * y)]
         struct $four_bar {
@@ -29,6 +29,22 @@ macro_rules! linkages {
             closing: Pin,
             #[acts(on = main)]
             motor: Torque,
+            #[acts(between = (cart.at(0.5 * y), coupler.at(0.2 * x)), stiffness = 40, free_length = 0.3)]
+            coil: Spring,
+            #[output(reaction_force(main))]
+            on_crank: Vector,
+            #[output(reaction_torque(main))]
+            turning_crank: Vector,
+            #[output(reaction_force(first))]
+            on_coupler: Vector,
+            #[output(reaction_force(second), resolved_in = rocker)]
+            on_rocker: Vector,
+            #[output(reaction_force(closing))]
+            at_closing: Vector,
+            #[output(reaction_force(rail))]
+            on_cart: Vector,
+            #[output(reaction_torque(rail))]
+            turning_cart: Vector,
         }
 
         #[mechanism(gravity = -9.81 * y)]
@@ -47,12 +63,63 @@ macro_rules! linkages {
             cylinder: Sleeve,
             #[joint(rod.at(0.6 * x) -> piston, about = z $(, branch = $branch)?)]
             small_end: Pin,
+            #[output(reaction_force(cylinder))]
+            wall: Vector,
+            #[output(reaction_torque(cylinder))]
+            tilting: Vector,
+            #[output(reaction_force(small_end))]
+            on_piston: Vector,
+            #[output(reaction_force(big_end), resolved_in = rod)]
+            on_rod: Vector,
+            #[output(reaction_force(main))]
+            on_crank: Vector,
+        }
+
+        /// Watt's six-bar linkage: the rocker of a four-bar linkage drives a slide by another rod.
+        #[mechanism(gravity = -9.81 * y)]
+        struct $six_bar {
+            #[body(mass = 1, com = 0.15 * x, inertia = rod(1, 0.3, x))]
+            crank: Body,
+            #[body(mass = 0.7, com = 0.45 * x, inertia = rod(0.7, 0.9, x))]
+            coupler: Body,
+            #[body(mass = 1.2, com = 0.3 * y, inertia = rod(1.2, 0.6, y))]
+            rocker: Body,
+            #[body(mass = 0.5, com = 0.4 * x, inertia = rod(0.5, 0.8, x))]
+            rod: Body,
+            #[body(mass = 2)]
+            slide: Body,
+            #[joint(ground -> crank, about = z)]
+            main: Pin,
+            #[joint(crank.at(0.3 * x) -> coupler, about = z)]
+            first: Pin,
+            #[joint(ground.at(0.8 * x + 0.1 * y) -> rocker, about = z)]
+            second: Pin,
+            #[joint(coupler.at(0.9 * x) -> rocker.at(0.6 * y), about = z $(, branch = $branch)?)]
+            closing: Pin,
+            #[joint(ground.at(0.2 * y) -> slide, along = x)]
+            guide: Sleeve,
+            #[joint(rocker.at(0.5 * y + 0.2 * x) -> rod, about = z)]
+            third: Pin,
+            #[joint(slide -> rod.at(0.8 * x), about = z $(, branch = $branch)?)]
+            last: Pin,
+            #[output(reaction_force(closing))]
+            at_closing: Vector,
+            #[output(reaction_force(second))]
+            on_rocker: Vector,
+            #[output(reaction_force(guide))]
+            on_slide: Vector,
+            #[output(reaction_force(third))]
+            on_rod: Vector,
+            #[output(reaction_force(last), resolved_in = rod)]
+            at_last: Vector,
+            #[output(v(slide / ground / ground))]
+            sliding: Vector,
         }
     };
 }
 
-linkages!(FourBar, Slider);
-linkages!(SolvedFourBar, SolvedSlider, 1);
+linkages!(FourBar, Slider, SixBar);
+linkages!(SolvedFourBar, SolvedSlider, SolvedSixBar, 1);
 
 #[test]
 fn a_solved_four_bar_moves_as_with_multipliers() {
@@ -80,6 +147,19 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
         let b = bar.forward_dynamics(&all, &v_all, &SVector::from([0.5, 2.0, 0.0, 0.0]));
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
         assert!((a[1] - b[1]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
+        // Reactions, where one side has its multipliers from the elimination, and the other from the joints that are solved for.
+        let (u, here) = (SVector::from([2.0]), SVector::from([full[0], full[1]]));
+        let close = |x: linkwork::nalgebra::Vector3<f64>, y: linkwork::nalgebra::Vector3<f64>| {
+            assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");
+        };
+        close(solved.on_crank(&q, &here, &u), bar.on_crank(&all, &v_all, &u));
+        close(solved.turning_crank(&q, &here, &u), bar.turning_crank(&all, &v_all, &u));
+        close(solved.on_coupler(&q, &here, &u), bar.on_coupler(&all, &v_all, &u));
+        close(solved.on_rocker(&q, &here, &u), bar.on_rocker(&all, &v_all, &u));
+        close(solved.at_closing(&q, &here, &u), bar.at_closing(&all, &v_all, &u));
+        close(solved.on_cart(&q, &here, &u), bar.on_cart(&all, &v_all, &u));
+        close(solved.turning_cart(&q, &here, &u), bar.turning_cart(&all, &v_all, &u));
+        assert!(solved.at_closing(&q, &here, &u).norm() > 1.0);
         let energy = solved.kinetic_energy(&q, &v) + solved.potential_energy(&q);
         assert!(energy.is_finite());
         let same = SVector::from([full[0], full[1]]);
@@ -102,5 +182,55 @@ fn a_solved_slider_moves_as_with_multipliers() {
         let a = solved.forward_dynamics(&q, &SVector::from([v[0]]), &SVector::from([1.5]));
         let b = slider.forward_dynamics(&all, &v, &SVector::from([1.5, 0.0, 0.0]));
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b[0].abs()), "{a} and {b} at {angle}");
+        let here = SVector::from([v[0]]);
+        for (x, y) in [
+            (solved.wall(&q, &here), slider.wall(&all, &v)),
+            (solved.tilting(&q, &here), slider.tilting(&all, &v)),
+            (solved.on_piston(&q, &here), slider.on_piston(&all, &v)),
+            (solved.on_rod(&q, &here), slider.on_rod(&all, &v)),
+            (solved.on_crank(&q, &here), slider.on_crank(&all, &v)),
+        ] {
+            assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");
+        }
+        assert!(solved.on_piston(&q, &here).norm() > 1.0);
+    }
+}
+
+#[test]
+fn a_solved_six_bar_transmits_what_it_does_with_multipliers() {
+    let (bar, solved) = (SixBar {}, SolvedSixBar {});
+    for angle in [0.4_f64, 1.3, 2.6, 4.0] {
+        let q = SVector::from([angle]);
+        let [coupler, rocker, rod, slide] = [
+            solved.frame_placement(frame!(SolvedSixBar, "coupler"), &q),
+            solved.frame_placement(frame!(SolvedSixBar, "rocker"), &q),
+            solved.frame_placement(frame!(SolvedSixBar, "rod"), &q),
+            solved.frame_placement(frame!(SolvedSixBar, "slide"), &q),
+        ]
+        .map(|place| {
+            let x = place.rotation * linkwork::nalgebra::Vector3::x();
+            (x.y.atan2(x.x), place.translation.x)
+        });
+        let mut all = SVector::from([angle, coupler.0 - angle, rocker.0, 0.0, 0.0]);
+        let order = SixBar::VELOCITIES;
+        let at = |name: &str| order.iter().position(|v| *v == name).expect("a joint of the tree");
+        all[at("guide")] = slide.1;
+        all[at("third")] = rod.0 - rocker.0;
+        assert!(bar.constraint_residuals(&all).amax() < 1e-13, "{}", bar.constraint_residuals(&all));
+        let v = bar.project_velocity(&all, &SVector::from([3.0, 0.0, 0.0, 0.0, 0.0])).expect("regular");
+        let here = SVector::from([v[0]]);
+        assert!((solved.sliding(&q, &here).x - v[at("guide")]).abs() < 1e-12);
+        let a = solved.forward_dynamics(&q, &here, &SVector::zeros());
+        let b = bar.forward_dynamics(&all, &v, &SVector::zeros());
+        assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b[0].abs()), "{a} and {b} at {angle}");
+        for (x, y) in [
+            (solved.at_closing(&q, &here), bar.at_closing(&all, &v)),
+            (solved.on_rocker(&q, &here), bar.on_rocker(&all, &v)),
+            (solved.on_slide(&q, &here), bar.on_slide(&all, &v)),
+            (solved.on_rod(&q, &here), bar.on_rod(&all, &v)),
+            (solved.at_last(&q, &here), bar.at_last(&all, &v)),
+        ] {
+            assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");
+        }
     }
 }

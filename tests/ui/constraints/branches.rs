@@ -74,28 +74,4 @@ mod another_joint {
     }
 }
 
-mod reaction_of_it {
-    use linkwork::prelude::*;
-
-    #[mechanism]
-    struct Machine {
-        #[body(mass = 1, com = x, inertia = rod(1, 1, x))]
-        crank: Body,
-        #[body(mass = 1, com = x, inertia = rod(1, 1, x))]
-        rod: Body,
-        #[body(mass = 1)]
-        piston: Body,
-        #[joint(ground -> crank, about = z)]
-        main: Pin,
-        #[joint(crank.at(x) -> rod, about = z)]
-        big_end: Pin,
-        #[joint(ground -> piston, along = x)]
-        cylinder: Sleeve,
-        #[joint(rod.at(2 * x) -> piston, about = z, branch = 1)]
-        small_end: Pin,
-        #[output(reaction_force(main))]
-        load: Vector,
-    }
-}
-
 fn main() {}

@@ -1,13 +1,15 @@
 //! What joints transmit: in a mechanism with opened joints the forces that inverse dynamics asks for on their
 //! coordinates, less those of the constraints and of the inputs; in a joint that closes a loop the forces of its
-//! multipliers.
+//! multipliers. Where a loop is solved in closed form, its multipliers follow from the joints that are solved for: those
+//! transmit nothing in the direction of their own motion.
 
+use super::crba::Matrix;
 use super::kinematics::joints;
 use super::{constraints, forces, rnea};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
 use crate::model::kinematics::symbols_in;
-use crate::model::{Model, Opened, Quantity};
+use crate::model::{Model, Opened, Quantity, SolvedSide};
 
 /// Components of a joint's reaction: force, torque.
 const SIX: usize = 6;
@@ -19,33 +21,49 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
 
 /// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let opened = model.opened.as_ref().map(|opened| (opened, on_open_coordinates(model, opened)));
+    let Some(opened) = &model.opened else { return e.to_vec() };
+    let (held, multipliers) = on_open_coordinates(model, opened);
     let of = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::of(s) else { return None };
         let (joint, component) = (k / SIX, k % SIX);
-        let at = opened.as_ref().and_then(|(o, all)| Some((all, o.joints.iter().position(|j| *j == joint)?)));
-        let closing = of_multipliers(model, joint, component);
-        Some(closing.or_else(|| at.map(|(all, at)| all[SIX * at + component])).unwrap_or(model.graph.zero()))
+        let at = || opened.joints.iter().position(|j| *j == joint);
+        of_multipliers(model, opened, &multipliers, joint, component)
+            .or_else(|| Some(held[SIX * at()? + component]))
     };
     replace_all(e, &of)
 }
 
 /// The component of what a loop's joint transmits; `None` if it closes none.
-fn of_multipliers<'g>(model: &Model<'g>, joint: usize, component: usize) -> Option<Expr<'g>> {
+fn of_multipliers<'g>(
+    model: &Model<'g>,
+    opened: &Opened<'g>,
+    multipliers: &[Expr<'g>],
+    joint: usize,
+    component: usize,
+) -> Option<Expr<'g>> {
     let mut sum = None;
-    for (k, c) in model.constraints.iter().enumerate() {
+    for (c, l) in opened.model.constraints.iter().zip(multipliers) {
         for part in c.transmits.iter().filter(|part| part.joint == joint) {
             let sum = sum.get_or_insert(model.graph.zero());
             if part.torque == (component >= 3) {
-                *sum += part.direction[component % 3] * Quantity::Given(k).expr(model.graph);
+                *sum += part.direction[component % 3] * *l;
             }
         }
     }
-    sum
+    sum.map(|e| replace_all(&[e], &|s| is_open(model, s).then(|| model.graph.zero()))[0])
 }
 
-/// The forces that hold the coordinates of opened joints at zero.
-fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> Vec<Expr<'g>> {
+/// Whether a symbol is a coordinate of an opened joint, or its rate.
+fn is_open(model: &Model<'_>, s: Symbol) -> bool {
+    match Quantity::of(s) {
+        Quantity::Configuration(k) => k >= model.nq(),
+        Quantity::Velocity(k) => k >= model.nv(),
+        _ => false,
+    }
+}
+
+/// The forces that hold the coordinates of opened joints at zero, and the multipliers of all constraints.
+fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (g, open) = (model.graph, &opened.model);
     let joints = joints(open);
     let closed = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
@@ -53,14 +71,55 @@ fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> Vec<Expr<'
     let a: Vec<Expr<'g>> = (0..open.nv()).map(|k| closed(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
     let inputs = forces::generalized_forces(open, &joints);
-    let held = constraints::forces(open, &constraints::multipliers(open));
+    let mut multipliers = constraints::multipliers(open);
+    multipliers.truncate(model.constraints.len());
+    let held = constraints::forces(open, &multipliers);
     for (k, force) in forces_needed.iter_mut().enumerate() {
         *force -= inputs[k] + held[k];
     }
-    let is_open = |s: Symbol| match Quantity::of(s) {
-        Quantity::Configuration(k) => k >= model.nq(),
-        Quantity::Velocity(k) => k >= model.nv(),
-        _ => false,
+    let closed = |e: &[Expr<'g>]| replace_all(e, &|s| is_open(model, s).then(|| g.zero()));
+    let mut needed = closed(&forces_needed[model.nv()..]);
+    let rows = constraints::jacobian(open).split_off(multipliers.len());
+    let rows: Matrix<'g> = rows.iter().map(|row| closed(&row[model.nv()..])).collect();
+    let solved = closing_forces(opened, &needed, &rows);
+    for (row, l) in rows.iter().zip(&solved) {
+        needed.iter_mut().zip(row).for_each(|(force, entry)| *force -= *entry * *l);
+    }
+    multipliers.extend(solved);
+    (needed, multipliers)
+}
+
+/// The multipliers of the loops that are solved in closed form, two for each, from the forces `needed` on open coordinates
+/// and their share `rows` of them: nothing is left for the motions of the joints that are solved for.
+fn closing_forces<'g>(opened: &Opened<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
+    let g = opened.model.graph;
+    let along = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
+        let at = opened.joints.iter().position(|j| *j == side.joint)?;
+        let first = SIX * at + if side.turns { 3 } else { 0 };
+        Some((0..3).fold(g.zero(), |sum, k| sum + side.axis[k] * forces[first + k]))
     };
-    replace_all(&forces_needed[model.nv()..], &|s| is_open(s).then(|| g.zero()))
+    let own = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        opened.model.solved.iter().filter_map(|side| along(side, forces)).collect()
+    };
+    // Equations by side, with their right sides last: pairs of rows and columns belong to a loop.
+    let columns: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| own(row)).chain([own(needed)]).collect();
+    let sides = columns.last().map_or(0, Vec::len);
+    let mut m: Matrix<'g> = (0..sides).map(|k| columns.iter().map(|column| column[k]).collect()).collect();
+    for k in (0..sides).step_by(2) {
+        let [a, b, c, d] = [m[k][k], m[k][k + 1], m[k + 1][k], m[k + 1][k + 1]];
+        let inverse = g.one() / (a * d - b * c);
+        for j in k + 2..=sides {
+            let (upper, lower) = (m[k][j], m[k + 1][j]);
+            m[k][j] = (d * upper - b * lower) * inverse;
+            m[k + 1][j] = (a * lower - c * upper) * inverse;
+        }
+        for i in (0..sides).filter(|i| i / 2 != k / 2) {
+            let [upper, lower] = [m[i][k], m[i][k + 1]];
+            for j in k + 2..=sides {
+                let part = upper * m[k][j] + lower * m[k + 1][j];
+                m[i][j] -= part;
+            }
+        }
+    }
+    m.iter().map(|row| row[sides]).collect()
 }

@@ -82,16 +82,10 @@ pub fn build_model<'g>(
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
-    let joints = reaction::requested(&model);
-    if let (false, Some(joint)) = (joints.is_empty(), description.joints.iter().find(|j| j.branch.is_some()))
-    {
-        cx.error(joint.name.place.clone(), "a loop that is solved in closed form tells no reactions")
-            .help("remove `branch`: multipliers know what the joints transmit");
-        return None;
-    }
+    let joints = reaction::to_open(&model);
     if !joints.is_empty() {
-        let same = build(description, graph, Some((&joints, &model.constraints)), &mut Diagnostics::new());
-        model.opened = same.map(|model| Rc::new(Opened { model, joints }));
+        let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
+        model.opened = Some(Rc::new(Opened { model: same, joints }));
     }
     Some(model)
 }
@@ -123,6 +117,7 @@ fn build<'g>(
     if let Some(order) = order.filter(|_| builder.is_placed()) {
         builder.know_motion();
         builder.add_actions(cx);
+        builder.remember_solved(cx);
         builder.add_constraints(&order.closing, cx);
         builder.add_expressions(cx);
         builder.find_dependencies();
@@ -171,6 +166,7 @@ fn empty_model<'g>(
         constraints: Vec::new(),
         redundant: Vec::new(),
         dependent: None,
+        solved: Vec::new(),
         freedom: [0; 2],
         loads: Vec::new(),
         inertances: Vec::new(),

@@ -82,14 +82,10 @@ impl<'g> Builder<'_, 'g> {
             }
             return;
         }
-        for j in closing
-            .iter()
-            .filter(|j| self.embedded.iter().all(|e| e.closing != **j))
-            .copied()
-            .collect::<Vec<_>>()
-        {
+        let solved: Vec<usize> = self.embedded.iter().map(|e| e.closing).collect();
+        for j in closing.iter().filter(|j| !solved.contains(j)) {
             self.group += 1;
-            self.close_loop(j, cx);
+            self.close_loop(*j, cx);
         }
         for (index, constraint) in self.description.constraints.iter().enumerate() {
             self.group += 1;
@@ -114,8 +110,14 @@ impl<'g> Builder<'_, 'g> {
             cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}"));
             return;
         }
+        for j in &solved {
+            self.transmit(*j, None, &Rotation::identity(self.scope.graph));
+        }
         if let Some((_, kept)) = self.opening {
             self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
+            for j in &solved {
+                self.close_in_plane(*j, cx);
+            }
             return;
         }
         if cx.is_empty() && !self.model.constraints.is_empty() {
@@ -185,30 +187,46 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn close_loop(&mut self, j: usize, cx: &mut Diagnostics) {
+    /// What the joint of a loop allows, and its two ends.
+    fn closing(&self, j: usize, cx: &mut Diagnostics) -> Option<(Vec<Elementary<'g>>, Closing<'g>)> {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
-        let ends = [&joint.parent, &joint.child].map(|end| {
+        let [parent, child] = [&joint.parent, &joint.child].map(|end| {
             let on_body = self.endpoint(end, cx)?;
             let (link, pose) = self.joint_parent(&end.body, cx)?;
             Some(Placed { link, pose: pose.then(&on_body), kind: PlacedKind::Body })
         });
-        let (Some(motions), [Some(parent), Some(child)]) = (motions, ends) else { return };
+        let (parent, child) = (parent?, child?);
+        let on_parent = self.relative(parent.link, child.link);
+        let on_child = self.relative(child.link, parent.link);
+        Some((motions?, Closing { j, parent, child, on_parent, on_child }))
+    }
+
+    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's plane.
+    fn close_in_plane(&mut self, j: usize, cx: &mut Diagnostics) {
+        self.group += 1;
+        if let Some((motions, ends)) = self.closing(j, cx)
+            && let [Elementary::Turn(axis)] = motions.as_slice()
+        {
+            self.translation_rows(&ends, &[Elementary::Slide(*axis)]);
+        }
+    }
+
+    fn close_loop(&mut self, j: usize, cx: &mut Diagnostics) {
+        let joint = &self.description.joints[j];
+        let Some((motions, ends)) = self.closing(j, cx) else { return };
         let place = &joint.name.place;
         if matches!(motions.as_slice(), [Elementary::Free]) {
             cx.error(place.clone(), format!("`{}` closes a loop, but it restricts nothing", joint.name.text))
                 .help("remove it: a Free joint allows all motions");
             return;
         }
-        if parent.link == child.link {
+        if ends.parent.link == ends.child.link {
             cx.error(place.clone(), "these two ends do not move relative to each other")
                 .help("let the joint act between bodies that move relative to each other");
             return;
         }
         self.transmit(j, None, &Rotation::identity(self.scope.graph));
-        let on_parent = self.relative(parent.link, child.link);
-        let on_child = self.relative(child.link, parent.link);
-        let ends = Closing { j, parent, child, on_parent, on_child };
         self.translation_rows(&ends, &motions);
         self.group += 1;
         self.rotation_rows(&ends, &motions);

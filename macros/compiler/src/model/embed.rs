@@ -7,10 +7,12 @@ use super::build::Builder;
 use super::constraint::perpendicular;
 use super::joint::Elementary;
 use super::kinematics::change_axes;
+use super::reaction::OPEN;
 use super::tree::GROUND;
 use super::world::{Placed, PlacedKind};
-use super::{LinkId, Pose};
+use super::{LinkId, Pose, Quantity, SolvedSide};
 use crate::diag::Diagnostics;
+use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::syntax::{Description, Endpoint, Joint, JointKind};
 
@@ -74,6 +76,16 @@ impl<'g> Builder<'_, 'g> {
     /// The loop that solves for a joint.
     pub fn embedding(&self, j: usize) -> Option<&Embedded> {
         self.embedded.iter().find(|e| e.sides.contains(&j))
+    }
+
+    /// Makes known which motions of which joints are solved for.
+    pub fn remember_solved(&mut self, cx: &mut Diagnostics) {
+        let side = |j: &usize| {
+            let joint = &self.description.joints[*j];
+            let (_, axis) = self.joint_frame(*j, cx)?;
+            Some(SolvedSide { joint: *j, turns: joint.kind == JointKind::Pin, axis })
+        };
+        self.model.solved = self.embedded.iter().flat_map(|e| e.sides.iter()).map_while(side).collect();
     }
 
     /// The child's joint frame in the parent's frame: the joint at its solution.
@@ -155,10 +167,16 @@ impl<'g> Builder<'_, 'g> {
         Some(Side { base, point: out(point), slide })
     }
 
-    /// A vector in the axes of a link, in those of a frame.
+    /// A vector in the axes of a link, in those of a frame. Joints that are opened count as closed: the solution is that of
+    /// the mechanism itself.
     fn seen_from(&self, home: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.world.borrow().joints, v, link, home.link);
-        home.pose.rotation.to_child(v)
+        let v = home.pose.rotation.to_child(v);
+        let Some((joints, _)) = self.opening else { return v };
+        let own = self.model.nq() - OPEN * joints.len();
+        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);
+        let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
+        closed.try_into().map_or(v, Vec3)
     }
 }
 

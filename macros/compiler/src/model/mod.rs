@@ -395,6 +395,8 @@ pub struct Model<'g> {
     /// The pivots by which dependent velocities are solved for, constraint and velocity, where independent speeds are to
     /// be used.
     pub dependent: Option<Vec<(usize, usize)>>,
+    /// The joints that loops are solved for in closed form, two for each.
+    pub solved: Vec<SolvedSide<'g>>,
     /// Degrees of freedom: independent coordinates and independent velocities.
     pub freedom: [usize; 2],
     /// Outputs.
@@ -403,6 +405,17 @@ pub struct Model<'g> {
     pub opened: Option<Rc<Opened<'g>>>,
     /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: units::Units,
+}
+
+/// A joint that a loop is solved for: it turns about an axis or slides along one, in its frame on the parent.
+#[derive(Clone, Debug)]
+pub struct SolvedSide<'g> {
+    /// The joint, by number.
+    pub joint: usize,
+    /// A Pin, otherwise a Sleeve.
+    pub turns: bool,
+    /// Its axis.
+    pub axis: Vec3<'g>,
 }
 
 /// A force with the rate that it does work on: its power is `force × rate`, and it contributes `force × ∂rate/∂v` to the

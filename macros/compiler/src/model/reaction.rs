@@ -16,8 +16,9 @@ use crate::syntax::{self, ExprKind, Name};
 /// Coordinates of an opened joint: three along axes, three about them.
 pub const OPEN: usize = 6;
 
-/// The joints whose reactions the outputs name.
-pub fn requested(model: &Model<'_>) -> Vec<usize> {
+/// The joints to be opened: those whose reactions the outputs name, and with them those that loops are solved for in
+/// closed form, whose forces tell what closes the loops.
+pub fn to_open(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
@@ -26,6 +27,10 @@ pub fn requested(model: &Model<'_>) -> Vec<usize> {
             _ => None,
         })
         .collect();
+    if !joints.is_empty() {
+        joints.extend(model.solved.iter().map(|side| side.joint));
+    }
+    joints.sort_unstable();
     joints.dedup();
     joints
 }

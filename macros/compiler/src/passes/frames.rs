@@ -141,6 +141,7 @@ fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         constraints: _,
         redundant: _,
         dependent: _,
+        solved: _,
         freedom: _,
         inertances: _,
         outputs: _,
