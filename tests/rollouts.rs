@@ -84,7 +84,7 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
         let mut state = State { t: 0.5, q, v };
         let mut memory = method.memory();
         let inputs = Steered(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
-        let mut system: System<'_, _, _, 6> = System { mechanism: &Ur5, inputs };
+        let mut system: System<'_, _, _, 6> = System::new(&Ur5, inputs);
         for _ in 0..steps {
             state = method.advance(&mut memory, &mut system, &state, None, false).expect("finite").end;
         }

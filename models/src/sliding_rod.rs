@@ -95,9 +95,18 @@ mod tests {
             }
         }
         assert!(seen[0] > 14 && seen[1] > 3, "{seen:?}");
-        // So the simulation stops there, with an error.
+        // So the simulation stops there, and says why; with every method.
         let (q, v) = state(0.8, -1.0, 0.0);
         assert!(pressed(&rough, 0.8, -1.0) <= 0.0);
-        assert!(simulate(&rough).from(q, v).duration(0.1).finish().is_err());
+        let stops = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {
+            Err(Error::Constraint { reason, .. }) => {
+                reason == ConstraintError::Jammed { constraint: "floor.normal" }
+            }
+            _ => false,
+        };
+        let run = || simulate(&rough).from(q, v).duration(0.1);
+        assert!(stops(run().finish()) && stops(run().method(Rk4::step(1e-3)).finish()));
+        assert!(stops(run().method(ImplicitMidpoint::step(1e-3)).finish()));
+        assert!(stops(run().method(Rosenbrock::step(1e-3)).finish()));
     }
 }

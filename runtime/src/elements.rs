@@ -274,8 +274,8 @@ pub enum Rolling {}
 /// held together by a pull. `friction` may depend on coordinates and time; with `friction = 0` the surfaces are smooth.
 ///
 /// The equations of motion are `M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|`. Where they have no unique solution, friction jams (Painlevé's
-/// paradox): `try_constrained_dynamics` returns `ConstraintError::Jammed`, the other functions NaN, and a simulation ends
-/// with an error. What friction takes out is not part of `dissipated_power`, which does not know the multipliers.
+/// paradox): `try_constrained_dynamics` and `try_forward_dynamics` return `ConstraintError::Jammed`, with which a simulation
+/// ends; the functions without a `Result` return NaN. What friction takes out is not part of `dissipated_power`, which does not know the multipliers.
 pub enum Slipping {}
 
 /// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of

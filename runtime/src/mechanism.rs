@@ -102,6 +102,19 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration: what simulations call.
+    ///
+    /// Errors: [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip; others
+    /// have none.
+    fn try_forward_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        Ok(self.forward_dynamics(q, v, tau))
+    }
+
     /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. Few mechanisms need `v` here: those whose inputs act by way of the
     /// velocity, such as the control surfaces of an aircraft.
     fn generalized_forces(

@@ -87,6 +87,20 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration
+    /// ([`Mechanism::try_forward_dynamics`]).
+    ///
+    /// Errors: [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip.
+    fn try_forward_dynamics(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        Ok(self.forward_dynamics(t, q, v, tau))
+    }
+
     /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work ([`Mechanism::generalized_forces`]).
     fn generalized_forces(
         &self,
@@ -187,6 +201,7 @@ macro_rules! timed {
             bias_forces(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
             inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
             forward_dynamics(q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
+            try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<SVector<Self::Scalar, NV>, ConstraintError>;
             generalized_forces(q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
             kinetic_energy(q: NQ, v: NV) -> Self::Scalar;
             potential_energy(q: NQ) -> Self::Scalar;

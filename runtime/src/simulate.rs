@@ -39,7 +39,7 @@ where
     M: Rheonomic<NQ, NV, NU>,
 {
     let start = State { t: nalgebra::zero(), q: mechanism.neutral(), v: SVector::zeros() };
-    let system = System { mechanism, inputs: NoInputs };
+    let system = System::new(mechanism, NoInputs);
     let method = DormandPrince::new();
     Simulation {
         system,
@@ -233,7 +233,7 @@ where
 
     fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
         let Self { system, method, events, start, duration, every, .. } = self;
-        let system = System { mechanism: system.mechanism, inputs };
+        let system = System::new(system.mechanism, inputs);
         Simulation { system, method, events, start, duration, every, progress: None, over: false }
     }
 

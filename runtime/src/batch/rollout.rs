@@ -242,7 +242,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         ) -> SVector<Lanes<M::Scalar, L>, NU>,
     {
         let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
-        let mut system: System<'_, Self, _, NU> = System { mechanism: self, inputs };
+        let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
         let method = rollout.method.wide::<L>();
         let mut memory = method.memory();
         let mut group = Group { end: start, failures: [None; L] };

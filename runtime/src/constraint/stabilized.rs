@@ -1,8 +1,8 @@
 //! Constraints kept by feedback instead of projection.
 
-use super::Constrained;
-use crate::Rheonomic;
+use super::{Constrained, ConstraintError};
 use crate::private::constant;
+use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
 /// A mechanism whose violated constraints decay by themselves: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of
@@ -47,6 +47,24 @@ where
 
 type V<M, const N: usize, const NQ: usize, const NV: usize, const NU: usize> =
     SVector<<M as Rheonomic<NQ, NV, NU>>::Scalar, N>;
+
+impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
+    /// The acceleration that lets violations decay.
+    fn correction<const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV>
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        let residuals = self.mechanism.constraint_residuals(t, q) * (self.rate * self.rate);
+        let rates = self.mechanism.constraint_rates(t, q, v) * (self.rate * constant(2.0));
+        let gap = SVector::from_fn(|k, _| residuals.get(k).map_or(rates[k], |r| rates[k] + *r));
+        self.mechanism.constraint_correction(t, q, &gap)
+    }
+}
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
     Rheonomic<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
@@ -104,10 +122,17 @@ where
         v: &V<M, NV, NQ, NV, NU>,
         tau: &V<M, NV, NQ, NV, NU>,
     ) -> V<M, NV, NQ, NV, NU> {
-        let residuals = self.mechanism.constraint_residuals(t, q) * (self.rate * self.rate);
-        let rates = self.mechanism.constraint_rates(t, q, v) * (self.rate * constant(2.0));
-        let gap = SVector::from_fn(|k, _| residuals.get(k).map_or(rates[k], |r| rates[k] + *r));
-        self.mechanism.forward_dynamics(t, q, v, tau) + self.mechanism.constraint_correction(t, q, &gap)
+        self.mechanism.forward_dynamics(t, q, v, tau) + self.correction(t, q, v)
+    }
+
+    fn try_forward_dynamics(
+        &self,
+        t: M::Scalar,
+        q: &V<M, NQ, NQ, NV, NU>,
+        v: &V<M, NV, NQ, NV, NU>,
+        tau: &V<M, NV, NQ, NV, NU>,
+    ) -> Result<V<M, NV, NQ, NV, NU>, ConstraintError> {
+        Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction(t, q, v))
     }
 
     fn generalized_forces(

@@ -37,11 +37,11 @@ pub enum Error {
         /// Time of the start.
         t: f64,
     },
-    /// The constraints cannot be fulfilled: the mechanism is locked, or a step went too far.
+    /// The constraints cannot be fulfilled: the mechanism is locked, its friction jams, or a step went too far.
     Constraint {
         /// Time.
         t: f64,
-        /// What is violated.
+        /// What is violated, or why the motion is not determined.
         reason: ConstraintError,
     },
     /// The equations of an implicit step were not solved: take smaller steps.

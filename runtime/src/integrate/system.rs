@@ -1,6 +1,8 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
+use super::{Error, Method, State, Step};
 use crate::constraint::{Configuration, ConstraintError};
+use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 
@@ -120,15 +122,48 @@ pub struct System<'m, M, I, const NU: usize> {
     pub mechanism: &'m M,
     /// Its inputs.
     pub inputs: I,
+    /// Why an acceleration that was asked for is not determined.
+    undetermined: Option<ConstraintError>,
 }
 
 impl<M, I: Clone, const NU: usize> Clone for System<'_, M, I, NU> {
     fn clone(&self) -> Self {
-        Self { mechanism: self.mechanism, inputs: self.inputs.clone() }
+        Self { inputs: self.inputs.clone(), ..*self }
     }
 }
 
-impl<M, I, const NU: usize> System<'_, M, I, NU> {
+impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
+    /// A mechanism under inputs.
+    pub fn new(mechanism: &'m M, inputs: I) -> Self {
+        Self { mechanism, inputs, undetermined: None }
+    }
+
+    /// A step of a method. Where it fails because forces determine no acceleration, the error says why.
+    ///
+    /// Errors: those of [`Method::advance`], and [`Error::Constraint`].
+    pub(crate) fn advance<T: Real, S: Method<T>, const NQ: usize, const NV: usize>(
+        &mut self,
+        method: &S,
+        memory: &mut S::Memory<NV>,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error>
+    where
+        M: Rheonomic<NQ, NV, NU, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        self.undetermined = None;
+        let step = method.advance(memory, self, start, until, dense);
+        step.map_err(|error| match (error, self.undetermined) {
+            (
+                Error::NotFinite { t } | Error::StepTooSmall { t, .. } | Error::NotConverged { t, .. },
+                Some(reason),
+            ) => Error::Constraint { t, reason },
+            _ => error,
+        })
+    }
+
     fn forces<T: Real, const NQ: usize, const NV: usize>(
         &mut self,
         t: T,
@@ -162,7 +197,10 @@ where
 
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
         let tau = self.forces(t, q, v);
-        self.mechanism.forward_dynamics(t, q, v, &tau)
+        self.mechanism.try_forward_dynamics(t, q, v, &tau).unwrap_or_else(|reason| {
+            self.undetermined = Some(reason);
+            SVector::repeat(constant(f64::NAN))
+        })
     }
 
     fn is_constrained(&self) -> bool {

@@ -143,7 +143,7 @@ where
         }
         let until = self.next_stop(run);
         let dense = E::COUNT > 0;
-        let step = self.method.advance(&mut run.memory, &mut self.system, &run.node, until, dense)?;
+        let step = self.system.advance(&self.method, &mut run.memory, &run.node, until, dense)?;
         if dense || self.sample_time(run.sample).is_some_and(|t| t < step.end.t) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {

@@ -208,6 +208,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             "::linkwork::__private::slipping_response::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
         )
     };
+    let forces = format!("columns::<{scalar}, {nv}, 1>(&inputs, 0)");
     let (rates, turning) = (2 * nv * nv + 2 * nc * nv, 2 * nv * nv + 3 * nc * nv);
     let _ = writeln!(
         out,
@@ -225,11 +226,11 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
         ///
         /// # Errors
-        /// `Singular` where constraints lose rank.
+        /// `Singular` where constraints lose rank{jams}.
         pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
             use ::linkwork::__private::{{columns, constrained_derivatives}};
             let inputs = self.__input_derivatives({pass}q, v, u);
-            let (a, lambda) = self.constrained_dynamics({pass}q, v, &columns::<{scalar}, {nv}, 1>(&inputs, 0));
+            let (a, lambda) = self.{motion};
             let mut parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
             for k in 0..{both} {{ parts[k] -= inputs[{nv} + k]; }}
             let (by_q, by_v, by_force) = constrained_derivatives::<{scalar}, {nv}, {nc}>(&parts, {solve});
@@ -246,17 +247,23 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         }}",
         u = s.vector(nu),
         nx = np + ns,
+        motion = if c.slipping.is_empty() {
+            format!("constrained_dynamics({pass}q, v, &{forces})")
+        } else {
+            format!("try_constrained_dynamics({pass}q, v, &{forces})?")
+        },
+        jams = if c.slipping.is_empty() { "" } else { ", `Jammed` where friction jams" },
         both = 2 * nv * nv,
         from = nv + 2 * nv * nv,
     );
 }
 
-/// Overrides of the trait's projection.
+/// Overrides of the trait's projection, and of the dynamics that can fail.
 pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, t, any, .. } = Words::new(c, s);
+    let Words { q, v, t, pass, any, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
         "const CONSTRAINED: bool = true;
@@ -264,6 +271,14 @@ pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             ::linkwork::Constrained::project_state(self, {any}, q, v)
         }}"
     );
+    if !c.slipping.is_empty() {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn try_forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+                self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
+            }}"
+        );
+    }
 }
 
 /// The trait of constrained mechanisms, in terms of the inherent functions.
