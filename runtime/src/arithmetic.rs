@@ -4,6 +4,46 @@
 //! target; large functions may run with more of them ([`dispatch`](dispatch::dispatch)). Everything of a body is inlined, so that it is compiled
 //! with the features of the function that it ends up in.
 
+/// Gives the elementary functions to a macro, which makes something of each.
+macro_rules! elementary_functions {
+    ($make:ident) => {
+        $make! {
+            /// The square root; NaN for `x < 0`.
+            sqrt(x);
+            /// The sine of `x`, rad.
+            sin(x);
+            /// The cosine of `x`, rad.
+            cos(x);
+            /// The tangent of `x`, rad.
+            tan(x);
+            /// The arc sine, rad; NaN outside [−1, 1].
+            asin(x);
+            /// The arc cosine, rad; NaN outside [−1, 1].
+            acos(x);
+            /// The arc tangent, rad.
+            atan(x);
+            /// The angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
+            atan2(y, x);
+            /// The hyperbolic sine.
+            sinh(x);
+            /// The hyperbolic cosine.
+            cosh(x);
+            /// The hyperbolic tangent.
+            tanh(x);
+            /// The exponential.
+            exp(x);
+            /// The natural logarithm; NaN for `x < 0`.
+            ln(x);
+            /// The power `x` to `y`; NaN for `x < 0` and a `y` that is no integer.
+            powf(x, y);
+            /// The magnitude.
+            abs(x);
+            /// 1 or −1 with the sign of `x`, also for zeros.
+            signum(x);
+        }
+    };
+}
+
 pub(crate) mod dispatch;
 mod number;
 mod vector;
@@ -85,40 +125,7 @@ pub trait Arithmetic: Registers {
         (*s.numbers(), *c.numbers())
     }
 
-    elementary! {
-        /// The square root; NaN for `x < 0`.
-        sqrt(x);
-        /// The sine of `x`, rad.
-        sin(x);
-        /// The cosine of `x`, rad.
-        cos(x);
-        /// The tangent of `x`, rad.
-        tan(x);
-        /// The arc sine, rad; NaN outside [−1, 1].
-        asin(x);
-        /// The arc cosine, rad; NaN outside [−1, 1].
-        acos(x);
-        /// The arc tangent, rad.
-        atan(x);
-        /// The angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
-        atan2(y, x);
-        /// The hyperbolic sine.
-        sinh(x);
-        /// The hyperbolic cosine.
-        cosh(x);
-        /// The hyperbolic tangent.
-        tanh(x);
-        /// The exponential.
-        exp(x);
-        /// The natural logarithm; NaN for `x < 0`.
-        ln(x);
-        /// The power `x` to `y`; NaN for `x < 0` and a `y` that is no integer.
-        powf(x, y);
-        /// The magnitude.
-        abs(x);
-        /// 1 or −1 with the sign of `x`, also for zeros.
-        signum(x);
-    }
+    elementary_functions!(elementary);
 }
 
 impl<A: Registers> Arithmetic for A {}

@@ -41,11 +41,11 @@ impl<A: Registers, T: Real, const N: usize> Number<A> for Vector<A, T, N> {
 }
 
 macro_rules! elementary {
-    ($($name:ident($x:ident $(, $y:ident)?);)+) => {
-        /// A number with elementary functions.
+    ($($(#[$doc:meta])* $name:ident($x:ident $(, $y:ident)?);)+) => {
+        /// A number with elementary functions, in lanes one by one.
         pub trait Elementary<A: Registers>: Number<A> {
             $(
-                #[doc = concat!("`", stringify!($name), "`, lane by lane.")]
+                $(#[$doc])*
                 fn $name($x: Self $(, $y: Self)?) -> Self;
             )+
             /// Sines and cosines of several angles.
@@ -111,21 +111,4 @@ macro_rules! elementary {
     };
 }
 
-elementary! {
-    sqrt(x);
-    sin(x);
-    cos(x);
-    tan(x);
-    asin(x);
-    acos(x);
-    atan(x);
-    atan2(y, x);
-    sinh(x);
-    cosh(x);
-    tanh(x);
-    exp(x);
-    ln(x);
-    powf(x, y);
-    abs(x);
-    signum(x);
-}
+elementary_functions!(elementary);
