@@ -1,7 +1,7 @@
 //! Differentiation with respect to a symbol, or along a direction in the space of several.
 
-use super::graph::{Expr, Graph};
 use super::node::{Function, Id, Node, Symbol};
+use super::{Expr, Graph};
 
 /// Added to a length before it divides: too small to matter, large enough for `f32`.
 pub const TINY: f64 = 1e-37;

@@ -1,8 +1,8 @@
 //! Evaluation of expressions with numbers: the oracle of the tests and of the checks of a model.
 
-use super::graph::{Expr, Graph};
 use super::lanes::MOST;
 use super::node::{Id, Node, Symbol};
+use super::{Expr, Graph};
 
 /// The values of several expressions of one graph, given the value of every symbol.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {

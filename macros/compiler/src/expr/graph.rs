@@ -6,11 +6,11 @@
 //! in a product or in a sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since
 //! `2 x` may be used again. A constant of each lane counts as a constant.
 
+use super::handle::Expr;
 use super::lanes::Tables;
 use super::node::{Function, Id, Node, Symbol};
 use std::cell::{RefCell, RefMut};
 use std::fmt;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 struct Store {
     nodes: Vec<Node>,
@@ -72,28 +72,9 @@ impl Default for Graph {
     }
 }
 
-/// An expression: a node of a graph, with arithmetic.
-#[derive(Clone, Copy)]
-pub struct Expr<'g> {
-    graph: &'g Graph,
-    id: Id,
-}
-
 impl fmt::Debug for Graph {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Graph of {} nodes", self.len())
-    }
-}
-
-impl PartialEq for Expr<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        self.id == other.id
-    }
-}
-
-impl fmt::Debug for Expr<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&super::print::plain(*self, &|s| format!("s{}", s.0)))
     }
 }
 
@@ -170,7 +151,7 @@ impl Graph {
         self.intern(Node::Const(if value == 0.0 { 0.0 } else { value }))
     }
 
-    fn value(&self, id: Id) -> Option<f64> {
+    pub(super) fn value(&self, id: Id) -> Option<f64> {
         match self.node(id) {
             Node::Const(c) => Some(c),
             _ => None,
@@ -205,7 +186,7 @@ impl Graph {
         if negative { self.neg(id) } else { id }
     }
 
-    fn neg(&self, a: Id) -> Id {
+    pub(super) fn neg(&self, a: Id) -> Id {
         match self.node(a) {
             Node::Const(c) => self.constant(-c),
             Node::Tuple(_) => self.map_lanes(a, |x| -x),
@@ -214,7 +195,7 @@ impl Graph {
         }
     }
 
-    fn add(&self, a: Id, b: Id) -> Id {
+    pub(super) fn add(&self, a: Id, b: Id) -> Id {
         if a == ZERO {
             return b;
         }
@@ -292,11 +273,11 @@ impl Graph {
         if a < b { self.intern(Node::Sub(a, b)) } else { self.neg(self.intern(Node::Sub(b, a))) }
     }
 
-    fn sub(&self, a: Id, b: Id) -> Id {
+    pub(super) fn sub(&self, a: Id, b: Id) -> Id {
         self.add(a, self.neg(b))
     }
 
-    fn mul(&self, a: Id, b: Id) -> Id {
+    pub(super) fn mul(&self, a: Id, b: Id) -> Id {
         if a == ZERO || b == ZERO {
             return ZERO;
         }
@@ -353,7 +334,7 @@ impl Graph {
         self.intern(Node::Mul(a.min(b), a.max(b)))
     }
 
-    fn div(&self, a: Id, b: Id) -> Id {
+    pub(super) fn div(&self, a: Id, b: Id) -> Id {
         if a == ZERO && b != ZERO {
             return ZERO;
         }
@@ -384,7 +365,7 @@ impl Graph {
         }
     }
 
-    fn call(&self, f: Function, a: Id) -> Id {
+    pub(super) fn call(&self, f: Function, a: Id) -> Id {
         if let Node::Tuple(_) = self.node(a)
             && let Some(result) = self.finite_lanes(a, |x| f.apply(x))
         {
@@ -407,205 +388,5 @@ impl Graph {
             return self.signed(f.is_odd() && negative, self.intern(Node::Call(f, a)));
         }
         self.intern(Node::Call(f, a))
-    }
-}
-
-impl<'g> Expr<'g> {
-    /// Its node's index.
-    pub fn id(self) -> Id {
-        self.id
-    }
-
-    /// The graph that owns it.
-    pub fn graph(self) -> &'g Graph {
-        self.graph
-    }
-
-    /// Its node.
-    pub fn node(self) -> Node {
-        self.graph.node(self.id)
-    }
-
-    /// Its value, if it is a constant.
-    pub fn value(self) -> Option<f64> {
-        self.graph.value(self.id)
-    }
-
-    /// True for a constant and for a constant times something.
-    pub fn is_multiple(self) -> bool {
-        let (_, id) = self.graph.unsigned(self.id);
-        match self.graph.node(id) {
-            Node::Mul(a, _) => self.graph.is_constant(a),
-            node => matches!(node, Node::Const(_) | Node::Tuple(_)),
-        }
-    }
-
-    /// True for the constant zero.
-    pub fn is_zero(self) -> bool {
-        self.id == ZERO
-    }
-
-    /// A number in the same graph.
-    pub fn num(self, value: f64) -> Expr<'g> {
-        self.graph.num(value)
-    }
-
-    /// Zero in the same graph.
-    pub fn zero(self) -> Expr<'g> {
-        self.graph.zero()
-    }
-
-    /// An elementary function of it.
-    pub fn call(self, f: Function) -> Expr<'g> {
-        self.graph.expr(self.graph.call(f, self.id))
-    }
-
-    /// Sine.
-    pub fn sin(self) -> Expr<'g> {
-        self.call(Function::Sin)
-    }
-
-    /// Cosine.
-    pub fn cos(self) -> Expr<'g> {
-        self.call(Function::Cos)
-    }
-
-    /// Square root.
-    pub fn sqrt(self) -> Expr<'g> {
-        self.call(Function::Sqrt)
-    }
-
-    /// The angle of the point (`abscissa`, `self`).
-    pub fn atan2(self, abscissa: Expr<'g>) -> Expr<'g> {
-        if let (Some(y), Some(x)) = (self.value(), abscissa.value()) {
-            return self.num(y.atan2(x));
-        }
-        self.graph.expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
-    }
-
-    /// A power; small whole exponents become products.
-    pub fn pow(self, exponent: Expr<'g>) -> Expr<'g> {
-        match (self.value(), exponent.value()) {
-            (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
-            (_, Some(n)) if n == n.trunc() && n.abs() <= 8.0 => {
-                let product = (0..n.abs() as u32).fold(self.graph.one(), |p, _| p * self);
-                if n < 0.0 { self.graph.one() / product } else { product }
-            }
-            (_, Some(0.5)) => self.sqrt(),
-            _ => self.graph.expr(self.graph.intern(Node::Pow(self.id, exponent.id))),
-        }
-    }
-
-    /// Its square.
-    pub fn square(self) -> Expr<'g> {
-        self * self
-    }
-}
-
-impl<'g> Add for Expr<'g> {
-    type Output = Expr<'g>;
-    fn add(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.add(self.id, b.id))
-    }
-}
-
-impl<'g> Sub for Expr<'g> {
-    type Output = Expr<'g>;
-    fn sub(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.sub(self.id, b.id))
-    }
-}
-
-impl<'g> Mul for Expr<'g> {
-    type Output = Expr<'g>;
-    fn mul(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.mul(self.id, b.id))
-    }
-}
-
-impl<'g> Mul<f64> for Expr<'g> {
-    type Output = Expr<'g>;
-    fn mul(self, b: f64) -> Expr<'g> {
-        self * self.num(b)
-    }
-}
-
-impl<'g> Div for Expr<'g> {
-    type Output = Expr<'g>;
-    fn div(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.div(self.id, b.id))
-    }
-}
-
-impl<'g> Neg for Expr<'g> {
-    type Output = Expr<'g>;
-    fn neg(self) -> Expr<'g> {
-        self.graph.expr(self.graph.neg(self.id))
-    }
-}
-
-impl<'g> AddAssign for Expr<'g> {
-    fn add_assign(&mut self, b: Expr<'g>) {
-        *self = *self + b;
-    }
-}
-
-impl<'g> SubAssign for Expr<'g> {
-    fn sub_assign(&mut self, b: Expr<'g>) {
-        *self = *self - b;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn zeros_ones_and_constants_fold() {
-        let g = Graph::new();
-        let x = g.symbol(Symbol(0));
-        assert_eq!(x * g.zero(), g.zero());
-        assert_eq!(x * g.one(), x);
-        assert_eq!(x + g.zero(), x);
-        assert_eq!(x - x, g.zero());
-        assert_eq!(x / x, g.one());
-        assert_eq!((g.num(2.0) * x) * g.num(3.0), g.num(6.0) * x);
-        assert_eq!(x / g.num(4.0), g.num(0.25) * x);
-        assert_eq!(x + x, g.num(2.0) * x);
-        assert_eq!(g.num(0.0).sin(), g.zero());
-        assert_eq!((x + g.num(2.0)) + g.num(3.0), x + g.num(5.0));
-        assert_eq!(g.num(2.0) - (g.num(3.0) - x), x - g.num(1.0));
-    }
-
-    #[test]
-    fn signs_are_lifted_so_that_opposite_expressions_share() {
-        let g = Graph::new();
-        let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
-        assert_eq!((-x) * y, -(x * y));
-        assert_eq!((-x) + (-y), -(x + y));
-        assert_eq!(x - y, -(y - x));
-        assert_eq!((x - y) * z, -((y - x) * z));
-        assert_eq!((-x).sin(), -x.sin());
-        assert_eq!((y - x).cos(), (x - y).cos());
-        assert_eq!(g.num(-3.0) * x, -(g.num(3.0) * x));
-    }
-
-    #[test]
-    fn a_multiple_that_is_used_again_stays_one_product() {
-        let g = Graph::new();
-        let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
-        let twice = g.num(2.0) * x;
-        let before = g.len();
-        let _ = (twice * y, twice * z);
-        assert_eq!(g.len(), before + 2);
-    }
-
-    #[test]
-    fn what_was_added_can_be_taken_away() {
-        let g = Graph::new();
-        let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
-        assert_eq!((x + y) - y, x);
-        assert_eq!((x - y) + y, x);
-        assert_eq!(x - (x - y), y);
     }
 }

@@ -2,8 +2,9 @@
 //! has no lanes has the same value in each. Lanes begin with constants and inputs that differ from lane to lane and end
 //! with a sum over the lanes or with one of them.
 
-use super::graph::{Expr, Graph, ZERO};
+use super::graph::ZERO;
 use super::node::{Id, Node, Symbol};
+use super::{Expr, Graph};
 use std::collections::BTreeMap;
 
 /// Most lanes of an expression.

@@ -1,8 +1,8 @@
 //! Vectors and matrices of three dimensions over expressions.
 
 use super::diff::TINY;
-use super::graph::{Expr, Graph};
 use super::node::Function;
+use super::{Expr, Graph};
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 /// Three components.

@@ -5,6 +5,7 @@ pub mod diff;
 pub mod eval;
 pub mod factor;
 pub mod graph;
+pub mod handle;
 pub mod lanes;
 pub mod matrix;
 pub mod node;
@@ -15,7 +16,8 @@ pub mod replace;
 pub mod rotation;
 pub mod trigonometry;
 
-pub use graph::{Expr, Graph};
+pub use graph::Graph;
+pub use handle::Expr;
 pub use matrix::{Mat3, Sym3, Vec3};
 pub use node::{Function, Id, Node, Symbol};
 pub use rotation::Rotation;

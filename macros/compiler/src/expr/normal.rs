@@ -2,9 +2,9 @@
 //! those of their angles.
 
 use super::diff::TINY;
-use super::graph::{Expr, Graph};
 use super::node::{Function, Id, Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
+use super::{Expr, Graph};
 
 const UNKNOWN: u32 = u32::MAX;
 /// Largest multiple of an angle that is written by sine and cosine of the angle itself.

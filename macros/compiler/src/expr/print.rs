@@ -1,7 +1,7 @@
 //! Expressions and polynomials as text, plain or typeset.
 
+use super::Expr;
 use super::factor::{Item, Order, items};
-use super::graph::Expr;
 use super::node::{Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 

@@ -1,7 +1,7 @@
 //! Replacement of symbols by expressions.
 
-use super::graph::{Expr, Graph};
 use super::node::{Id, Node, Symbol};
+use super::{Expr, Graph};
 
 /// An expression with symbols replaced where `by` says so.
 pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {

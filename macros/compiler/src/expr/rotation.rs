@@ -1,9 +1,9 @@
 //! Rotations as sequences of elementary steps. A joint's rotation about a coordinate axis after a constant one costs
 //! less applied step by step than as one matrix.
 
-use super::graph::{Expr, Graph};
 use super::matrix::{Mat3, Sym3, Vec3};
 use super::node::{Function, Node};
+use super::{Expr, Graph};
 
 /// One step of a rotation.
 #[derive(Clone, Copy, Debug)]
