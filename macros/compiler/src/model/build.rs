@@ -1,23 +1,20 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
 use super::embed;
-use super::inertia::check_inertia;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
+use super::masses::MassProperties;
 use super::resolve::Scope;
 use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
-use super::world::{Level, Placed, PlacedKind, View, World};
+use super::world::{Level, PlacedKind, View, World};
 use super::{
     Chart, Constraint, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion,
     NamedFrame, Opened, Pose, Quantity, reaction,
 };
 use crate::diag::Diagnostics;
-use crate::expr::{Graph, Rotation, Sym3, Vec3};
-use crate::syntax::{
-    Action, ActionKind, Body, Description, Endpoint, ExprKind, Joint, JointKind, Name, Particle, Target,
-};
-
+use crate::expr::{Graph, Rotation, Vec3};
+use crate::syntax::{Action, ActionKind, Description, Endpoint, ExprKind, Joint, JointKind, Name, Target};
 use std::rc::Rc;
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
@@ -36,9 +33,6 @@ struct JointCoordinates {
     /// The coordinates that force elements can act on: name, coordinate, whether an angle.
     plain: Vec<(String, Coordinate, bool)>,
 }
-
-/// Mass, centre of mass in body axes, inertia about it.
-pub type MassProperties<'g> = (crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>);
 
 /// The model under construction.
 pub struct Builder<'a, 'g> {
@@ -346,7 +340,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Places the child of a joint.
-    pub fn place_joint(&mut self, j: usize, _parent: Option<usize>, child: usize, cx: &mut Diagnostics) {
+    pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
         let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
@@ -449,93 +443,6 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
         if joint.driven && joint.mimic.is_none() {
             self.model.inputs.push((name, Input::Coordinate(on)));
-        }
-    }
-
-    fn add_masses(&mut self, cx: &mut Diagnostics) {
-        for (k, body) in self.description.bodies.iter().enumerate() {
-            let inertia = self.body_inertia(body, cx);
-            self.masses.push(inertia);
-            if let Some(inertia) = inertia
-                && let Some((Some(link), pose)) = self.places[k].clone()
-            {
-                self.attach(link, &pose, inertia);
-            }
-        }
-        for particle in &self.description.particles {
-            self.add_particle(particle, cx);
-        }
-    }
-
-    /// Mass, centre of mass and central inertia of a body.
-    fn body_inertia(
-        &self,
-        body: &Body,
-        cx: &mut Diagnostics,
-    ) -> Option<(crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>)> {
-        let graph = self.scope.graph;
-        let name = &body.name.text;
-        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
-        let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
-        let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
-        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
-            && m < 0.0
-        {
-            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"));
-        }
-        if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
-            && !body.trust_inertia
-        {
-            let hint = e.place.file.as_ref().map(|_| {
-                "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
-            });
-            check_inertia(name, inertia, &e.place, hint, cx);
-        }
-        Some((mass?, com?, inertia?))
-    }
-
-    fn attach(
-        &mut self,
-        link: LinkId,
-        pose: &Pose<'g>,
-        (mass, com, central): (crate::expr::Expr<'g>, Vec3<'g>, Sym3<'g>),
-    ) {
-        let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
-        let sum = &mut self.model.links[link.0].inertia;
-        *sum = sum.plus(&added);
-    }
-
-    /// Figures may be finite and their products not.
-    fn check_finite(&self, cx: &mut Diagnostics) {
-        if !cx.is_empty() {
-            return;
-        }
-        let infinite = |e: &crate::expr::Expr<'g>| e.value().is_some_and(|n| !n.is_finite());
-        for (k, body) in self.description.bodies.iter().enumerate() {
-            let Some((Some(link), _)) = &self.places[k] else { continue };
-            let i = &self.model.links[link.0].inertia;
-            let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
-            if all.into_iter().any(infinite) {
-                let name = &body.name;
-                cx.error(name.place.clone(), format!("the figures of `{}` are too large", name.text))
-                    .help("mass times the square of the distance from the joint is not a finite number");
-                return;
-            }
-        }
-    }
-
-    fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
-        let graph = self.scope.graph;
-        let mass = self.scope.scalar(&particle.mass, cx);
-        if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
-            cx.error(
-                particle.mass.place.clone(),
-                format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
-            );
-        }
-        let placed = self.scope.world.borrow().places.get(&particle.name.text).cloned();
-        if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
-            self.attach(link, &pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
         }
     }
 

@@ -17,6 +17,7 @@ mod embed;
 mod inertia;
 mod joint;
 pub mod kinematics;
+mod masses;
 mod mobility;
 mod outline;
 mod place;

@@ -26,7 +26,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
-        for (j, _, child) in &order.joints {
+        for (j, child) in &order.joints {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
                 let (name, joint) = (&body.name, &d.joints[*j].name);
                 cx.error(name.place.clone(), format!("`{}` is placed twice", name.text))
@@ -129,8 +129,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let d = self.description;
         match item {
             Item::Joint(k) => {
-                let (j, parent, child) = order.joints[k];
-                self.place_joint(j, parent, child, cx);
+                let (j, child) = order.joints[k];
+                self.place_joint(j, child, cx);
             }
             Item::Frame(k) => {
                 if let Some((link, pose)) = self.frame_place(k, cx) {

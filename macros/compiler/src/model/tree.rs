@@ -17,11 +17,11 @@ pub struct Held<'a> {
     pub name: &'a Name,
 }
 
-/// The joints in an order in which every parent is placed before its children, with the bodies they join
-/// (`None` for the ground), and the joints that close loops.
+/// The joints in an order in which every parent is placed before its children, with the bodies that they hold, and the
+/// joints that close loops.
 pub struct Order {
-    /// Joint, parent, child.
-    pub joints: Vec<(usize, Option<BodyIndex>, BodyIndex)>,
+    /// Joint, child.
+    pub joints: Vec<(usize, BodyIndex)>,
     /// Joints whose child has its place already.
     pub closing: Vec<usize>,
 }
@@ -95,7 +95,7 @@ pub fn find_tree(
             }
         }
     };
-    let mut parents: Vec<Option<usize>> = vec![None; held.len()];
+    let mut is_held = vec![false; held.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
     let mut sound = true;
     let closing = closing(description);
@@ -117,7 +117,7 @@ pub fn find_tree(
         }
         match child {
             Some(child) if !closing[j] => {
-                parents[child] = Some(j);
+                is_held[child] = true;
                 ends.push((j, parent, child));
             }
             _ => loops.push(j),
@@ -128,7 +128,7 @@ pub fn find_tree(
     }
     let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in held.iter().enumerate() {
-        if parents[k].is_none() && !is_placed(k) {
+        if !is_held[k] && !is_placed(k) {
             report_unheld(description, body.name, &loops, cx);
             sound = false;
         }
@@ -158,12 +158,13 @@ fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &m
     }
 }
 
-/// Depth first from the ground, siblings in declaration order; what is not reached is left out.
+/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration order; what
+/// is not reached is left out.
 fn sort(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,
     roots: &[BodyIndex],
-) -> Vec<(usize, Option<BodyIndex>, BodyIndex)> {
+) -> Vec<(usize, BodyIndex)> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); bodies + 1];
     for (k, (_, parent, _)) in ends.iter().enumerate() {
         children[parent.map_or(bodies, |p| p)].push(k);
@@ -172,8 +173,9 @@ fn sort(
     let mut todo: Vec<usize> = roots.iter().rev().flat_map(|r| children[*r].iter().rev()).copied().collect();
     todo.extend(children[bodies].iter().rev());
     while let Some(k) = todo.pop() {
-        order.push(ends[k]);
-        todo.extend(children[ends[k].2].iter().rev());
+        let (joint, _, child) = ends[k];
+        order.push((joint, child));
+        todo.extend(children[child].iter().rev());
     }
     order
 }
