@@ -4,7 +4,8 @@ use linkwork::mechanism;
 /// to rattle, stops and turns the other way.
 ///
 /// Source: Kane and Levinson, *Realistic mathematical modeling of the rattleback*, Int. J. Non-Linear Mech. 17 (1982);
-/// Walker, *On a dynamical top*, Q. J. Pure Appl. Math. 28 (1896).
+/// Walker, *On a dynamical top*, Q. J. Pure Appl. Math. 28 (1896). [`BENCHMARK`](Self::BENCHMARK) has the figures of the
+/// first.
 ///
 /// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the body's axes, which are those
 ///   of the ellipsoid `x²/a² + y²/b² + z²/c² = 1`. z points up; the centre of mass is below its middle.
@@ -43,15 +44,9 @@ pub struct Rattleback {
     contact: Rolling,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{assert_close, assert_near, precisely};
-    use linkwork::nalgebra::{UnitQuaternion, Vector3};
-    use linkwork::prelude::*;
-
-    /// Kane's and Levinson's.
-    const R: Rattleback = Rattleback {
+impl Rattleback {
+    /// The stone of Kane and Levinson.
+    pub const BENCHMARK: Rattleback = Rattleback {
         g: 9.81,
         mass: 1.0,
         a: 0.2,
@@ -63,6 +58,16 @@ mod tests {
         izz: 1.7e-3,
         ixy: -2e-5,
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_close, assert_near, precisely};
+    use linkwork::nalgebra::{UnitQuaternion, Vector3};
+    use linkwork::prelude::*;
+
+    const R: Rattleback = Rattleback::BENCHMARK;
 
     /// Touching the table in an attitude, with an angular velocity in the body's axes.
     fn state(turn: UnitQuaternion<f64>, w: Vector3<f64>) -> (SVector<f64, 7>, SVector<f64, 6>) {

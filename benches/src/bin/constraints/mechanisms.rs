@@ -158,18 +158,7 @@ pub fn mechanisms() -> Vec<fn() -> Mechanism> {
             mechanism(("bicycle", "bicycle"), m, (m.neutral(), v), (0.2, STEP))
         },
         || {
-            let m = Rattleback {
-                g: 9.81,
-                mass: 1.0,
-                a: 0.2,
-                b: 0.03,
-                c: 0.02,
-                depth: 0.01,
-                ixx: 2e-4,
-                iyy: 1.6e-3,
-                izz: 1.7e-3,
-                ixy: -2e-5,
-            };
+            let m = Rattleback::BENCHMARK;
             let start = ([0.0, 0.0, 0.02, 0.01, 0.01, 0.0, 0.9999], [0.0, 0.0, 0.0, 0.0, 0.0, -5.0]);
             mechanism(("rattleback", "rattleback"), m, start, (0.1, STEP))
         },
