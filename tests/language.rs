@@ -3,6 +3,7 @@
 
 use linkwork::nalgebra::{SVector, Vector3};
 use linkwork::{Mechanism, Real, frame, mechanism};
+use linkwork_models::SliderCrank;
 use support::compare::assert_close;
 
 const TOLERANCE: f64 = 1e-14;
@@ -189,37 +190,10 @@ fn structure_without_motion() {
     assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
 }
 
-/// The language's page: the last joint closes the loop.
-#[mechanism(gravity = -9.81 * y)]
-struct SliderCrank {
-    r: f64,
-    l: f64,
-    m_crank: f64,
-    m_rod: f64,
-    m_piston: f64,
-
-    #[body(mass = m_crank, com = r / 2 * x, inertia = rod(m_crank, r, x))]
-    crank: Body,
-    #[body(mass = m_rod, com = l / 2 * x, inertia = rod(m_rod, l, x))]
-    rod: Body,
-    #[body(mass = m_piston)]
-    piston: Body,
-    #[joint(ground -> crank, about = z)]
-    main: Pin,
-    #[joint(crank.at(r * x) -> rod, about = z)]
-    big_end: Pin,
-    #[joint(ground -> piston, along = x)]
-    cylinder: Sleeve,
-    #[joint(rod.at(l * x) -> piston, about = z)]
-    small_end: Pin,
-    #[acts(on = main)]
-    motor: Torque,
-}
-
 /// At right angles: the piston is where Pythagoras has it, stands still against the crank's end, and its rows are named.
 #[test]
 fn joint_that_closes_a_loop() {
-    let engine = SliderCrank { r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
+    let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
     assert_eq!(SliderCrank::CONFIGURATION, ["main", "big_end", "cylinder"]);
     assert_eq!(SliderCrank::CONSTRAINTS, ["small_end.x", "small_end.y"]);
     let up = std::f64::consts::FRAC_PI_2;
@@ -230,7 +204,7 @@ fn joint_that_closes_a_loop() {
     assert_close("rates", &[v[1] / v[0], v[2] / v[0]], &[-1.0, -0.3], TOLERANCE);
 }
 
-/// The language's page: a rolling pair on a free body.
+/// A rolling pair on a free body.
 #[mechanism(gravity = -g * z)]
 struct RollingDisk {
     g: f64,
