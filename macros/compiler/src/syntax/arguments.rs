@@ -228,13 +228,11 @@ impl Arguments {
     /// Reports what was not taken; `whose` is the element with its article.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         for (name, _) in self.named.drain(..) {
-            if name.text == "rotation" || name.text == "axes" {
-                cx.error(name.place, format!("{whose} has no argument `{}`", name.text))
-                    .help("rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`");
-                continue;
-            }
-            cx.error(name.place, format!("{whose} has no argument `{}`", name.text))
-                .suggest(&name.text, known.iter().copied());
+            let error = cx.error(name.place, format!("{whose} has no argument `{}`", name.text));
+            match elsewhere(whose, &name.text) {
+                Some(help) => error.help(help),
+                None => error.suggest(&name.text, known.iter().copied()),
+            };
         }
         for e in self.plain.drain(..) {
             cx.error(e.place, "expected `name = value`").suggest("", known.iter().copied());
@@ -247,6 +245,19 @@ impl Arguments {
             cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
                 .help("`parent -> child` stands in a joint");
         }
+    }
+}
+
+/// What to do where an argument is not known that says something all the same.
+fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
+    match (whose, name) {
+        (_, "rotation" | "axes") => Some(
+            "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",
+        ),
+        ("a Rolling constraint", "friction" | "speed") => {
+            Some("surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`")
+        }
+        _ => None,
     }
 }
 

@@ -34,10 +34,9 @@ impl<'g> Builder<'_, 'g> {
         let (sine_a, cosine_a) = (half.sin(), half.cos());
         let side = g.num(if inside { 1.0 } else { -1.0 });
         let sine = sine_b * cosine_a - side * cosine_b * sine_a;
-        if let Some(n) = sine.value().filter(|n| *n <= 0.0) {
-            cx.error(constraint.value.place.clone(), "this cone does not fit into the funnel").help(format!(
-                "the half angle of the funnel is larger; the sine of the difference is {n:.3}"
-            ));
+        if sine.value().is_some_and(|n| n <= 0.0) {
+            cx.error(constraint.value.place.clone(), "this cone does not fit into the funnel")
+                .help("give the funnel a larger half angle than the cone");
             return;
         }
         let (a, b) = (self.of_first(pair, axis), self.of_second(pair, axis_b));
