@@ -1,0 +1,385 @@
+//! Force elements with their laws, where their points meet, and their powers together.
+
+use super::{EXACT, MOTION};
+use linkwork::nalgebra::{Vector1, Vector2, Vector3, Vector6};
+use linkwork::{frame, mechanism, simulate};
+use linkwork_models::TwoBodies;
+use std::f64::consts::PI;
+use support::compare::{assert_close, assert_same_dynamics};
+use support::random::Random;
+use support::simulate::advance;
+
+#[mechanism]
+struct MassInerter {
+    #[body(mass = 2)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, stiffness = 50)]
+    spring: Spring,
+    #[acts(on = rail, damping = 3)]
+    damper: Dashpot,
+    #[acts(on = rail, inertance = 0.5)]
+    inerter: Inerter,
+}
+
+#[test]
+fn mass_with_inerter() {
+    let (q, _) = advance(&MassInerter {}, &Vector1::new(1.0), &Vector1::zeros(), 1.0);
+    assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
+}
+
+/// Writes the same two bodies with another law for the springs: between two of their points, on a length, on an angle.
+macro_rules! duffing {
+    ($name:ident: [$($law:tt)*], [$($turning:tt)*]) => {
+        #[mechanism(gravity = -9.81 * y)]
+        struct $name {
+            k: f64,
+            c: f64,
+            stiff: f64,
+            hard: f64,
+            #[body(mass = 1.2, com = 0.1 * x, inertia = diagonal(0.1, 0.2, 0.3))]
+            arm: Body,
+            #[body(mass = 0.7)]
+            slider: Body,
+            #[joint(ground -> arm, about = z)]
+            pin: Pin,
+            #[joint(ground.at(0.2 * y) -> slider, along = x)]
+            rail: Sleeve,
+            #[acts(between = (arm.at(0.5 * x), slider), free_length = 0.3, $($law)*)]
+            across: Spring,
+            #[acts(on = rail, free_length = 0.1, $($law)*)]
+            stop: Spring,
+            #[acts(on = pin, free_angle = 0.2, $($turning)*)]
+            twist: Spring,
+        }
+    };
+}
+duffing!(
+    DuffingByForce:
+    [force = k * stretch + c * pow(stretch, 3)],
+    [force = stiff * stretch + hard * pow(stretch, 3)]
+);
+duffing!(
+    DuffingByEnergy:
+    [energy = k / 2 * pow(stretch, 2) + c / 4 * pow(stretch, 4)],
+    [energy = stiff / 2 * pow(stretch, 2) + hard / 4 * pow(stretch, 4)]
+);
+
+#[mechanism]
+struct LinearByForce {
+    k: f64,
+    #[body(mass = 0.7)]
+    slider: Body,
+    #[joint(ground.at(0.2 * y) -> slider, along = x)]
+    rail: Sleeve,
+    #[acts(between = (ground, slider), force = k * stretch, free_length = 0.3)]
+    across: Spring,
+    #[acts(on = rail, force = k * stretch, free_length = 0.1)]
+    stop: Spring,
+}
+
+#[mechanism]
+struct LinearByStiffness {
+    k: f64,
+    #[body(mass = 0.7)]
+    slider: Body,
+    #[joint(ground.at(0.2 * y) -> slider, along = x)]
+    rail: Sleeve,
+    #[acts(between = (ground, slider), stiffness = k, free_length = 0.3)]
+    across: Spring,
+    #[acts(on = rail, stiffness = k, free_length = 0.1)]
+    stop: Spring,
+}
+
+#[test]
+fn springs_by_force_and_by_energy() {
+    let (k, c, stiff, hard) = (20.0, 300.0, 5.0, 2.0);
+    let (force, energy) = (DuffingByForce { k, c, stiff, hard }, DuffingByEnergy { k, c, stiff, hard });
+    assert_same_dynamics(&force, &energy, 4, 1e-12);
+    assert_same_dynamics(&LinearByForce { k }, &LinearByStiffness { k }, 4, 1e-12);
+}
+
+/// A cart between buffers that begin to act at a distance.
+#[mechanism]
+struct Buffers {
+    k: f64,
+    gap: f64,
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, energy = k / 2 * pow(max(stretch - gap, 0), 2))]
+    right: Spring,
+    #[acts(on = rail, energy = k / 2 * pow(min(stretch + gap, 0), 2))]
+    left: Spring,
+}
+
+#[test]
+fn stops() {
+    let (k, gap) = (1000.0, 0.5);
+    let cart = Buffers { k, gap };
+    let force = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
+    let cases = [(0.3, 0.0), (-0.4, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.7, 200.0), (-0.6, -100.0)];
+    for (x, expected) in cases {
+        assert_close(format!("at {x}"), &[force(x)], &[expected], 1e-12);
+    }
+    // Across and back, half an oscillation in each buffer.
+    let period = 4.0 * gap / 2.0 + 2.0 * PI / k.sqrt();
+    let (q, v) = advance(&cart, &Vector1::zeros(), &Vector1::new(2.0), period);
+    assert_close("after a period", &[q[0], v[0]], &[0.0, 2.0], 1e-9);
+}
+
+#[mechanism]
+struct SlidingBlock {
+    m: f64,
+    f: f64,
+    #[body(mass = m)]
+    block: Body,
+    #[joint(ground -> block, along = x)]
+    floor: Sleeve,
+    #[acts(on = floor, coulomb = f, speed = 1e-4)]
+    friction: Friction,
+}
+
+#[mechanism]
+struct StickingBlock {
+    #[body(mass = 1)]
+    block: Body,
+    #[joint(ground -> block, along = x)]
+    floor: Sleeve,
+    #[acts(on = floor, coulomb = 2, stiction = 3, stribeck_speed = 0.1, viscous = 0.7, speed = 0.01)]
+    friction: Friction,
+}
+
+#[test]
+fn friction() {
+    let (m, f) = (2.0, 3.0);
+    let block = SlidingBlock { m, f };
+    let (q, v) = advance(&block, &Vector1::zeros(), &Vector1::new(4.0), 2.0);
+    assert_close("sliding", &[q[0], v[0]], &[8.0 - f / m * 2.0, 4.0 - f / m * 2.0], MOTION);
+    let end = simulate(&block).from([0.0], [4.0]).duration(4.0).finish().expect("the integrator arrives");
+    assert_close("stopped", &[end.q[0]], &[16.0 * m / (2.0 * f)], 1e-6);
+
+    for v in [-0.5, -0.05, 0.0, 0.001, 0.2, 3.0_f64] {
+        let force = (2.0 + (-(v / 0.1).powi(2)).exp()) * (v / 0.01).tanh() + 0.7 * v;
+        let actual = StickingBlock {}.bias_forces(&Vector1::zeros(), &Vector1::new(v));
+        assert_close(format!("at {v} m/s"), actual.as_slice(), &[force], EXACT);
+    }
+}
+
+#[mechanism(gravity = -9.81 * y)]
+struct DraggedProjectile {
+    m: f64,
+    c: f64,
+    #[particle(mass = m)]
+    ball: Particle,
+    #[joint(ground -> ball, along = (x, y))]
+    flight: Stage,
+    #[define(v(ball / ground / ground))]
+    velocity: Vector,
+    #[dissipation(c / 2 * dot(velocity, velocity))]
+    drag: Rayleigh,
+}
+
+#[test]
+fn projectile_with_linear_drag() {
+    let (m, c, t) = (0.4, 0.3, 1.7);
+    let ball = DraggedProjectile { m, c };
+    let (q, v) = advance(&ball, &Vector2::zeros(), &Vector2::new(7.0, 9.0), t);
+    let (time, terminal) = (m / c, 9.81 * m / c);
+    let decay = (-t / time).exp();
+    let expected = [
+        7.0 * time * (1.0 - decay),
+        (9.0 + terminal) * time * (1.0 - decay) - terminal * t,
+        7.0 * decay,
+        (9.0 + terminal) * decay - terminal,
+    ];
+    assert_close("flight", &[q[0], q[1], v[0], v[1]], &expected, MOTION);
+}
+
+/// A pendulum whose weight is a potential, and a spring written as one.
+#[mechanism]
+struct PendulumByPotential {
+    m: f64,
+    g: f64,
+    k: f64,
+    #[body(inertia = diagonal(0.1, 0.1, 0.1))]
+    rod: Body,
+    #[particle(mass = m, at = rod.at(-0.6 * y))]
+    bob: Particle,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+    #[energy(m * g * dot(r(bob / ground), y) + k / 2 * pow(pin - 0.3, 2))]
+    weight: Potential,
+}
+
+#[mechanism(gravity = -g * y)]
+struct PendulumByGravity {
+    m: f64,
+    g: f64,
+    k: f64,
+    #[body(inertia = diagonal(0.1, 0.1, 0.1))]
+    rod: Body,
+    #[particle(mass = m, at = rod.at(-0.6 * y))]
+    bob: Particle,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+    #[acts(on = pin, stiffness = k, free_angle = 0.3)]
+    spring: Spring,
+}
+
+#[test]
+fn potential() {
+    let (m, g, k) = (0.8, 9.81, 4.0);
+    assert_same_dynamics(&PendulumByPotential { m, g, k }, &PendulumByGravity { m, g, k }, 4, 1e-13);
+}
+
+/// Charges of one sign in a magnetic field.
+#[mechanism]
+struct Charges {
+    field: f64,
+    charge: f64,
+    #[particle(mass = 0.5)]
+    first: Particle,
+    #[particle(mass = 0.7)]
+    second: Particle,
+    #[joint(ground -> first, along = (x, y, z))]
+    one: Stage,
+    #[joint(ground -> second, along = (x, y, z))]
+    other: Stage,
+    #[acts(between = (first, second), strength = -charge * charge)]
+    repulsion: Attraction,
+    #[acts(on = first, value = charge * cross(v(first / ground / ground), field * z))]
+    magnetic: Force,
+}
+
+#[test]
+fn charged_particles() {
+    let charges = Charges { field: 2.0, charge: 0.3 };
+    let q = Vector6::new(0.1_f64, 0.2, 0.3, 1.1, -0.6, 0.9);
+    let v = Vector6::new(1.0, 2.0, 3.0, 0.0, 0.0, 0.0);
+    let apart = q.fixed_rows::<3>(0) - q.fixed_rows::<3>(3);
+    let repulsion = apart * (0.09 / apart.norm().powi(3));
+    let magnetic = Vector3::new(1.0, 2.0, 3.0).cross(&Vector3::new(0.0, 0.0, 2.0)) * 0.3;
+    let a = charges.forward_dynamics(&q, &v, &Vector6::zeros());
+    assert_close("first", a.fixed_rows::<3>(0).as_slice(), ((repulsion + magnetic) / 0.5).as_slice(), EXACT);
+    assert_close("second", a.fixed_rows::<3>(3).as_slice(), (-repulsion / 0.7).as_slice(), EXACT);
+    assert_close("energy", &[charges.potential_energy(&q)], &[0.09 / apart.norm()], EXACT);
+
+    // Without charge on the other, a circle with the cyclotron's period: 2 π m / (q B).
+    let start = Vector6::new(0.0, 0.0, 0.0, 1e8, 0.0, 0.0);
+    let turning = Vector6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (q, v) = advance(&charges, &start, &turning, 2.0 * PI * 0.5 / 0.6);
+    assert_close("circle", &[q[0], q[1], v[0], v[1]], &[0.0, 0.0, 1.0, 0.0], 1e-9);
+}
+
+/// Springs and dashpots to a point that the particle can reach.
+#[mechanism]
+struct Meeting {
+    l: f64,
+    #[particle(mass = 2)]
+    ball: Particle,
+    #[joint(ground -> ball, along = (x, y))]
+    table: Stage,
+    #[acts(between = (ground, ball), stiffness = 30, free_length = l)]
+    spring: Spring,
+    #[acts(between = (ground, ball), force = 4 * stretch + pow(stretch, 3), free_length = l)]
+    hard: Spring,
+    #[acts(between = (ground, ball), damping = 3)]
+    damper: Dashpot,
+    #[acts(between = (ground, ball), inertance = 0.5)]
+    inerter: Inerter,
+}
+
+/// A distance of zero has no direction, and what acts along it does nothing there; one with the free length zero has the
+/// limit zero.
+#[test]
+fn points_that_coincide() {
+    for l in [0.0, 0.3] {
+        let meeting = Meeting { l };
+        let origin = Vector2::zeros();
+        let v = Vector2::new(1.0, 2.0);
+        assert_close("bias", meeting.bias_forces(&origin, &v).as_slice(), &[0.0, 0.0], EXACT);
+        assert_close("mass", meeting.mass_matrix(&origin).as_slice(), &[2.0, 0.0, 0.0, 2.0], EXACT);
+        let energy = 15.0 * l * l + 2.0 * l * l + l.powi(4) / 4.0;
+        assert_close("energy", &[meeting.potential_energy(&origin)], &[energy], EXACT);
+        for small in [1e-12, 1e-6] {
+            let (q, s) = (Vector2::new(small * 0.6, small * 0.8), small - l);
+            let force = 34.0 * s + s.powi(3) + 3.0 * (0.6 * v[0] + 0.8 * v[1]);
+            let bias = meeting.bias_forces(&q, &Vector2::zeros());
+            let still = force - 3.0 * (0.6 * v[0] + 0.8 * v[1]);
+            assert_close("near", bias.as_slice(), &[0.6 * still, 0.8 * still], 1e-9);
+        }
+    }
+}
+
+/// Gravity between particles at one place has no limit: the forces are not finite, and an integrator says so.
+#[test]
+fn particles_that_coincide() {
+    let bodies = TwoBodies { constant: 1.0, m1: 1.0, m2: 1.0 };
+    let q = Vector6::zeros();
+    assert_eq!(bodies.potential_energy(&q), f64::NEG_INFINITY);
+    assert!(bodies.bias_forces(&q, &Vector6::zeros()).iter().any(|f| !f.is_finite()));
+    assert!(simulate(&bodies).from(q, Vector6::zeros()).duration(1.0).finish().is_err());
+}
+
+/// Something of every class: conservative, dissipative, control, disturbance, inertial.
+#[mechanism(gravity = -9.81 * y)]
+struct Workbench {
+    wind: f64,
+    #[body(mass = 2, com = 0.2 * x, inertia = rod(2, 0.4, x))]
+    arm: Body,
+    #[particle(mass = 0.5, at = arm.at(0.4 * x))]
+    tip: Particle,
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> arm, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, stiffness = 3, free_angle = 0.2)]
+    coil: Spring,
+    #[acts(between = (ground.at(y), tip), energy = 5 * pow(stretch, 4), free_length = 0.3)]
+    band: Spring,
+    #[acts(on = rail, damping = 0.7)]
+    dashpot: Dashpot,
+    #[acts(between = (ground.at(y), tip), force = 0.3 * speed + 0.1 * pow(speed, 3))]
+    damper: Dashpot,
+    #[acts(on = hinge, coulomb = 0.2, stiction = 0.3, stribeck_speed = 0.5, viscous = 0.1, speed = 0.2)]
+    dry: Friction,
+    #[dissipation(0.05 * rate(hinge) * rate(hinge))]
+    oil: Rayleigh,
+    #[acts(between = (ground.at(-x), tip), inertance = 0.4)]
+    inerter: Inerter,
+    #[acts(on = tip, value = wind * ground.x)]
+    gust: Force,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = cart, along = x)]
+    push: Force,
+}
+
+/// `d(T + U)/dt = control + disturbance − dissipated`, the left side by central differences along the motion.
+#[test]
+fn power_balance() {
+    let m = Workbench { wind: 0.8 };
+    let mut random = Random::new(3);
+    for _ in 0..20 {
+        let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
+            (random.vector(1.0), random.vector(2.0), random.vector(3.0));
+        let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
+        let energy = |h: f64| {
+            let (q, v) = (q + v * h + a * (h * h / 2.0), v + a * h);
+            m.kinetic_energy(&q, &v) + m.potential_energy(&q)
+        };
+        let h = 1e-4;
+        // Fourth order.
+        let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
+        let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
+        assert_close("power", &[rate], &[power], 1e-8);
+        assert!(m.dissipated_power(&q, &v) > 0.0, "what dissipates takes energy out");
+        let gust = m.frame_velocity(frame!(Workbench, "tip"), &q, &v)[0] * 0.8;
+        assert_close("disturbance", &[m.disturbance_power(&q, &v)], &[gust], EXACT);
+    }
+}
