@@ -22,7 +22,7 @@ pub use linearize::{Motion, columns, constrained_derivatives};
 #[doc(hidden)]
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]
-pub use solve::{least_multipliers, regular_solution};
+pub use solve::{least_multipliers, least_solution, regular_solution};
 pub use stabilized::{Stabilized, stabilized};
 
 /// Newton steps of a projection; a state that has drifted needs one or two.

@@ -5,5 +5,6 @@ mod counts;
 mod embedded;
 mod formulations;
 mod invariants;
+mod overdetermined;
 mod reactions;
 mod slipping;

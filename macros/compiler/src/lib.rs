@@ -256,7 +256,7 @@ impl Source {
         }
         if outline.constrained {
             functions.retain(|f| f.name != "forward_dynamics");
-            functions.extend(signatures::constrained(&sizes, 1, 1, 0));
+            functions.extend(signatures::constrained(&sizes, 1, 1, 0, false));
         }
         for output in &outline.outputs {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {

@@ -56,50 +56,69 @@ pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
             }
         }
     }
-    let lower = factor(&mass);
-    let mut x = [[T::zero(); NV]; NC];
-    for (k, x) in x.iter_mut().enumerate() {
-        let row = core::array::from_fn(|i| jacobian.data.0[i][k]);
-        *x = forward(&lower, row);
-    }
-    let free = forward(&lower, force);
+    let factors = Factors::of(&mass);
+    let rows: [[T; NV]; NC] = core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k]));
+    let (free, given) = (factors.solve(force), rows.map(|row| factors.solve(row)));
     let dot = |a: &[T; NV], b: &[T; NV]| a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
-    let gram: [[T; NC]; NC] = core::array::from_fn(|i| core::array::from_fn(|j| dot(&x[i], &x[j])));
-    let rhs: [T; NC] = core::array::from_fn(|k| -bias.data.0[0][k] - dot(&x[k], &free));
-    let lambda = least_norm(groups, gram, rhs);
-    let mut total = free;
-    for (x, lambda) in x.iter().zip(&lambda) {
-        total.iter_mut().zip(x).for_each(|(sum, x)| *sum += *x * *lambda);
+    let gram = core::array::from_fn(|i| core::array::from_fn(|j| dot(&rows[i.max(j)], &given[i.min(j)])));
+    let lacking = core::array::from_fn(|k| -bias.data.0[0][k] - dot(&rows[k], &free));
+    let lambda = least_norm(groups, gram, lacking);
+    let mut a = free;
+    for (given, lambda) in given.iter().zip(&lambda) {
+        a.iter_mut().zip(given).for_each(|(sum, x)| *sum += *x * *lambda);
     }
-    (SVector::from(backward(&lower, total)), SVector::from(lambda))
+    (SVector::from(a), SVector::from(lambda))
 }
 
-/// `L` of `A = L Lᵀ`, by rows.
-fn factor<T: Real, const N: usize>(a: &[[T; N]; N]) -> [[T; N]; N] {
-    let mut l = [[T::zero(); N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            let sum = (0..j).fold(a[i][j], |sum, k| sum - l[i][k] * l[j][k]);
-            l[i][j] = if i == j { sum.sqrt() } else { sum / l[j][j] };
+/// The same for constraints of which some always follow from others, from what straight-line code has `found`: `NV`
+/// free accelerations, `NC` numbers that the constraints lack of zero under those, the rows of `J M⁻¹ Jᵀ`, and for each
+/// multiplier the `NV` accelerations that it gives.
+#[inline]
+pub fn least_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+    groups: &[usize; NC],
+    found: &[T; N],
+) -> Multipliers<T, NV, NC> {
+    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
+    let gram = core::array::from_fn(|i| core::array::from_fn(|j| part(NV + NC + i * NC + j)));
+    let lambda = least_norm(groups, gram, core::array::from_fn(|k| part(NV + k)));
+    let given = |i: usize| NV + NC + NC * NC + i;
+    let a = SVector::from_fn(|i, _| {
+        let all = lambda.iter().enumerate();
+        all.fold(part(i), |sum, (k, lambda)| sum + part(given(k * NV + i)) * *lambda)
+    });
+    (a, SVector::from(lambda))
+}
+
+/// `A = L D Lᵀ`: the rows of `L` below its diagonal of ones, and the reciprocals of `D`.
+struct Factors<T, const N: usize> {
+    lower: [[T; N]; N],
+    inverse: [T; N],
+}
+
+impl<T: Real, const N: usize> Factors<T, N> {
+    fn of(a: &[[T; N]; N]) -> Self {
+        let (mut lower, mut inverse) = ([[T::zero(); N]; N], [T::zero(); N]);
+        for i in 0..N {
+            let mut scaled = [T::zero(); N];
+            for j in 0..i {
+                scaled[j] = (0..j).fold(a[i][j], |sum, k| sum - scaled[k] * lower[j][k]);
+                lower[i][j] = scaled[j] * inverse[j];
+            }
+            inverse[i] = T::one() / (0..i).fold(a[i][i], |sum, k| sum - scaled[k] * lower[i][k]);
         }
+        Self { lower, inverse }
     }
-    l
-}
 
-/// `L⁻¹ b`.
-fn forward<T: Real, const N: usize>(l: &[[T; N]; N], mut b: [T; N]) -> [T; N] {
-    for i in 0..N {
-        b[i] = (0..i).fold(b[i], |sum, k| sum - l[i][k] * b[k]) / l[i][i];
+    /// `A⁻¹ b`.
+    fn solve(&self, mut b: [T; N]) -> [T; N] {
+        for i in 0..N {
+            b[i] = (0..i).fold(b[i], |sum, k| sum - self.lower[i][k] * b[k]);
+        }
+        for i in (0..N).rev() {
+            b[i] = (i + 1..N).fold(b[i] * self.inverse[i], |sum, k| sum - self.lower[k][i] * b[k]);
+        }
+        b
     }
-    b
-}
-
-/// `L⁻ᵀ b`.
-fn backward<T: Real, const N: usize>(l: &[[T; N]; N], mut b: [T; N]) -> [T; N] {
-    for i in (0..N).rev() {
-        b[i] = (i + 1..N).fold(b[i], |sum, k| sum - l[k][i] * b[k]) / l[i][i];
-    }
-    b
 }
 
 /// The solution of least norm of `A x = b` for a positive semidefinite `A`: with `A = L Lᵀ` for as many columns of `L` as
@@ -120,8 +139,8 @@ fn least_norm<T: Real, const N: usize>(groups: &[usize; N], mut a: [[T; N]; N], 
         let Some(k) = best.filter(|k| part(*k, &a) > tolerance()) else { break };
         taken[k] = true;
         rank += 1;
-        let root = a[k][k].sqrt();
-        *column = core::array::from_fn(|i| if taken[i] && i != k { T::zero() } else { a[i][k] / root });
+        let inverse = T::one() / a[k][k].sqrt();
+        *column = core::array::from_fn(|i| if taken[i] && i != k { T::zero() } else { a[i][k] * inverse });
         for i in 0..N {
             for j in 0..N {
                 a[i][j] -= column[i] * column[j];
@@ -135,9 +154,9 @@ fn least_norm<T: Real, const N: usize>(groups: &[usize; N], mut a: [[T; N]; N], 
             if i == j && i >= rank { T::one() } else { sum }
         })
     });
-    let l = factor(&gram);
+    let factors = Factors::of(&gram);
     let y = core::array::from_fn(|i| (0..N).fold(T::zero(), |sum, k| sum + columns[i][k] * b[k]));
-    let y = backward(&l, forward(&l, backward(&l, forward(&l, y))));
+    let y = factors.solve(factors.solve(y));
     core::array::from_fn(|k| (0..N).fold(T::zero(), |sum, i| sum + columns[i][k] * y[i]))
 }
 

@@ -12,7 +12,8 @@ pub(super) fn replace(functions: &mut Vec<Function>, model: &Model<'_>) {
         functions.retain(|f| f.name != "forward_dynamics");
         let (nh, nc) = (model.holonomic(), model.constraints.len());
         let slipping = friction::slipping(model).len();
-        functions.extend(signatures::constrained(&Sizes::of(model), nh, nc, slipping));
+        let spread = model.is_overdetermined();
+        functions.extend(signatures::constrained(&Sizes::of(model), nh, nc, slipping, spread));
     }
 }
 

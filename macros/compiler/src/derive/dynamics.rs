@@ -202,8 +202,13 @@ impl<'g> Forms<'g> {
 
     fn multipliers(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         cheapest(self.plain().map(|model| {
-            let (mass, force) = self.loaded(model, force, bias);
             let rows = constraints::jacobian(model);
+            if model.is_overdetermined() {
+                let mass = crba::mass_matrix(model, &self.joints);
+                let parts = constraints::responses(&mass, &rows, force.to_vec(), bias, &self.joints);
+                return self.stage.program(&parts);
+            }
+            let (mass, force) = self.loaded(model, force, bias);
             self.stage.program(&constraints::solve(model, &mass, &rows, force, bias.to_vec()))
         }))
     }

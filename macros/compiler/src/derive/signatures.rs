@@ -402,11 +402,18 @@ pub fn output(name: &str, size: usize, uses: Uses, sizes: &Sizes) -> Vec<Functio
     functions
 }
 
-/// The functions of a mechanism with `nc` constraints, of which `nh` are on configurations, beside those that solve.
-pub fn constrained(sizes: &Sizes, nh: usize, nc: usize, slipping: usize) -> Vec<Function> {
+/// The functions of a mechanism with `nc` constraints, of which `nh` are on configurations, beside those that solve; of an
+/// overdetermined one those give what the solution follows from.
+pub fn constrained(
+    sizes: &Sizes,
+    nh: usize,
+    nc: usize,
+    slipping: usize,
+    overdetermined: bool,
+) -> Vec<Function> {
     let nv = sizes.nv;
     let (force, bias) = (Argument::Given("force", 0, nv), Argument::Given("bias", nv, nc));
-    let solution = Shape::Array(nv + 3 * nc);
+    let solution = Shape::Array(if overdetermined { (nv + nc) * (1 + nc) } else { nv + 3 * nc });
     let mut functions = vec![
         sizes.function(
             "constraint_residuals",

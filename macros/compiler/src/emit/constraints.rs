@@ -22,6 +22,8 @@ pub struct Constraints {
     pub slipping: Vec<usize>,
     /// Those that determine coordinates which may have no inertia.
     pub determining: Vec<usize>,
+    /// Some follow from others everywhere: only least squares tell the multipliers.
+    pub overdetermined: bool,
 }
 
 impl Constraints {
@@ -35,6 +37,7 @@ impl Constraints {
             freedom: [0; 2],
             slipping: Vec::new(),
             determining: Vec::new(),
+            overdetermined: false,
         }
     }
 
@@ -52,6 +55,7 @@ impl Constraints {
             groups: model.constraints.iter().map(|c| c.group).collect(),
             slipping: those(|c| !c.drags.is_empty()),
             determining: those(|c| c.determines),
+            overdetermined: model.is_overdetermined(),
         }
     }
 }
@@ -96,7 +100,6 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let (nv, nc, nh) = (s.nv, c.names.len(), c.holonomic);
-    let n = nv + 3 * nc;
     let scalar = s.scalar.name();
     let _ = writeln!(
         out,
@@ -121,10 +124,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         #[doc(hidden)]\n#[inline]
         pub fn __constraint_solution(&self, {t}q: &{q}, force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]) -> {v} {{
             let found = self.__constraint_correction({pass}q, force, bias);
-            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
-                ::core::option::Option::Some(solution) => solution.0,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(*force).into(), &(*bias).into()).0,
-            }}
+            {correction}.0
         }}
         /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
@@ -139,8 +139,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
         c.names,
-        groups = c.groups,
-        determining = c.determining,
+        correction = solution(c, s, "(*force).into()", "(*bias).into()"),
         np = c.freedom[0],
         ns = c.freedom[1],
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
@@ -150,21 +149,39 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
 }
 
+/// Accelerations and multipliers from what was `found`: of an elimination unless it fails for the forces and biases, which
+/// are spelt as given; of an overdetermined mechanism always by least squares.
+fn solution(c: &Constraints, s: &Signature<'_>, force: &str, bias: &str) -> String {
+    let pass = Words::new(c, s).pass;
+    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
+    let (groups, determining) = (&c.groups, &c.determining);
+    if c.overdetermined {
+        let n = (nv + nc) * (1 + nc);
+        return format!(
+            "::linkwork::__private::least_solution::<{scalar}, {nv}, {nc}, {n}>(&{groups:?}, &found)"
+        );
+    }
+    let n = nv + 3 * nc;
+    format!(
+        "match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
+            ::core::option::Option::Some(solution) => solution,
+            ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &{force}, &{bias}),
+        }}"
+    )
+}
+
 /// Accelerations and multipliers of a mechanism whose contacts do not slip.
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let (groups, determining) = (&c.groups, &c.determining);
-    let n = nv + 3 * nc;
+    let force = format!("(tau - self.bias_forces({pass}q, v))");
+    let bias = format!("self.constraint_bias({pass}q, v)");
+    let solution = solution(c, s, &force, &bias);
     format!(
         "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let found = self.__constrained_dynamics({pass}q, v, tau);
-            match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
-                ::core::option::Option::Some(solution) => solution,
-                ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &(tau - self.bias_forces({pass}q, v)), &self.constraint_bias({pass}q, v)),
-            }}
+            {solution}
         }}"
     )
 }

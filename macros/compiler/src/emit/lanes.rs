@@ -23,7 +23,8 @@ pub fn write_methods(
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
     let wanted = |f: &&Function| match f.name.as_str() {
-        "__constrained_dynamics" | "__accelerations_and_inverse" => true,
+        "__constrained_dynamics" => !i.constraints.overdetermined,
+        "__accelerations_and_inverse" => true,
         _ => !f.docs.is_empty() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
@@ -63,6 +64,21 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             _ => format!("&lane({}, k)", a.name()),
         })
         .collect();
+    let single = format!("lane_by_lane(|k| self.forward_dynamics({}))", one.join(", "));
+    if i.constraints.overdetermined {
+        let _ = writeln!(
+            out,
+            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit; one after another.
+            #[inline]\n#[must_use]
+            pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
+                use ::linkwork::__private::{{lane, lane_by_lane}};
+                {single}
+            }}",
+            s.parameters(&arguments),
+            s.vector(nv),
+        );
+        return;
+    }
     let slipping = &i.constraints.slipping;
     let sides = match slipping.len() {
         0 => String::new(),
@@ -77,7 +93,7 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             let found = self.__constrained_dynamics_lanes({}{sides});
             match pressing_solution::<{}, {nv}, {nc}, {}>(&{slipping:?}, &found) {{
                 ::core::option::Option::Some(solution) => solution.0,
-                ::core::option::Option::None => lane_by_lane(|k| self.forward_dynamics({})),
+                ::core::option::Option::None => {single},
             }}
         }}",
         s.parameters(&arguments),
@@ -85,7 +101,6 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         names.join(", "),
         s.scalar.name(),
         nv + 3 * nc,
-        one.join(", ")
     );
 }
 

@@ -11,8 +11,8 @@
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
 use super::friction;
-use super::kinematics::velocity_gradients;
-use super::ldl::{Solution, solve_in};
+use super::kinematics::{Joint, velocity_gradients};
+use super::ldl::{self, Solution, solve_in};
 use crate::expr::{Expr, Function};
 use crate::model::{Model, Quantity};
 
@@ -64,6 +64,34 @@ pub fn solve<'g>(
     x.extend(pivots[nv..].iter().map(|p| -*p));
     x.extend(in_groups(model, &taken[nv..]));
     x
+}
+
+/// What multipliers of least norm follow from, for constraints that depend on each other: the free accelerations
+/// `M⁻¹ f`, what `−b − J M⁻¹ f` the constraints lack, the matrix `J M⁻¹ Jᵀ`, and the accelerations `M⁻¹ Jᵀ` that
+/// each multiplier gives.
+pub fn responses<'g>(
+    mass: &Matrix<'g>,
+    jacobian: &Matrix<'g>,
+    force: Vec<Expr<'g>>,
+    bias: &[Expr<'g>],
+    joints: &[Joint<'g>],
+) -> Vec<Expr<'g>> {
+    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).map(|(a, b)| *a * *b).reduce(|a, b| a + b);
+    let mut out = ldl::solve(mass.clone(), force, joints);
+    let given: Matrix<'g> =
+        jacobian.iter().map(|row| ldl::solve(mass.clone(), row.clone(), joints)).collect();
+    let lacking = jacobian.iter().zip(bias).map(|(row, b)| dot(row, &out).map_or(-*b, |sum| -*b - sum));
+    let lacking: Vec<Expr<'g>> = lacking.collect();
+    out.extend(lacking);
+    for (i, row) in jacobian.iter().enumerate() {
+        // The lower triangle, twice.
+        out.extend((0..given.len()).filter_map(|j| match j <= i {
+            true => dot(row, &given[j]),
+            false => dot(&jacobian[j], &given[i]),
+        }));
+    }
+    out.extend(given.concat());
+    out
 }
 
 /// By constraint, the sum over its group.

@@ -539,4 +539,11 @@ impl<'g> Model<'g> {
     pub fn holonomic(&self) -> usize {
         self.constraints.iter().filter(|c| c.residual.is_some()).count()
     }
+
+    /// Whether some constraints follow from others wherever all are fulfilled, though no elimination could tell which: as
+    /// in Bricard's linkage.
+    pub fn is_overdetermined(&self) -> bool {
+        let plain = self.constraints.iter().all(|c| c.drags.is_empty() && !c.determines);
+        plain && self.constraints.len() + self.freedom[1] > self.nv()
+    }
 }
