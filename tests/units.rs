@@ -225,6 +225,20 @@ fn a_parameter_is_one_thing() {
     );
 }
 
+/// A mechanism that cannot move, with a parameter that is two things: both are told.
+#[test]
+fn units_are_told_with_what_holds_the_mechanism() {
+    refuse(
+        "#[joint(arm.at(a * x) -> ground.at(3 * x))] stop: Weld,
+        #[acts(on = rail, stiffness = a)] coil: Spring,",
+        &[
+            "`a` is a stiffness (N/m) here, but a length (m) elsewhere",
+            "`a` is a length (m) here",
+            "this mechanism cannot move",
+        ],
+    );
+}
+
 #[test]
 fn like_is_added_to_like() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";

@@ -123,6 +123,11 @@ impl Diagnostics {
         }
     }
 
+    /// Adds what another list holds.
+    pub fn append(&mut self, mut other: Diagnostics) {
+        self.errors.append(&mut other.errors);
+    }
+
     /// True if nothing was reported.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()

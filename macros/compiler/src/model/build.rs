@@ -58,6 +58,8 @@ pub struct Builder<'a, 'g> {
     pub opening: Option<(&'a [usize], &'a [Constraint<'g>])>,
     /// Number of the group of constraints that is being added.
     pub group: usize,
+    /// Mistakes that only the motion shows: they are told together with those of units.
+    pub mobility: Diagnostics,
 }
 
 /// Checks a description and builds its model. `None` after a mistake; every mistake is in `cx`.
@@ -125,6 +127,7 @@ fn build<'g>(
         let coordinates = &builder.scope.world.borrow().coordinates;
         builder.model.units = units::infer(description, &builder.model, coordinates, cx);
     }
+    cx.append(builder.mobility);
     cx.is_empty().then_some(builder.model)
 }
 
@@ -230,6 +233,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             embedded: Vec::new(),
             opening: None,
             group: 0,
+            mobility: Diagnostics::new(),
         }
     }
 

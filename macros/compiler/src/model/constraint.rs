@@ -121,7 +121,9 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         if cx.is_empty() && !self.model.constraints.is_empty() {
-            self.check_mobility(cx);
+            let mut found = Diagnostics::new();
+            self.check_mobility(&mut found);
+            self.mobility = found;
         }
     }
 
