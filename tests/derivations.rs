@@ -4,47 +4,23 @@
 
 mod random_tree;
 
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
+use linkwork_compiler::lower;
 use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
-use linkwork_compiler::model::random_configuration;
-use linkwork_compiler::model::{Direction, Input, LinkId, Model, Quantity, build_model, sample};
-use linkwork_compiler::{lower, read};
+use linkwork_compiler::model::{Direction, Input, LinkId, Model, Quantity, random_configuration, sample};
 use proptest::prelude::*;
-use random_tree::{Tree, trees};
-use std::path::Path;
+use random_tree::trees;
+use support::model::{symbols, with_model};
 use support::random::config;
 
 /// Relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
 
-fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
-    let (arguments, item) = tree.source();
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let mut cx = Diagnostics::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
-    let graph = Graph::new();
-    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
-    match model {
-        Some(model) => check(&model),
-        None => panic!("{}\n{item}", cx.messages().join("\n")),
-    }
-}
-
-/// Numbers for all symbols at a random state.
-fn values(model: &Model<'_>, seed: u64, e: &[Expr<'_>]) -> Vec<f64> {
-    let q = random_configuration(model, seed);
-    eval(e, &|s| match Quantity::of(s) {
-        Quantity::Configuration(k) => q[k],
-        Quantity::Parameter(_) => sample(s, seed),
-        _ => 4.0 * (sample(s, seed) - 1.0),
-    })
-}
-
 fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
-    let (a, b) = (values(model, seed, a), values(model, seed, b));
+    let at = symbols(model, seed);
+    let (a, b) = (eval(a, &at), eval(b, &at));
     let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for (k, (a, b)) in a.iter().zip(&b).enumerate() {
         assert!((a - b).abs() <= TOLERANCE * scale, "{what}, entry {k}: {a} and {b} (seed {seed})");
@@ -197,11 +173,11 @@ proptest! {
 
     #[test]
     fn lagrange_and_the_recursions_agree(tree in trees(3), seed in 0_u64..1000) {
-        with_model(&tree, |model| check_dynamics(model, seed));
+        with_model(&tree.source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
     fn inputs_do_the_work_of_their_forces(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree, |model| check_inputs(model, seed));
+        with_model(&tree.source(), |_, model| check_inputs(model, seed));
     }
 }

@@ -11,13 +11,13 @@ use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::lower::{Op, Program};
 use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, symbolic};
 use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
-use linkwork_compiler::model::random_configuration;
-use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::model::Model;
 use linkwork_compiler::{compile, read};
 use proptest::prelude::*;
-use random_tree::{Tree, trees};
+use random_tree::trees;
 use std::path::Path;
 use support::compare::assert_similar;
+use support::model::{symbols, with_model};
 use support::random::config;
 use support::table::Record;
 
@@ -74,29 +74,9 @@ robot!(Humanoid, simple_humanoid, "../models/urdf/simple_humanoid.urdf", , base 
 
 // ---- Two derivations ---------------------------------------------------------------------------------------------
 
-fn with_model(tree: &Tree, check: impl FnOnce(&Model<'_>)) {
-    let (arguments, item) = tree.source();
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let mut cx = Diagnostics::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
-    let graph = Graph::new();
-    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
-    match model {
-        Some(model) => check(&model),
-        None => panic!("{}\n{item}", cx.messages().join("\n")),
-    }
-}
-
 fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
-    let q = random_configuration(model, seed);
-    let values = |e: &[Expr<'_>]| {
-        eval(e, &|s| match Quantity::of(s) {
-            Quantity::Configuration(k) => q[k],
-            Quantity::Parameter(_) => sample(s, seed),
-            _ => 4.0 * (sample(s, seed) - 1.0),
-        })
-    };
-    assert_similar(what, &values(a), &values(b), DERIVATION);
+    let at = symbols(model, seed);
+    assert_similar(what, &eval(a, &at), &eval(b, &at), DERIVATION);
 }
 
 fn check_recursion(model: &Model<'_>, seed: u64) {
@@ -160,7 +140,7 @@ proptest! {
 
     #[test]
     fn recursion_and_differentiation_agree(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree, |model| {
+        with_model(&tree.source(), |_, model| {
             check_recursion(model, seed);
             check_coriolis_matrix(model, seed);
             check_inverse(model, seed);

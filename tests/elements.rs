@@ -3,40 +3,23 @@
 
 mod random_world;
 
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::replace::replace;
-use linkwork_compiler::expr::{Expr, Graph, Symbol};
+use linkwork_compiler::expr::{Expr, Symbol};
 use linkwork_compiler::mechanics::{self, Joint, crba, energy, lagrange, ldl, momentum, rnea};
 use linkwork_compiler::model::kinematics::{symbols_in, time_derivative, velocity_gradient};
-use linkwork_compiler::model::random_configuration;
-use linkwork_compiler::model::{Model, Quantity, build_model, outline, sample};
-use linkwork_compiler::read;
+use linkwork_compiler::model::{Model, Quantity, outline, random_configuration, sample};
 use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
-use random_world::{OUTPUTS, World, worlds};
-use std::path::Path;
+use random_world::{OUTPUTS, worlds};
+use support::model::with_model;
 use support::random::config;
 
 /// Relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
 /// Differences.
 const DIFFERENCE: f64 = 1e-7;
-
-fn with_model(world: &World, check: impl FnOnce(&Description, &Model<'_>)) {
-    let (arguments, item) = world.source();
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let mut cx = Diagnostics::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
-    let graph = Graph::new();
-    let description = source.map(|source| source.mechanism.description);
-    let model = description.as_ref().and_then(|d| build_model(d, &graph, &mut cx));
-    match (&description, &model) {
-        (Some(description), Some(model)) => check(description, model),
-        _ => panic!("{}\n{item}", cx.messages().join("\n")),
-    }
-}
 
 /// Numbers for all symbols: a state, accelerations, inputs and time.
 struct State {
@@ -223,16 +206,16 @@ proptest! {
 
     #[test]
     fn lagrange_and_the_recursions_agree(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world, |_, model| check_dynamics(model, seed));
+        with_model(&world.source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
     fn places_move_as_their_velocities_say(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world, |_, model| check_outputs(model, seed));
+        with_model(&world.source(), |_, model| check_outputs(model, seed));
     }
 
     #[test]
     fn a_mistake_leaves_the_signatures(world in worlds()) {
-        with_model(&world, check_outline);
+        with_model(&world.source(), check_outline);
     }
 }

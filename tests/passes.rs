@@ -10,8 +10,7 @@ use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
-use linkwork_compiler::model::random_configuration;
-use linkwork_compiler::model::{Model, Quantity, build_model, sample};
+use linkwork_compiler::model::{Model, Quantity};
 use linkwork_compiler::passes::limbs::{Limbs, find};
 use linkwork_compiler::passes::{Passes, forms};
 use linkwork_compiler::syntax::Requests;
@@ -20,6 +19,7 @@ use proptest::prelude::*;
 use random_limbs::creatures;
 use random_tree::trees;
 use std::path::Path;
+use support::model::{symbols, with_model};
 use support::random::config;
 
 /// Relative to the largest entry.
@@ -31,28 +31,6 @@ const CHOICES: [Passes; 4] = [
     Passes { frames: true, regroup: true, lanes: true, free_parameters: false },
     Passes { frames: true, regroup: true, lanes: true, free_parameters: true },
 ];
-
-fn with_model((arguments, item): (String, String), check: impl FnOnce(&Model<'_>)) {
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let mut cx = Diagnostics::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
-    let graph = Graph::new();
-    let model = source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx));
-    match model {
-        Some(model) => check(&model),
-        None => panic!("{}\n{item}", cx.messages().join("\n")),
-    }
-}
-
-/// Numbers for all symbols at a random state.
-fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(linkwork_compiler::expr::Symbol) -> f64 {
-    let q = random_configuration(model, seed);
-    move |s| match Quantity::of(s) {
-        Quantity::Configuration(k) => q[k],
-        Quantity::Parameter(_) => sample(s, seed),
-        _ => 4.0 * (sample(s, seed) - 1.0),
-    }
-}
 
 fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) {
     assert_eq!(new.len(), old.len(), "{what}");
@@ -253,18 +231,18 @@ proptest! {
 
     #[test]
     fn alike_limbs_as_lanes_are_the_same_mechanism(creature in creatures(3), seed in 0_u64..1000) {
-        with_model(creature.source(), |model| check_limbs(model, seed));
+        with_model(&creature.source(), |_, model| check_limbs(model, seed));
     }
 
     #[test]
     fn forms_are_the_same_mechanism(tree in trees(4), seed in 0_u64..1000) {
-        with_model(tree.source(), |model| check_forms(model, seed));
+        with_model(&tree.source(), |_, model| check_forms(model, seed));
     }
 
     #[test]
     fn programs_are_the_same_functions(tree in trees(6), seed in 0_u64..1000) {
         let _ = seed;
-        with_model(tree.source(), |model| {
+        with_model(&tree.source(), |_, model| {
             let mut cx = Diagnostics::new();
             let prepare = Requests { prepare: true, ..Requests::default() };
             let new = derive_with(model, prepare, Passes::default(), &mut cx);

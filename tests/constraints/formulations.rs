@@ -1,17 +1,15 @@
 //! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar and spatial
 //! joints, loops closed by every joint, and states on and off the constraints. The equations themselves are the judge.
 
-use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval;
-use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::mechanics::{self, constraints, crba, rnea};
-use linkwork_compiler::model::{Model, Quantity, build_model, random_configuration, sample};
-use linkwork_compiler::read;
+use linkwork_compiler::model::{Model, Quantity, random_configuration, sample};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::fmt::Write;
-use std::path::Path;
+use support::model::{symbols, try_model};
 use support::random::config;
 
 /// A chain of bodies from the ground and back, with the joint that closes it.
@@ -79,27 +77,12 @@ fn chains() -> impl Strategy<Value = Chain> {
 
 /// The model, unless the chain cannot move or its speeds depend on each other.
 fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
-    let (arguments, item) = chain.source(arguments);
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let mut cx = Diagnostics::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
-    let graph = Graph::new();
-    match source.and_then(|s| build_model(&s.mechanism.description, &graph, &mut cx)) {
-        Some(model) => check(&model),
-        None => {
-            let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
-            let all = cx.messages();
-            assert!(all.iter().all(|m| known.iter().any(|k| m.contains(k))), "{}\n{item}", all.join("\n"));
-        }
+    let source = chain.source(arguments);
+    if let Err(messages) = try_model(&source, |_, model| check(model)) {
+        let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
+        let known = |m: &String| known.iter().any(|k| m.contains(k));
+        assert!(messages.iter().all(known), "{}\n{}", messages.join("\n"), source.1);
     }
-}
-
-fn values(model: &Model<'_>, seed: u64, e: &[Expr<'_>]) -> Vec<f64> {
-    let q = random_configuration(model, seed);
-    eval(e, &|s| match Quantity::of(s) {
-        Quantity::Configuration(k) => q[k],
-        _ => 4.0 * (sample(s, seed) - 1.0),
-    })
 }
 
 #[test]
@@ -118,16 +101,17 @@ fn both_formulations_fulfil_the_equations() {
             let pivots = model.dependent.as_ref().expect("speeds were asked for");
             let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
             let (nv, nc) = (model.nv(), rows.len());
-            let first = values(model, seed, &by_multipliers);
-            let second = values(model, seed, &by_speeds);
+            let at = symbols(model, seed);
+            let first = eval(&by_multipliers, &at);
+            let second = eval(&by_speeds, &at);
             // Where the random configuration is close to a singular one, both say so.
             let regular = |all: &[f64]| (0..nc).all(|k| all[nv + nc + k] > 1e-4 * all[nv + 2 * nc + k]);
             if !regular(&first) || !regular(&second) {
                 return;
             }
-            let m = values(model, seed, &mass.concat());
-            let j = values(model, seed, &rows.concat());
-            let (f, b) = (values(model, seed, &force), values(model, seed, &bias));
+            let m = eval(&mass.concat(), &at);
+            let j = eval(&rows.concat(), &at);
+            let (f, b) = (eval(&force, &at), eval(&bias, &at));
             for (what, found) in [("multipliers", &first), ("speeds", &second)] {
                 let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
                 let scale = found[..nv + nc].iter().fold(1.0_f64, |s, x| s.max(x.abs()));

@@ -1,0 +1,46 @@
+//! Models of generated sources, and numbers for their symbols.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::{Graph, Symbol};
+use linkwork_compiler::model::{Model, Quantity, build_model, random_configuration, sample};
+use linkwork_compiler::read;
+use linkwork_compiler::syntax::Description;
+use std::path::Path;
+
+/// Arguments of the attribute and the struct that it stands on.
+pub type Source = (String, String);
+
+/// Looks at the model of a source and at what was read, unless there is none: then the messages say why.
+pub fn try_model(
+    (arguments, item): &Source,
+    check: impl FnOnce(&Description, &Model<'_>),
+) -> Result<(), Vec<String>> {
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let graph = Graph::new();
+    let description = source.map(|source| source.mechanism.description);
+    let model = description.as_ref().and_then(|d| build_model(d, &graph, &mut cx));
+    match (&description, &model) {
+        (Some(description), Some(model)) => check(description, model),
+        _ => return Err(cx.messages()),
+    }
+    Ok(())
+}
+
+/// Looks at the model of a source, which has one.
+pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>)) {
+    if let Err(messages) = try_model(source, check) {
+        panic!("{}\n{}", messages.join("\n"), source.1);
+    }
+}
+
+/// Numbers for all symbols at a random state: parameters around one, what changes around zero.
+pub fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
+    let q = random_configuration(model, seed);
+    move |s| match Quantity::of(s) {
+        Quantity::Configuration(k) => q[k],
+        Quantity::Parameter(_) => sample(s, seed),
+        _ => 4.0 * (sample(s, seed) - 1.0),
+    }
+}
