@@ -4,26 +4,11 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+use support::package::cargo;
 
-/// Builds the program in release mode with these features.
+/// Builds the program with these features.
 fn build(features: &str) -> Output {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("no_std/Cargo.toml");
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
-    let cargo = |network: &[&str]| {
-        Command::new(env!("CARGO"))
-            .args(["build", "--release", "--features", features])
-            .args(network)
-            .arg("--manifest-path")
-            .arg(&manifest)
-            .arg("--target-dir")
-            .arg(&target)
-            .output()
-            .expect("cargo starts")
-    };
-    let offline = cargo(&["--offline"]);
-    let text = String::from_utf8_lossy(&offline.stderr);
-    // A crate that nothing else of the workspace needs may not have been fetched yet.
-    if offline.status.success() || !text.contains("--offline") { offline } else { cargo(&[]) }
+    cargo(&["build", "--features", features], "no_std", env!("CARGO_TARGET_TMPDIR"))
 }
 
 #[test]

@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod mechanisms;
 pub mod model;
+pub mod package;
 pub mod random;
 pub mod robots;
 pub mod simulate;
