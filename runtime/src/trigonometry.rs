@@ -90,7 +90,7 @@ fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
 
 /// Sine and cosine of the reduced angle, and the number whose last bits are the quadrant.
 ///
-/// Cody and Waite's reduction by quarter turns, with the rounding of the reduced angle carried along; Taylor-like
+/// Cody and Waite's reduction by quarter turns, with what the reduced angle lacks carried along; Taylor-like
 /// polynomials in double precision (coefficients of fdlibm's `__kernel_sin` and `__kernel_cos`, Sun Microsystems 1993).
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -98,23 +98,20 @@ fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
 pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
-    // π / 2 in parts of 33 bits: products with quadrants below 2²⁰ are exact.
-    const PARTS: [f64; 4] = [
+    // π / 2 in two parts of 33 bits, whose products with quadrants below 2²⁰ are exact, and the rest.
+    const PARTS: [f64; 3] = [
         1.570_796_326_734_125_614_17,
         6.077_100_506_303_965_976_60e-11,
-        2.022_266_248_711_166_455_80e-21,
-        8.478_427_660_368_899_569_97e-32,
+        2.022_266_248_795_950_631_54e-21,
     ];
     let part = |k: usize| X::constant(PARTS[k]);
     let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
     let quarters = shifted - X::constant(ROUND);
     let first = A::neg_mul_add(quarters, part(0), x);
     let second = quarters * part(1);
-    let near = first - second;
-    let missing = (first - near) - second;
-    let missing = A::neg_mul_add(quarters, part(3), A::neg_mul_add(quarters, part(2), missing));
-    let r = near + missing;
-    let low = (near - r) + missing;
+    // The angle is `r + low`. Both may be as small as the rest: then the sine is their sum, and the cosine one.
+    let r = first - second;
+    let low = A::neg_mul_add(quarters, part(2), (first - r) - second);
     let z = r * r;
     let half = X::constant(0.5) * z;
     let sine = horner::<A, _>(
@@ -141,7 +138,8 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     );
     let s = r + A::mul_add(r * z, sine, A::neg_mul_add(low, half, low));
     let one = X::constant(1.0) - half;
-    let c = one + (((X::constant(1.0) - one) - half) + A::mul_add(z * z, cosine, -(r * low)));
+    let lost = (X::constant(1.0) - one) - half;
+    let c = one + A::mul_add(z * z, cosine, A::neg_mul_add(r, low, lost));
     (s, c, shifted)
 }
 
