@@ -49,7 +49,7 @@ mod number;
 mod vector;
 
 use crate::lanes::Registers;
-use crate::{Lanes, Real};
+use crate::Lanes;
 pub use number::{Elementary, Number};
 pub use vector::Vector;
 
@@ -116,13 +116,6 @@ pub trait Arithmetic: Registers {
     #[inline(always)]
     fn sin_cos_all<X: Elementary<Self>, const N: usize>(x: [X; N]) -> ([X; N], [X; N]) {
         X::sin_cos_all(x)
-    }
-
-    /// Sines and cosines of several angles, evaluated as lanes.
-    #[inline(always)]
-    fn sin_cos_in_lanes<T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
-        let (s, c) = Self::sin_cos(Self::lanes(x));
-        (*s.numbers(), *c.numbers())
     }
 
     elementary_functions!(elementary);

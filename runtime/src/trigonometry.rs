@@ -99,11 +99,8 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     // π / 2 in two parts of 33 bits, whose products with quadrants below 2²⁰ are exact, and the rest.
-    const PARTS: [f64; 3] = [
-        1.570_796_326_734_125_614_17,
-        6.077_100_506_303_965_976_60e-11,
-        2.022_266_248_795_950_631_54e-21,
-    ];
+    const PARTS: [f64; 3] =
+        [1.570_796_326_734_125_614_17, 6.077_100_506_303_965_976_60e-11, 2.022_266_248_795_950_631_54e-21];
     let part = |k: usize| X::constant(PARTS[k]);
     let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
     let quarters = shifted - X::constant(ROUND);

@@ -8,6 +8,10 @@ use std::fmt::Write;
 /// Lanes of the vectors in which the angles of a program with lanes are evaluated.
 pub const WIDTH: usize = 4;
 
+/// How many vectors a call takes: whether their angles are small is asked once, they share the constants, and all of
+/// them stay in registers.
+const TOGETHER: usize = 4;
+
 /// Sine and cosine of one angle: the instructions that compute them.
 pub struct Angle {
     /// The angle.
@@ -82,7 +86,7 @@ impl Angles {
     }
 }
 
-/// The calls for sines and cosines as they are written down: one of all numbers, or one of each vector.
+/// The calls for sines and cosines as they are written down: one of all numbers, or some of several vectors each.
 #[derive(Default)]
 pub struct Calls {
     /// The values that they compute.
@@ -126,54 +130,65 @@ impl Calls {
         self.loose.push((text, number));
         if self.loose.len() == WIDTH {
             let (texts, numbers): (Vec<String>, Vec<usize>) = self.loose.drain(..).unzip();
-            self.arguments.push((format!("[{}]", texts.join(", ")), numbers));
+            self.arguments.push((format!("Ops::lanes([{}])", texts.join(", ")), numbers));
         }
-    }
-
-    /// The function that is called.
-    fn helper(&self) -> &'static str {
-        if self.in_vectors || self.bound == 1 { "sin_cos" } else { "sin_cos_all" }
     }
 
     /// The text of all values as a tuple.
     pub fn text(mut self, zero: &str) -> (Vec<usize>, String) {
-        let helper = self.helper();
         let mut text = String::from("{ ");
-        if helper == "sin_cos" {
-            while !self.loose.is_empty() {
-                self.bound += 1;
-                self.push_loose(zero.to_string(), self.bound - 1);
-            }
-            for (argument, numbers) in &self.arguments {
-                let names =
-                    |letter| numbers.iter().map(|k| format!("{letter}{k}")).collect::<Vec<_>>().join(", ");
-                let (s, c) = (names('s'), names('c'));
-                let _ = match numbers.len() {
-                    1 => write!(text, "let ({s}, {c}) = Ops::sin_cos({argument}); "),
-                    _ => write!(text, "let ([{s}], [{c}]) = Ops::sin_cos_in_lanes({argument}); "),
-                };
-            }
+        if self.in_vectors {
+            self.write_vectors(&mut text, zero);
+        } else if self.bound == 1 {
+            let angles = self.arguments.iter().map(|(angle, _)| angle.as_str());
+            let _ = write!(text, "let (s0, c0) = Ops::sin_cos({}); ", angles.collect::<String>());
         } else {
-            let width = match self.arguments.len() {
-                _ if !self.padded => 1,
-                0..=4 => 4,
-                _ => 8,
-            };
-            while !self.arguments.len().is_multiple_of(width) {
-                self.arguments.push((zero.to_string(), vec![self.arguments.len()]));
-            }
-            // Lanes fill registers by themselves: of so many the registers overlap, and nothing passes through memory.
-            let together = if self.padded { self.arguments.len().max(1) } else { WIDTH };
-            for group in self.arguments.chunks(together) {
-                let list =
-                    |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
-                let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
-                let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
-                let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
-            }
+            self.write_numbers(&mut text, zero);
         }
         let _ = write!(text, "({},) }}", self.results.join(", "));
         (self.names, text)
+    }
+
+    /// A call for every few vectors.
+    fn write_vectors(&mut self, text: &mut String, zero: &str) {
+        while !self.loose.is_empty() {
+            self.bound += 1;
+            self.push_loose(zero.to_string(), self.bound - 1);
+        }
+        for group in self.arguments.chunks(TOGETHER) {
+            let list = |letter| {
+                let names: Vec<String> = group.iter().map(|(_, n)| format!("{letter}{}", n[0])).collect();
+                names.join(", ")
+            };
+            let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
+            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+            let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
+            for (_, numbers) in group.iter().filter(|(_, numbers)| numbers.len() > 1) {
+                for letter in ['s', 'c'] {
+                    let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
+                    let _ = write!(text, "let [{}] = {}.lanes().0; ", names.join(", "), names[0]);
+                }
+            }
+        }
+    }
+
+    /// One call, padded to whole registers; of several states one for every few angles, since each fills registers by itself.
+    fn write_numbers(&mut self, text: &mut String, zero: &str) {
+        let width = match self.arguments.len() {
+            _ if !self.padded => 1,
+            0..=4 => 4,
+            _ => 8,
+        };
+        while !self.arguments.len().is_multiple_of(width) {
+            self.arguments.push((zero.to_string(), vec![self.arguments.len()]));
+        }
+        let together = if self.padded { self.arguments.len().max(1) } else { TOGETHER };
+        for group in self.arguments.chunks(together) {
+            let list = |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
+            let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
+            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+            let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
+        }
     }
 }
 
