@@ -37,6 +37,11 @@ pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N],
     one_by_one(&x)
 }
 
+/// Numbers that fill lines of the cache. A function that keeps some on its stack aligns all that it keeps there: no register
+/// that has to wait in memory then crosses a line.
+#[repr(align(64))]
+pub(crate) struct Aligned<T>(pub(crate) T);
+
 /// A reference as a type that it may have; decided at compile time.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -63,8 +68,8 @@ fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     }
     if !small {
         // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
-        let copy = *x;
-        (s, c) = A::sin_cos_of_large(&copy);
+        let copy = Aligned(*x);
+        (s, c) = A::sin_cos_of_large(&copy.0);
     }
     (s, c)
 }

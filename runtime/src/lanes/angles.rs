@@ -3,7 +3,7 @@
 use super::registers::Registers;
 use crate::Real;
 use crate::arithmetic::Vector;
-use crate::trigonometry::{kernel, same};
+use crate::trigonometry::{Aligned, kernel, same};
 use core::any::Any;
 
 /// Sines and cosines of small angles.
@@ -23,8 +23,8 @@ fn replace<A: Registers, const L: usize, const N: usize>(
     if !A::are_small(&x.map(|x| *x.numbers())) {
         for (x, c) in x.iter_mut().zip(&mut c) {
             // A copy, so that the angles themselves need not be in memory.
-            let angles = *x.numbers();
-            let (sines, cosines) = A::sin_cos_of_large(&angles);
+            let angles = Aligned(*x.numbers());
+            let (sines, cosines) = A::sin_cos_of_large(&angles.0);
             (*x, *c) = (Vector::of(sines), Vector::of(cosines));
         }
         return c;
