@@ -90,7 +90,7 @@ fn robots() {
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (name, options, expected, fused) in [
         ("cartpole", "", [15, 5, 2, 18], [11, 5, 2, 13]),
-        ("ur5", "", [276, 244, 145, 488], [176, 158, 107, 325]),
+        ("ur5", "", [276, 244, 145, 488], [176, 158, 106, 325]),
         ("panda", locked, [575, 550, 341, 1127], [381, 360, 245, 740]),
         ("panda", ", mimic = independent", [646, 619, 441, 1301], [422, 400, 315, 861]),
         ("kinova", "", [631, 608, 498, 1265], [396, 381, 324, 798]),

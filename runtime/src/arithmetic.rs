@@ -48,8 +48,8 @@ pub(crate) mod dispatch;
 mod number;
 mod vector;
 
-use crate::lanes::Registers;
 use crate::Lanes;
+use crate::lanes::Registers;
 pub use number::{Elementary, Number};
 pub use vector::Vector;
 

@@ -1,6 +1,6 @@
 //! Sines and cosines: those of all angles that are known from the start are evaluated by one call, several at a time.
 
-use crate::expr::Function as Elementary;
+use crate::expr::{Function as Elementary, Symbol};
 use crate::lower::{Op, Operand, Program};
 use std::cmp::Reverse;
 use std::fmt::Write;
@@ -78,12 +78,27 @@ impl Angles {
 }
 
 impl Angles {
-    /// The angles, those with most lanes first.
-    pub fn widest_first(&self, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
+    /// The angles, those with most lanes first; numbers in the order of the inputs that they come from.
+    pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
-        list.sort_by_key(|angle| Reverse(lanes(angle.angle)));
+        list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), input(program, angle.angle)));
         list
     }
+}
+
+/// The first input of an angle: of one plus a constant at least.
+fn input(program: &Program, angle: Operand) -> Option<Symbol> {
+    let mut first = None;
+    let mut note = |o: Operand| {
+        if let Operand::Symbol(s) = o {
+            first = first.or(Some(s));
+        }
+    };
+    match angle {
+        Operand::Value(k) => program.instructions[k].operands(&mut note),
+        own => note(own),
+    }
+    first
 }
 
 /// The calls for sines and cosines as they are written down: one of all numbers, or some of several vectors each.
@@ -143,7 +158,7 @@ impl Calls {
             let angles = self.arguments.iter().map(|(angle, _)| angle.as_str());
             let _ = write!(text, "let (s0, c0) = Ops::sin_cos({}); ", angles.collect::<String>());
         } else {
-            self.write_numbers(&mut text, zero);
+            self.write_numbers(&mut text);
         }
         let _ = write!(text, "({},) }}", self.results.join(", "));
         (self.names, text)
@@ -173,14 +188,9 @@ impl Calls {
     }
 
     /// One call, padded to whole registers; of several states one for every few angles, since each fills registers by itself.
-    fn write_numbers(&mut self, text: &mut String, zero: &str) {
-        let width = match self.arguments.len() {
-            _ if !self.padded => 1,
-            0..=4 => 4,
-            _ => 8,
-        };
-        while !self.arguments.len().is_multiple_of(width) {
-            self.arguments.push((zero.to_string(), vec![self.arguments.len()]));
+    fn write_numbers(&mut self, text: &mut String) {
+        if self.padded {
+            self.pad();
         }
         let together = if self.padded { self.arguments.len().max(1) } else { TOGETHER };
         for group in self.arguments.chunks(together) {
@@ -190,12 +200,33 @@ impl Calls {
             let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
         }
     }
+
+    /// Fills registers with angles again, so that each is one load from memory where the angles stand in a row.
+    fn pad(&mut self) {
+        let count = self.arguments.len();
+        let again = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
+        match count % WIDTH {
+            0 => {}
+            // The last four.
+            3 if count > WIDTH => self.arguments.insert(count - 3, again(&self.arguments, count - 4)),
+            3 => self.arguments.push(again(&self.arguments, count - 1)),
+            rest => (rest..WIDTH).for_each(|k| {
+                let k = count - rest + k % rest;
+                self.arguments.push(again(&self.arguments, k));
+            }),
+        }
+        let count = self.arguments.len();
+        if count > WIDTH && !count.is_multiple_of(2 * WIDTH) {
+            (count - WIDTH..count).for_each(|k| self.arguments.push(again(&self.arguments, k)));
+        }
+    }
 }
 
-/// One name, or the lanes of a vector.
+/// One name, or the lanes of a vector, or nothing.
 fn bundle(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {
+        [] => "_".to_string(),
         [one] => one.clone(),
         names => format!("Ops::lanes([{}])", names.join(", ")),
     }

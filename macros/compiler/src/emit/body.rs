@@ -148,7 +148,7 @@ impl Writer<'_> {
     fn write_angles(&mut self, angles: &Angles) {
         let mut calls = Calls::new(!self.program.gathers.is_empty(), !self.scalar.is_in_lanes());
         let mut needs = Vec::new();
-        for angle in angles.widest_first(|o| self.width(o)) {
+        for angle in angles.widest_first(self.program, |o| self.width(o)) {
             let texts = self.angle(angle.angle, &mut needs);
             calls.add(angle, texts, self.width(angle.angle) == WIDTH);
         }

@@ -71,12 +71,14 @@ impl Function {
         }
     }
 
-    pub(super) fn is_odd(self) -> bool {
+    /// `f(-x) = -f(x)`.
+    pub fn is_odd(self) -> bool {
         use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
         matches!(self, Sin | Tan | Asin | Atan | Sinh | Tanh)
     }
 
-    pub(super) fn is_even(self) -> bool {
+    /// `f(-x) = f(x)`.
+    pub fn is_even(self) -> bool {
         matches!(self, Function::Cos | Function::Cosh | Function::Abs)
     }
 }

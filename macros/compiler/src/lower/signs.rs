@@ -19,14 +19,33 @@ const TRIES: usize = 6;
 const REACH: usize = 400;
 
 impl Program {
-    /// The same program with fewer negations.
+    /// The same program with fewer negations. Angles `c - q` become `q - c` if that takes one more at most: then the
+    /// offsets of all angles are one addition of vectors.
     pub(super) fn with_cheap_signs(self) -> Program {
-        if !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
+        let turned = self.turned_angles();
+        if turned.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
             return self;
         }
-        let mut signs = Signs::new(&self);
-        signs.search();
-        signs.rewrite()
+        let best = Signs::searched(&self, &[]);
+        if turned.is_empty() {
+            return best.rewrite();
+        }
+        let other = Signs::searched(&self, &turned);
+        if other.negations() <= best.negations() + 1 { other.rewrite() } else { best.rewrite() }
+    }
+
+    /// Values `c - q` of which nothing but sines and cosines is taken.
+    fn turned_angles(&self) -> Vec<usize> {
+        let is_turned = |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant(*c));
+        let mut taken = vec![0; self.instructions.len()];
+        for op in &self.instructions {
+            if let Op::Call(Function::Sin | Function::Cos, Operand::Value(k)) = *op {
+                taken[k] += 1;
+            }
+        }
+        let all = 0..self.instructions.len();
+        all.filter(|k| taken[*k] > 0 && taken[*k] == self.uses[*k] && is_turned(&self.instructions[*k]))
+            .collect()
     }
 }
 
@@ -37,20 +56,34 @@ struct Signs<'a> {
     sink: Vec<bool>,
     /// The sign that a free value has.
     choice: Vec<bool>,
+    /// True for free values that keep it, come what may.
+    fixed: Vec<bool>,
     /// True for values that are stored with the opposite sign.
     negative: Vec<bool>,
 }
 
 impl<'a> Signs<'a> {
-    fn new(program: &'a Program) -> Signs<'a> {
+    /// The best signs that are found from all free ones positive, but some of them negative for good.
+    fn searched(program: &'a Program, negative: &[usize]) -> Signs<'a> {
+        let mut signs = Signs::new(program, negative);
+        signs.search();
+        signs
+    }
+
+    fn new(program: &'a Program, negative: &[usize]) -> Signs<'a> {
         let n = program.instructions.len();
         let mut signs = Signs {
             program,
             users: vec![Vec::new(); n],
             sink: vec![false; n],
             choice: vec![false; n],
+            fixed: vec![false; n],
             negative: vec![false; n],
         };
+        for &k in negative {
+            signs.choice[k] = true;
+            signs.fixed[k] = true;
+        }
         for (k, op) in program.instructions.iter().enumerate() {
             let keeps = keeps_signs(op);
             op.operands(|o| {
@@ -80,7 +113,7 @@ impl<'a> Signs<'a> {
             Op::Neg(a) => !self.of(a),
             Op::Add(a, _) | Op::Sub(a, _) => self.of(a),
             Op::Mul(a, b) | Op::Div(a, b) => self.of(a) != self.of(b),
-            Op::Call(f, a) => is_odd(f) && self.of(a),
+            Op::Call(f, a) => f.is_odd() && self.of(a),
             Op::Sum(_, a) => self.of(a),
             _ => false,
         }
@@ -93,6 +126,10 @@ impl<'a> Signs<'a> {
             Op::Mul(a, b) | Op::Div(a, b) => is_constant(a) || is_constant(b),
             _ => false,
         }
+    }
+
+    fn negations(&self) -> usize {
+        self.sink.iter().zip(&self.negative).filter(|(sink, negative)| **sink && **negative).count()
     }
 
     fn search(&mut self) {
@@ -115,7 +152,7 @@ impl<'a> Signs<'a> {
     /// Ways up from the last value of `path` to free values that its sign depends on.
     fn paths_to_free(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
         let Some(k) = path.last().copied().filter(|_| found.len() < TRIES) else { return };
-        if self.is_free(k) {
+        if self.is_free(k) && !self.fixed[k] {
             found.push(path.clone());
         } else if path.len() < DEPTH {
             self.program.instructions[k].operands(|o| {
@@ -241,7 +278,7 @@ impl Rewrite<'_> {
                 let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
                 self.push(Op::Div(a, b))
             }
-            Op::Call(f, a) if is_odd(f) => {
+            Op::Call(f, a) if f.is_odd() || f.is_even() => {
                 let a = self.stored(a);
                 self.push(Op::Call(f, a))
             }
@@ -301,14 +338,9 @@ impl Rewrite<'_> {
 fn keeps_signs(op: &Op) -> bool {
     match op {
         Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::Sum(..) => true,
-        Op::Call(f, _) => is_odd(*f),
+        Op::Call(f, _) => f.is_odd() || f.is_even(),
         _ => false,
     }
-}
-
-fn is_odd(f: Function) -> bool {
-    use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
-    matches!(f, Sin | Tan | Asin | Atan | Sinh | Tanh)
 }
 
 #[cfg(test)]
