@@ -108,11 +108,7 @@ impl Program {
 
     /// By value: how many lanes it has, one for none.
     pub fn lanes(&self) -> Vec<usize> {
-        let mut lanes = Lanes {
-            widths: Vec::new(),
-            gathers: self.gathers.iter().map(Vec::len).collect(),
-            tuples: self.tuples.iter().map(Vec::len).collect(),
-        };
+        let mut lanes = Lanes::of_inputs(self);
         for op in &self.instructions {
             lanes.push(op);
         }
