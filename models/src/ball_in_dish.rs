@@ -5,8 +5,8 @@ use linkwork::mechanism;
 /// Source: Routh, *Advanced Dynamics of a System of Rigid Bodies* (1905), ch. V; Neimark and Fufaev, *Dynamics of
 /// Nonholonomic Systems* (1972), ch. II: a ball on a surface of revolution.
 ///
-/// - Configuration: the point `u`, `w` of the dish `z = (u² + w²) / (2 c)` that the ball touches, m; place and unit quaternion of
-///   `pose`. Velocity: rates of `u` and `w`; linear and angular velocity in the ball's axes. z points up.
+/// - Configuration: the point `u`, `w` of the dish `z = (u² + w²) / (2 c)` that the ball touches, m; place and unit
+///   quaternion of `pose`. Velocity: rates of `u` and `w`; linear and angular velocity in the ball's axes. z points up.
 /// - In a level circle at the distance `ρ` of the ball's centre from the axis, where the tangent has the angle `β` to the
 ///   vertical, at the rate `Ω`, with the spin `ν` about the normal (towards the ball):
 ///   `(7/5) Ω² ρ sin β + (2/5) r ν Ω cos β = g cos β`.
@@ -45,8 +45,8 @@ mod tests {
 
     const B: BallInDish = BallInDish { g: 9.81, mass: 0.2, radius: 0.03, curvature: 0.25 };
 
-    /// Touching at a point of the dish, unturned: with the velocity of the centre along the dish's two tangents there, and a
-    /// spin about the normal.
+    /// Touching at a point of the dish, unturned: with the velocity of the centre along the dish's two tangents there,
+    /// and a spin about the normal.
     fn state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVector<f64, 8>) {
         let (first, second) =
             (Vector3::new(1.0, 0.0, u / B.curvature), Vector3::new(0.0, 1.0, w / B.curvature));

@@ -1,14 +1,15 @@
 //! Many states of one mechanism: the same functions for the states in the lanes of vector registers.
 //!
 //! The word `batch` among the arguments of `#[mechanism]` asks for them. Every method of the state then has a twin with
-//! `_lanes` behind its name, on vectors of [`Lanes`]; parameters are the same in all lanes. [`Batch`] is the trait for generic
-//! code, and [`Batch::lanes`] makes of the mechanism one whose scalars are lanes, for code that knows nothing of them.
+//! `_lanes` behind its name, on vectors of [`Lanes`]; parameters are the same in all lanes. [`Batch`] is the trait for
+//! generic code, and [`Batch::lanes`] makes of the mechanism one whose scalars are lanes, for code that knows nothing
+//! of them.
 //!
 //! On top of that a [`Lanewise`] mechanism evaluates whole arrays of states (`inverse_dynamics_all` and its like), and
 //! [rolls out](Lanewise::roll_out) the motions of thousands, with the feature `rayon` on all processors.
 //!
-//! Each lane gives, bit for bit, what the function of a single state gives on the same machine; up to rounding where a single
-//! state has lanes of its own, one for each of several alike limbs.
+//! Each lane gives, bit for bit, what the function of a single state gives on the same machine; up to rounding where a
+//! single state has lanes of its own, one for each of several alike limbs.
 
 mod columns;
 mod error;
@@ -28,8 +29,9 @@ use nalgebra::{SMatrix, SVector};
 /// A column of lanes.
 type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 
-/// A mechanism with functions of several states at once: what `#[mechanism(…, batch)]` implements. Shapes, units and conventions
-/// are those of [`Rheonomic`], for the state of every lane; where nothing depends on time, `t` has no effect.
+/// A mechanism with functions of several states at once: what `#[mechanism(…, batch)]` implements. Shapes, units and
+/// conventions are those of [`Rheonomic`], for the state of every lane; where nothing depends on time, `t` has no
+/// effect.
 pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ, NV, NU> {
     /// The mechanism with `L` lanes for scalars.
     fn lanes<const L: usize>(&self) -> Lanewise<'_, Self, L>

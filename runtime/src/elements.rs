@@ -244,20 +244,21 @@ pub enum Nonholonomic {}
 /// A plane's normal points to what rolls on it, a cone's axis from the apex into the cone, a funnel's from the apex to its
 /// opening; a half angle is that between axis and surface, rad.
 ///
-/// Contacts at a point have three constraints: `contact.normal` and two tangents; their multipliers are the normal force and
-/// the friction, N. Cones touch along a line, and none of its points slips: the apexes stay together (on a plane the apex
-/// stays where it is: `contact.normal` and two tangents; else `contact.x`, `.y`, `.z`), and the cones turn relative to
-/// each other about the line alone. That adds `contact.tilt`, whose multiplier is the moment of the pressure about the
-/// apex, and `contact.spin`, the moment of friction about the normal, N·m. The rim of a cone, or of a disk, that rolls by
-/// itself is a `circle`.
+/// Contacts at a point have three constraints: `contact.normal` and two tangents; their multipliers are the normal
+/// force and the friction, N. Cones touch along a line, and none of its points slips: the apexes stay together (on a
+/// plane the apex stays where it is: `contact.normal` and two tangents; else `contact.x`, `.y`, `.z`), and the cones
+/// turn relative to each other about the line alone. That adds `contact.tilt`, whose multiplier is the moment of the
+/// pressure about the apex, and `contact.spin`, the moment of friction about the normal, N·m. The rim of a cone, or of
+/// a disk, that rolls by itself is a `circle`.
 ///
-/// A surface of any other form is given by its points: `surface(u, w, u * x + w * y + height * z)` with two coordinates of the
-/// struct, `u: Coordinate` and `w: Coordinate`, and a vector that depends on them and on parameters. Its derivatives by `u`
-/// and by `w`, crossed in this order, point to what rolls. Where the bodies touch is then part of the configuration: `u`
-/// and `w` need no inertia, and `contact.foot_first` and `contact.foot_second`, which carry no force, keep them there; bring a
-/// guess onto them by `assemble` or `project_configuration`. Each contact has coordinates of its own. The surface must be smooth,
-/// bent inwards less than what rolls, and regular in its coordinates (no poles); `mass_matrix` is singular, as `u` and `w` move
-/// nothing. A particle on a surface needs none of this: a [`Holonomic`] condition on its coordinates says it.
+/// A surface of any other form is given by its points: `surface(u, w, u * x + w * y + height * z)` with two coordinates
+/// of the struct, `u: Coordinate` and `w: Coordinate`, and a vector that depends on them and on parameters. Its
+/// derivatives by `u` and by `w`, crossed in this order, point to what rolls. Where the bodies touch is then part of
+/// the configuration: `u` and `w` need no inertia, and `contact.foot_first` and `contact.foot_second`, which carry no
+/// force, keep them there; bring a guess onto them by `assemble` or `project_configuration`. Each contact has
+/// coordinates of its own. The surface must be smooth, bent inwards less than what rolls, and regular in its
+/// coordinates (no poles); `mass_matrix` is singular, as `u` and `w` move nothing. A particle on a surface needs none
+/// of this: a [`Holonomic`] condition on its coordinates says it.
 ///
 /// The surfaces are held together, also where the normal force (`contact.normal`, positive where they press) would be
 /// negative and bodies would part.
@@ -266,16 +267,18 @@ pub enum Rolling {}
 /// A pair of surfaces that touch and slip on each other with dry friction:
 /// `#[constraint(slips(ball.sphere(radius), lane.plane(z)), friction = mu, speed = v0)]`.
 ///
-/// The surfaces are those of [`Rolling`] that touch at a point, and are held together in the same way: the one constraint is
-/// `contact.normal`, and its multiplier is the normal force `N`, positive where they press. At the slip `s`, the velocity of
-/// the first surface at the contact relative to the other one, friction is `−μ |N| s / √(|s|² + v₀²)`: Coulomb's law, made
-/// smooth at speeds around `speed` (0.01 m/s unless given here or for the mechanism by `friction_speed`). So at rest the
-/// bodies creep instead of sticking; the smaller the speed, the stiffer the motion. It resists the slip also where the surfaces are
-/// held together by a pull. `friction` may depend on coordinates and time; with `friction = 0` the surfaces are smooth.
+/// The surfaces are those of [`Rolling`] that touch at a point, and are held together in the same way: the one
+/// constraint is `contact.normal`, and its multiplier is the normal force `N`, positive where they press. At the slip
+/// `s`, the velocity of the first surface at the contact relative to the other one, friction is
+/// `−μ |N| s / √(|s|² + v₀²)`: Coulomb's law, made smooth at speeds around `speed` (0.01 m/s unless given here or for
+/// the mechanism by `friction_speed`). So at rest the bodies creep instead of sticking; the smaller the speed, the
+/// stiffer the motion. It resists the slip also where the surfaces are held together by a pull. `friction` may depend
+/// on coordinates and time; with `friction = 0` the surfaces are smooth.
 ///
-/// The equations of motion are `M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|`. Where they have no unique solution, friction jams (Painlevé's
-/// paradox): `try_constrained_dynamics` and `try_forward_dynamics` return `ConstraintError::Jammed`, with which a simulation
-/// ends; the functions without a `Result` return NaN. What friction takes out is not part of `dissipated_power`, which does not know the multipliers.
+/// The equations of motion are `M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|`. Where they have no unique solution, friction jams
+/// (Painlevé's paradox): `try_constrained_dynamics` and `try_forward_dynamics` return `ConstraintError::Jammed`, with
+/// which a simulation ends; the functions without a `Result` return NaN. What friction takes out is not part of
+/// `dissipated_power`, which does not know the multipliers.
 pub enum Slipping {}
 
 /// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of

@@ -28,7 +28,8 @@ macro_rules! frame {
 }
 
 /// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
-/// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`, `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
+/// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`,
+/// `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
 pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;

@@ -10,8 +10,8 @@ pub trait Real: RealField + Copy {}
 impl<T: RealField + Copy> Real for T {}
 
 /// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs, whose equations do not contain time
-/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`](crate::Rheonomic) instead, and is a
-/// `Mechanism` at every instant: `hoop.at(t)`.
+/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`](crate::Rheonomic)
+/// instead, and is a `Mechanism` at every instant: `hoop.at(t)`.
 ///
 /// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball
 /// or a free joint holds a unit quaternion x y z w), `v` in its tangent space: body-frame velocities for ball and
@@ -115,8 +115,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(self.forward_dynamics(q, v, tau))
     }
 
-    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. Few mechanisms need `v` here: those whose inputs act by way of the
-    /// velocity, such as the control surfaces of an aircraft.
+    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. Few mechanisms need `v` here: those whose
+    /// inputs act by way of the velocity, such as the control surfaces of an aircraft.
     fn generalized_forces(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -137,8 +137,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second equation,
-    /// in body components for ball and free joints: the Euler–Poincaré equation).
+    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second
+    /// equation, in body components for ball and free joints: the Euler–Poincaré equation).
     fn momentum_rate(
         &self,
         q: &SVector<Self::Scalar, NQ>,

@@ -9,7 +9,8 @@ use nalgebra::SMatrix;
 #[repr(align(64))]
 pub(super) struct Line<T>(pub(super) T);
 
-/// The numbers of many states to be read: entry `i` (column by column of a matrix) of state `k` is `numbers[i * count + k]`.
+/// The numbers of many states to be read: entry `i` (column by column of a matrix) of state `k` is
+/// `numbers[i * count + k]`.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'a, T, const R: usize> {
     entries: [&'a [T]; R],

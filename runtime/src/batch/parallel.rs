@@ -19,8 +19,8 @@ struct Shared<W> {
 }
 
 impl<M, const L: usize> Lanewise<'_, M, L> {
-    /// [`roll_out`](Self::roll_out) on the threads of rayon's pool: the one that it is called in, or the global one. Results do not
-    /// depend on the number of threads.
+    /// [`roll_out`](Self::roll_out) on the threads of rayon's pool: the one that it is called in, or the global one.
+    /// Results do not depend on the number of threads.
     ///
     /// `control` and `watch` are called by several threads at once; cancelling takes effect after the group of states that
     /// each thread has at hand.

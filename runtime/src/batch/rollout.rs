@@ -8,8 +8,8 @@ use crate::{Lanes, Real};
 use core::ops::ControlFlow;
 use nalgebra::{ComplexField, SVector};
 
-/// A method that does the same operations whatever the numbers are, so that states can go through it side by side: one with fixed
-/// steps and nothing that is iterated.
+/// A method that does the same operations whatever the numbers are, so that states can go through it side by side: one
+/// with fixed steps and nothing that is iterated.
 pub trait Lockstep<T: Real>: Method<T> {
     /// The method with lanes for scalars.
     type Wide<const L: usize>: Method<Lanes<T, L>>;
@@ -146,16 +146,17 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     /// in its place. Nothing allocates.
     ///
     /// - `q`, `v`: the states, a structure of arrays: entry `i` of state `k` of `count` stands at `i * count + k`.
-    /// - `control(k, t, q, v)`: the inputs `u` of the states in the lanes, of which the first has index `k` (at the end of
-    ///   the arrays the last state stands in the lanes that are left over); asked whenever the method evaluates the dynamics.
+    /// - `control(k, t, q, v)`: the inputs `u` of the states in the lanes, of which the first has index `k` (at the end
+    ///   of the arrays the last state stands in the lanes that are left over); asked whenever the method evaluates the
+    ///   dynamics.
     /// - `watch`: told after every group of states how many are done; `ControlFlow::Break(())` cancels. [`unwatched`] if
     ///   nobody cares.
     ///
     /// What becomes of a state does not depend on the others, on their number or on `L`, as long as `control` keeps
     /// lanes apart.
     ///
-    /// Errors: [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion does not stay
-    /// finite or on its constraints; [`Error::Cancelled`].
+    /// Errors: [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion
+    /// does not stay finite or on its constraints; [`Error::Cancelled`].
     pub fn roll_out<S, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,

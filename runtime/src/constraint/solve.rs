@@ -33,10 +33,10 @@ pub fn regular<T: Real, const NV: usize, const NC: usize, const N: usize>(found:
     }
 }
 
-/// `v̇` and the multipliers of least norm: `M v̇ = f + Jᵀ λ`, `J v̇ = −b`. Constraints that follow from others are found by
-/// a factorisation with pivots (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 10.3); where they
-/// contradict each other, the least squares count. Constraints of one number in `groups` are components of one vector; those in
-/// `determining` determine coordinates without inertia, and the mass matrix is made regular by them.
+/// `v̇` and the multipliers of least norm: `M v̇ = f + Jᵀ λ`, `J v̇ = −b`. Constraints that follow from others are
+/// found by a factorisation with pivots (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 10.3); where
+/// they contradict each other, the least squares count. Constraints of one number in `groups` are components of one
+/// vector; those in `determining` determine coordinates without inertia, and the mass matrix is made regular by them.
 pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     determining: &[usize],

@@ -80,7 +80,8 @@ where
     }
 }
 
-/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in [`Mechanism`](crate::Mechanism).
+/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in
+/// [`Mechanism`](crate::Mechanism).
 pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// `q ⊕ dv`.
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;

@@ -2,8 +2,8 @@
 //! each projected onto the constraints.
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin constraints` shows Linkwork alone;
-//! `benches/peers/run constraints` installs other libraries and shows them beside it. By itself: `constraints write FOLDER`,
-//! `constraints measure FOLDER [--quick]`.
+//! `benches/peers/run constraints` installs other libraries and shows them beside it. By itself:
+//! `constraints write FOLDER`, `constraints measure FOLDER [--quick]`.
 
 mod mechanisms;
 mod table;

@@ -2,9 +2,9 @@
 //!
 //! Normal form, kept by the constructors: constants are folded; zero and one vanish; a minus sign is lifted out of
 //! products, quotients, differences and odd functions, and absorbed by sums, so that `a − b` and `b − a` share one
-//! node; the operands of commutative operations stand in order of their ids; constants that meet
-//! in a product or in a sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since
-//! `2 x` may be used again. A constant of each lane counts as a constant.
+//! node; the operands of commutative operations stand in order of their ids; constants that meet in a product or in a
+//! sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since `2 x` may be
+//! used again. A constant of each lane counts as a constant.
 
 use super::handle::Expr;
 use super::lanes::Tables;

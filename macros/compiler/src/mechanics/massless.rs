@@ -19,8 +19,8 @@ pub fn rows(model: &Model<'_>) -> Vec<usize> {
     (0..model.constraints.len()).filter(|row| model.constraints[*row].determines).collect()
 }
 
-/// `w Jᵀ`: for each of the rows, its entries times the mass of all that moves, so that what is added is of the size of what is
-/// there.
+/// `w Jᵀ`: for each of the rows, its entries times the mass of all that moves, so that what is added is of the size of
+/// what is there.
 fn weighted<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],

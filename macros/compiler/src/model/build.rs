@@ -237,8 +237,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow another one come after, since their
-    /// masters may be declared later.
+    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow
+    /// another one come after, since their masters may be declared later.
     fn number_coordinates(&mut self, cx: &mut Diagnostics) {
         let closing = tree::closing(self.description);
         self.embedded = embed::find(self.description, &closing, cx);

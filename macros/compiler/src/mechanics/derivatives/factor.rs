@@ -59,8 +59,8 @@ impl<'g> Factor<'g> {
         r
     }
 
-    /// The inverse, zero outside the block, from the root to the leaves: a unit force on an entry reaches only those above it, so for all others the
-    /// substitution starts from zero, and symmetry gives the rest.
+    /// The inverse, zero outside the block, from the root to the leaves: a unit force on an entry reaches only those
+    /// above it, so for all others the substitution starts from zero, and symmetry gives the rest.
     pub fn inverse(&self) -> Matrix<'g> {
         let n = self.rows.len();
         let mut out: Matrix<'g> = self.inverse.iter().map(|d| vec![d.zero(); n]).collect();

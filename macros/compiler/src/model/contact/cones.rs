@@ -3,8 +3,8 @@
 //! cones).
 //!
 //! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α` inside, `α + β`
-//! outside), the line lies in the plane of the axes at the angle `α` from `a`, and `± (b cos α − a cos β) / sin δ` is normal
-//! to both surfaces there. A plane is a funnel with the half angle `π/2`.
+//! outside), the line lies in the plane of the axes at the angle `α` from `a`, and `± (b cos α − a cos β) / sin δ` is
+//! normal to both surfaces there. A plane is a funnel with the half angle `π/2`.
 
 use super::Pair;
 use super::surface::Form;
