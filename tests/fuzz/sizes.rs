@@ -1,0 +1,212 @@
+//! Great numbers of things, deep nests and figures near the end of their range.
+
+use super::{try_expand, with_little_stack};
+use linkwork_compiler::expand;
+use proc_macro2::TokenStream;
+use std::path::Path;
+use std::time::Instant;
+
+/// Fields for a chain of bodies on pins.
+fn chain(n: usize, kind: &str) -> String {
+    let mut text = String::new();
+    for k in 0..n {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.5 * x)", k - 1) };
+        let axis = match kind {
+            "Pin" => [", about = z", ", about = y", ", about = x"][k % 3],
+            "Sleeve" => [", along = x", ", along = y", ", along = z"][k % 3],
+            _ => "",
+        };
+        text += &format!(
+            "#[body(mass = 1, com = 0.1 * y, inertia = sphere(1, 1))] b{k}: Body, #[joint({parent} -> b{k}{axis})] j{k}: {kind},\n"
+        );
+    }
+    text
+}
+
+fn list(n: usize, item: impl Fn(usize) -> String) -> String {
+    (0..n).map(item).collect()
+}
+
+/// A planar chain of pins that is tied to the ground by others, so many of each.
+fn tied_chain(pins: usize, ties: usize) -> String {
+    let bodies = list(pins, |k| {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(x)", k - 1) };
+        format!(
+            "#[body(mass = 1, inertia = rod(1, 1, x))] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,\n"
+        )
+    });
+    let ends = list(ties, |k| {
+        let (body, x, y) = ((2 * k + 3) % pins, (2 * k) % 7, k % 3);
+        format!("#[joint(b{body}.at(x) -> ground.at({x} * x + {y} * y), about = z)] tie{k}: Pin,\n")
+    });
+    format!("struct S {{ {bodies} {ends} }}")
+}
+
+/// A mechanism with an expression somewhere.
+pub fn with_mass(e: &str) -> String {
+    format!("struct S {{ m: f64, #[body(mass = {e})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}")
+}
+
+fn with_com(e: &str) -> String {
+    format!(
+        "struct S {{ m: f64, #[body(mass = 1, com = {e})] b: Body, #[joint(ground -> b, about = unit(x + y + z))] j: Pin }}"
+    )
+}
+
+fn with_inertia(e: &str) -> String {
+    format!(
+        "struct S {{ m: f64, #[body(mass = 1, inertia = {e})] b: Body, #[joint(ground -> b, about = z)] j: Pin }}"
+    )
+}
+
+#[test]
+fn great_numbers_of_things_end() {
+    let cases: Vec<(&str, String)> = vec![
+        ("deep parentheses", with_mass(&("(".repeat(100_000) + "m" + &")".repeat(100_000)))),
+        ("deep brackets", with_mass(&("[".repeat(10_000) + "m" + &"]".repeat(10_000)))),
+        ("deep braces", "{".repeat(10_000) + &"}".repeat(10_000)),
+        ("deep calls", with_mass(&("sin(".repeat(10_000) + "m" + &")".repeat(10_000)))),
+        ("parentheses just below the limit", with_mass(&("(".repeat(40) + "m" + &")".repeat(40)))),
+        ("minus signs", with_mass(&("-".repeat(100_000) + "m"))),
+        ("minus signs with spaces", with_mass(&("- ".repeat(40) + "m"))),
+        ("a sum", with_mass(&vec!["m"; 10_000].join(" + "))),
+        ("a sum just below the limit", with_mass(&vec!["m"; 390].join(" + "))),
+        ("a product", with_mass(&vec!["m"; 10_000].join(" * "))),
+        ("a product just below the limit", with_mass(&vec!["m"; 390].join(" * "))),
+        ("quotients", with_mass(&vec!["m"; 390].join(" / "))),
+        ("members", with_mass(&("m".to_string() + &".m".repeat(10_000)))),
+        ("members just below the limit", with_mass(&("m".to_string() + &".m".repeat(390)))),
+        ("rotations", with_inertia(&("rod(1, 1, x)".to_string() + &".rotated(z(m))".repeat(390)))),
+        ("rotations of an end", {
+            let end = "ground".to_string() + &".rotated(x(m), y(m))".repeat(190);
+            format!(
+                "struct S {{ m: f64, #[body(mass = 1)] b: Body, #[joint({end} -> b, along = x)] j: Sleeve }}"
+            )
+        }),
+        ("inertias", with_inertia(&vec!["sphere(m, 1)"; 390].join(" + "))),
+        ("parameters", format!("struct S {{ {} }}", list(10_000, |k| format!("p{k}: f64,")))),
+        ("parameters in use", {
+            let sum = list(190, |k| format!("+ p{k}"));
+            format!(
+                "struct S {{ {} #[body(mass = 1 {sum})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}",
+                list(190, |k| format!("p{k}: f64,"))
+            )
+        }),
+        ("parameters of one name", format!("struct S {{ {} }}", "p: f64,".repeat(10_000))),
+        ("unknown things", format!("struct S {{ {} }}", list(10_000, |k| format!("p{k}: Thing,")))),
+        ("bodies", format!("struct S {{ {} }}", list(10_000, |k| format!("#[body(mass = 1)] b{k}: Body,")))),
+        ("particles", {
+            let all = list(200, |k| format!("#[particle(mass = 1, at = b.at({k} * x))] p{k}: Particle,"));
+            format!(
+                "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
+            )
+        }),
+        ("joints of one body", {
+            let all = list(5_000, |k| format!("#[joint(ground -> b, along = x)] j{k}: Sleeve,"));
+            format!("struct S {{ #[body(mass = 1)] b: Body, {all} }}")
+        }),
+        ("force elements", {
+            let all = list(2_000, |k| format!("#[acts(on = j, damping = {k})] d{k}: Dashpot,"));
+            format!(
+                "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
+            )
+        }),
+        ("inputs", {
+            let all = list(500, |k| format!("#[acts(on = b.at({k} * y), along = x)] f{k}: Force,"));
+            format!(
+                "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
+            )
+        }),
+        ("arguments", with_mass(&list(10_000, |k| format!("1, a{k} = 1,")))),
+        ("attributes", format!("struct S {{ {} b: Body }}", "#[body(mass = 1)]".repeat(10_000))),
+        ("a long chain", format!("struct S {{ {} }}", chain(2_000, "Pin"))),
+        ("a long chain of welds", format!("struct S {{ {} }}", chain(1_000, "Weld"))),
+        (
+            "a chain of welds on a pin",
+            format!(
+                "struct S {{ {} {} }}",
+                chain(1, "Pin"),
+                chain(900, "Weld").replace("b0: Body", "c0: Body").replace("ground ->", "b0 ->")
+            ),
+        ),
+        ("a chain tied to the ground", tied_chain(85, 41)),
+        ("a chain tied to the ground a few times", tied_chain(40, 4)),
+        ("a chain tied to the ground everywhere", tied_chain(100, 50)),
+        ("a chain tied to the ground too often", tied_chain(20, 100)),
+        ("a chain of sleeves", format!("struct S {{ {} }}", chain(40, "Sleeve"))),
+        ("long generics", format!("struct S<{}> {{}}", list(10_000, |k| format!("T{k},")))),
+        ("deep types", format!("struct S {{ a: {}f64{} }}", "Vec<".repeat(10_000), ">".repeat(10_000))),
+        ("references", format!("struct S {{ a: {}f64 }}", "&".repeat(10_000))),
+        ("long names", with_mass(&"m".repeat(100_000))),
+        ("a long number", with_mass(&"9".repeat(100_000))),
+    ];
+    run_cases(cases);
+}
+
+#[test]
+fn too_many_loops_are_refused_with_a_reason() {
+    for (pins, ties, reason) in [
+        (20, 100, "500 scalar constraints, more than 256"),
+        (85, 41, "the constraints of this mechanism depend on each other too much"),
+    ] {
+        let output = expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("ui"));
+        let output = format!("{} {}", output.tokens, output.text);
+        assert!(output.contains(reason), "{pins} pins with {ties} ties: {:.2000}", output);
+    }
+}
+
+#[test]
+fn sharing_does_not_explode() {
+    let nest =
+        |f: &dyn Fn(String) -> String, start: &str, n: usize| (0..n).fold(start.to_string(), |e, _| f(e));
+    let cases: Vec<(&str, String)> = vec![
+        ("cross products on the left", with_com(&nest(&|e| format!("cross({e}, [1, m, 2])"), "[m, 1, 2]", 38))),
+        ("cross products on the right", with_com(&nest(&|e| format!("cross([1, m, 2], {e})"), "[m, 1, 2]", 38))),
+        ("cross products of two", with_com(&nest(&|e| format!("cross({e}, {e} + [1, m, 2])"), "[m, 1, 2]", 9))),
+        ("powers of powers", with_mass(&nest(&|e| format!("pow({e}, 8)"), "(1 + m)", 40))),
+        ("powers of sums", with_mass(&nest(&|e| format!("pow(1 + {e}, 4)"), "m", 40))),
+        ("powers of numbers", with_mass(&nest(&|e| format!("pow({e}, 8)"), "2", 40))),
+        ("sines of sines", with_mass(&nest(&|e| format!("(2 + sin({e}))"), "m", 22))),
+        ("lengths of lengths", with_mass(&nest(&|e| format!("norm([{e}, m, 1])"), "m", 22))),
+        ("quotients of quotients", with_mass(&nest(&|e| format!("(1 / (1 + {e}))"), "m", 22))),
+        ("extremes of extremes", with_mass(&nest(&|e| format!("max(min({e}, m), {e})"), "m", 9))),
+        ("unit vectors of unit vectors", with_com(&nest(&|e| format!("unit({e} + [1, m, 2])"), "[m, 1, 2]", 40))),
+        ("large numbers", with_mass("1e308 * m * 1e308")),
+        ("small numbers", with_mass("1e-308 * m * 1e-308")),
+        ("a number that is zero", with_mass("m + 1e-999")),
+        ("large figures", "struct S { #[body(mass = 1e300, com = 1e300 * y)] b: Body, #[joint(ground -> b, about = z)] j: Pin }".into()),
+        ("large figures of parameters", with_com("1e200 * m * x + 1e200 * y")),
+        ("large springs", "struct S { #[body(mass = 1)] a: Body, #[joint(ground -> a, along = x)] i: Sleeve, #[acts(on = i, stiffness = 1e300, free_length = 1e300)] s: Spring }".into()),
+        ("large inertias", with_inertia("diagonal(1e308, 1e308, 1e308) + diagonal(1e308, 1e308, 1e308)")),
+        ("large solids", with_inertia("sphere(1e200, 1e200)")),
+        ("large axes", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = unit(1e200 * x + 1e200 * y))] j: Pin }".into()),
+        ("small axes", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = unit(1e-200 * x + 1e-200 * y))] j: Pin }".into()),
+        ("large leads", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = z, pitch = 1e300)] j: Screw }".into()),
+        ("large gravity", with_mass("m").replace("j: Sleeve", "j: Sleeve, #[joint(b -> c, along = 1e-300 * x)] k: Pin")),
+        ("a sum of many parameters", sum_of_parameters(40, 250)),
+    ];
+    run_cases(cases);
+}
+
+/// A mass that is a sum of sums of parameters.
+fn sum_of_parameters(sums: usize, terms: usize) -> String {
+    let name = |k: usize, i: usize| format!("m{k}_{i}");
+    let sum = |k: usize| (0..terms).map(|i| name(k, i)).collect::<Vec<_>>().join(" + ");
+    let declared = |k: usize| (0..terms).map(|i| name(k, i) + ": f64, ").collect::<String>();
+    let defined = |k: usize| format!("{} #[define({})] sum{k}: Scalar, ", declared(k), sum(k));
+    let all = (0..sums).map(|k| format!("sum{k}")).collect::<Vec<_>>().join(" + ");
+    let fields: String = (0..sums).map(defined).collect();
+    with_mass(&all).replace("m: f64, ", &fields)
+}
+
+fn run_cases(cases: Vec<(&'static str, String)>) {
+    for (name, item) in cases {
+        let run = move || {
+            let start = Instant::now();
+            let tokens = item.parse().unwrap_or_else(|_| panic!("{name} are no tokens"));
+            try_expand(TokenStream::new(), tokens, name);
+            println!("{:>8.2?} {name}", start.elapsed());
+        };
+        with_little_stack(run);
+    }
+}
