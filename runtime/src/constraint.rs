@@ -170,8 +170,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
             let (worst, size) = largest(&residuals)?;
-            let rounding = constant::<Self::Scalar>(16.0) * epsilon() * reach(&q);
-            if size <= rounding {
+            if size <= rounding(&q) {
                 return Ok(q);
             }
             // Rounding ends the convergence.
@@ -196,10 +195,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
         let mut v = *v;
-        let rates = self.constraint_rates(t, q, &v);
-        v += self.constraint_correction(t, q, &rates);
-        let rates = self.constraint_rates(t, q, &v);
-        v += self.constraint_correction(t, q, &rates);
+        // The second correction takes away what the first one may leave where constraints nearly depend on each other.
+        for enough in [epsilon::<Self::Scalar>() * reach(&v), rounding(&v)] {
+            let rates = self.constraint_rates(t, q, &v);
+            if largest(&rates)?.1 <= enough {
+                return Ok(v);
+            }
+            v += self.constraint_correction(t, q, &rates);
+        }
         let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
         if near(size, &v) {
             return Ok(v);
@@ -242,7 +245,12 @@ fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
 }
 
-/// Whether what is left of constraints is rounding.
+/// What is left of constraints that are fulfilled as well as the numbers allow.
+fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    constant::<T>(16.0) * epsilon() * reach(x)
+}
+
+/// Whether what is left of constraints can be borne.
 fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= constant::<T>(5e7) * epsilon() * reach(x)
 }
