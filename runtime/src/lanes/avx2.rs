@@ -1,7 +1,7 @@
 //! The registers and the fused operations of processors with AVX2 and FMA, whatever the compilation's target.
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
-use super::registers::Registers;
+use super::registers::{Registers, Work};
 use crate::Real;
 use crate::arithmetic::Compiled;
 use crate::trigonometry::{self, LARGEST, same};
@@ -100,6 +100,11 @@ mod with_features {
         result
     }
 
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn within<W: Work>(work: W) {
+        work.run::<Avx2>();
+    }
+
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
@@ -184,6 +189,12 @@ macro_rules! methods {
 
 impl Registers for Avx2 {
     const FUSED: bool = true;
+
+    #[inline(always)]
+    fn within<W: Work>(work: W) {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::within(work) }
+    }
 
     list!(methods);
 

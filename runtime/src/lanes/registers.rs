@@ -5,15 +5,24 @@
 //! operation is a loop.
 
 use crate::Real;
-use crate::arithmetic::Compiled;
+use crate::arithmetic::{Arithmetic, Compiled};
 use crate::trigonometry;
 #[cfg(feature = "std")]
 use crate::trigonometry::{LARGEST, same};
+
+/// Loops that a generated body leaves to the runtime.
+pub trait Work {
+    /// Does the work. Always inlined, with everything in it, so that it has the features of the function that it ends up in.
+    fn run<A: Arithmetic>(self);
+}
 
 /// The instructions that there are: for numbers one after another, and for those of several lanes at once.
 pub trait Registers: Copy + 'static {
     /// One instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
     const FUSED: bool;
+
+    /// Does work in a function that has the instructions.
+    fn within<W: Work>(work: W);
 
     /// `a + b`, lane by lane.
     fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
@@ -89,6 +98,11 @@ macro_rules! operations {
 
 impl Registers for Compiled {
     const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+
+    #[inline]
+    fn within<W: Work>(work: W) {
+        work.run::<Self>();
+    }
 
     operations! {
         add(a b) = a + b;

@@ -9,15 +9,15 @@ macro_rules! mechanisms {
             use linkwork::prelude::*;
 
             /// Numbers alone.
-            #[mechanism(urdf = "../../models/urdf/panda.urdf", batch, $($option)*)]
+            #[mechanism(urdf = "../../models/urdf/panda.urdf", batch, derivatives, $($option)*)]
             pub struct Panda;
 
             /// Limbs in lanes.
-            #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, batch, $($option)*)]
+            #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, batch, derivatives, $($option)*)]
             pub struct Solo12;
 
             /// Parameters of any type, and what is computed of them.
-            #[mechanism(gravity = -g * y, batch, prepare, $($option)*)]
+            #[mechanism(gravity = -g * y, batch, prepare, derivatives, $($option)*)]
             pub struct Machine<T> {
                 pub g: T,
                 pub m: T,
@@ -36,6 +36,57 @@ macro_rules! mechanisms {
                 cross: Universal,
                 #[acts(on = cross.first, coulomb = 0.3)]
                 rubbing: Friction,
+            }
+
+            /// So many velocities in a row that derivatives are composed of other functions' results.
+            #[mechanism(gravity = -9.81 * y, derivatives, $($option)*)]
+            pub struct Chain {
+                #[body(mass = 1.0, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                one: Body,
+                #[joint(ground -> one, about = z)]
+                pin_one: Pin,
+                #[body(mass = 0.95, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                two: Body,
+                #[joint(one.at(0.03 * x) -> two, about = y)]
+                pin_two: Pin,
+                #[body(mass = 0.9, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                three: Body,
+                #[joint(two.at(0.03 * x) -> three, about = x)]
+                pin_three: Pin,
+                #[body(mass = 0.85, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                four: Body,
+                #[joint(three.at(0.03 * x) -> four, about = z)]
+                pin_four: Pin,
+                #[body(mass = 0.8, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                five: Body,
+                #[joint(four.at(0.03 * x) -> five, about = y)]
+                pin_five: Pin,
+                #[body(mass = 0.75, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                six: Body,
+                #[joint(five.at(0.03 * x) -> six, about = x)]
+                pin_six: Pin,
+                #[body(mass = 0.7, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                seven: Body,
+                #[joint(six.at(0.03 * x) -> seven, about = z)]
+                pin_seven: Pin,
+                #[body(mass = 0.65, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                eight: Body,
+                #[joint(seven.at(0.03 * x) -> eight, about = y)]
+                pin_eight: Pin,
+                #[body(mass = 0.6, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                nine: Body,
+                #[joint(eight.at(0.03 * x) -> nine, about = x)]
+                pin_nine: Pin,
+                #[body(mass = 0.55, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                ten: Body,
+                #[joint(nine.at(0.03 * x) -> ten, about = z)]
+                pin_ten: Pin,
+                #[body(mass = 0.5, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
+                eleven: Body,
+                #[joint(ten.at(0.03 * x) -> eleven, about = y)]
+                pin_eleven: Pin,
+                #[acts(on = pin_one)]
+                motor: Torque,
             }
         }
     };
@@ -58,6 +109,11 @@ impl Numbers {
 
     fn vector<const N: usize>(&mut self) -> SVector<f64, N> {
         SVector::from_fn(|_, _| self.next())
+    }
+
+    /// Without the large ones: lengths of that size leave hardly a digit of the inverse of a mass matrix.
+    fn moderate<const N: usize>(&mut self) -> SVector<f64, N> {
+        self.vector::<N>().map(|x| x.clamp(-2.0, 2.0))
     }
 }
 
@@ -118,6 +174,30 @@ where
     assert_eq!(differ, chooses(), "the choice");
 }
 
+/// Compares the derivatives of two mechanisms.
+macro_rules! compare_derivatives {
+    ($a:expr, $b:expr) => {{
+        let (a, b) = ($a, $b);
+        let (one, other) = (&a, &b);
+        let mut numbers = Numbers(2);
+        for _ in 0..64 {
+            let q = one.integrate(&one.neutral(), &numbers.moderate());
+            let (v, x, u) = (numbers.moderate(), numbers.moderate(), numbers.moderate());
+            let close = |(a, b): (f64, f64)| assert!(a < 1e-9 && b < 1e-9, "derivatives: {a:e}, {b:e}");
+            let found = one.inverse_dynamics_derivatives(&q, &v, &x);
+            let expected = other.inverse_dynamics_derivatives(&q, &v, &x);
+            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            let found = one.forward_dynamics_derivatives(&q, &v, &x);
+            let expected = other.forward_dynamics_derivatives(&q, &v, &x);
+            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            let inverse = one.mass_matrix_inverse(&q);
+            close((difference(&found.2, &expected.2), difference(&inverse, &expected.2)));
+            let (found, expected) = (one.linearize(&q, &v, &u), other.linearize(&q, &v, &u));
+            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+        }
+    }};
+}
+
 fn main() {
     compare(&detected::Panda, &targeted::Panda, true);
     compare(&detected::Solo12, &targeted::Solo12, false);
@@ -125,4 +205,8 @@ fn main() {
     let (one, other) = (detected::Machine { g, m, l }, targeted::Machine { g, m, l });
     compare(&one, &other, true);
     compare(&one.prepare(), &other.prepare(), true);
+    compare_derivatives!(detected::Panda, targeted::Panda);
+    compare_derivatives!(detected::Solo12, targeted::Solo12);
+    compare_derivatives!(one, other);
+    compare_derivatives!(detected::Chain, targeted::Chain);
 }

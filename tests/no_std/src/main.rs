@@ -11,7 +11,7 @@ use linkwork::batch::{Rollout, unwatched};
 use linkwork::frame;
 use linkwork::prelude::*;
 
-#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch)]
+#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch, derivatives)]
 struct Arm;
 
 type Joints = SVector<f64, { Arm::NV }>;
@@ -36,9 +36,14 @@ fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
     let tool = frame!(Arm, "panda_hand_tcp");
     let velocity = Arm.frame_jacobian(tool, q) * v;
     let height = Arm.frame_placement(tool, q).translation.vector.z + Arm.center_of_mass(q).z;
+    let (by_q, by_v, inverse) = Arm.forward_dynamics_derivatives(q, v, &forces);
+    let (tau_by_q, tau_by_v) = Arm.inverse_dynamics_derivatives(q, v, a);
     (forces - Arm.inverse_dynamics(q, v, a)).norm() < 1e-9
         && (kinetic - Arm.kinetic_energy(q, v)).abs() < 1e-9
         && (velocity - Arm.frame_velocity(tool, q, v)).norm() < 1e-9
+        && (inverse * forces - inverse * Arm.bias_forces(q, v) - a).norm() < 1e-6
+        && (mass_matrix * (by_q * v) + tau_by_q * v).norm() < 1e-6
+        && (mass_matrix * (by_v * v) + tau_by_v * v).norm() < 1e-6
         && (Arm.generalized_momentum(q, v) - mass_matrix * v).norm() < 1e-9
         && Arm.momentum(q, v).norm() + Arm.momentum_rate(q, v).norm() + height + Arm.potential_energy(q) < 1e9
 }

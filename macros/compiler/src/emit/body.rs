@@ -71,7 +71,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     if !is_parameter {
         helpers.extend(["Arithmetic", "Compiled as Ops"]);
     }
-    let is_empty = program.instructions.is_empty() && program.outputs.is_empty();
+    let is_empty = program.instructions.is_empty() && program.outputs.is_empty() && !f.shape.calls();
     if !helpers.is_empty() && (!is_empty || s.scalar.is_in_lanes()) {
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }

@@ -28,6 +28,11 @@ struct Body {
     text: String,
 }
 
+/// True for a function that chooses. What calls others multiplies their matrices.
+fn is_large(f: &Function) -> bool {
+    f.shape.calls() || f.program.instructions.len() >= LARGE
+}
+
 impl Bodies {
     /// None so far, and none ever if they are not wanted.
     pub fn new(wanted: bool) -> Bodies {
@@ -37,7 +42,7 @@ impl Bodies {
     /// Writes a function; its body stays here if it is large.
     pub fn write_function(&mut self, out: &mut String, f: &Function, s: &Signature<'_>) {
         // A function of several states does what that of one state does, whatever its lanes.
-        if !self.wanted || f.program.instructions.len() < LARGE {
+        if !self.wanted || !is_large(f) {
             return write_function(out, f, s, false);
         }
         let types: Vec<String> = f.arguments.iter().map(|a| s.argument(*a)).collect();

@@ -92,6 +92,13 @@ pub enum Shape {
     Array(usize),
 }
 
+impl Shape {
+    /// True for what is composed of other functions' results.
+    pub fn calls(self) -> bool {
+        matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
+    }
+}
+
 /// A generated function.
 pub struct Function {
     /// Its name.

@@ -3,9 +3,6 @@
 use super::body::Outputs;
 use super::function::{Function, Shape, Signature, Structure};
 
-/// How many numbers of a column the runtime reads together.
-const WIDTH: usize = 8;
-
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     let square = |n| s.shape(Shape::Square(n));
@@ -25,17 +22,21 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
     let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
+        // Composed in what is returned, so that every matrix is moved once at most.
         Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
-        Shape::Accelerated(n) => {
-            let a = outputs.matrix(0, n, 1);
-            format!("{}({a}, inverse)\n", inverse(f, n, n, s, outputs))
-        }
+        Shape::Accelerated(n) => format!(
+            "let mut all = ({}, {});\n{}all\n",
+            outputs.matrix(0, n, 1),
+            outputs.matrix(n, n, n),
+            combined("all.1", f, n, n, s, outputs)
+        ),
         Shape::Forward(n) => format!(
-            "{}let mut forces = ({}, {});\n{}(forces.0, forces.1, inverse)\n",
-            inverse(f, n, 2 * n * n, s, outputs),
+            "let mut all = ({}, {}, {});\n{}{}all\n",
             square(0, n),
             square(1, n),
-            solved(["forces.0", "forces.1"], "inverse", n, s, &f.structure),
+            square(2, n),
+            combined("all.2", f, n, 2 * n * n, s, outputs),
+            solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
         Shape::CalledForward(n) => called(f, n, s),
         Shape::Linear(n, m) => {
@@ -71,20 +72,31 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
 
 /// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let combined = combined("inverse", f, n, first, s, outputs);
+    format!("let mut inverse = {};\n{combined}", outputs.matrix(first, n, n))
+}
+
+/// Adds what `M⁻¹` has of the trunk to the rest of it, which stands at `place`; nothing if it is whole.
+fn combined(
+    place: &str,
+    f: &Function,
+    n: usize,
+    first: usize,
+    s: &Signature<'_>,
+    outputs: &Outputs<'_>,
+) -> String {
     let trunk = &f.structure.trunk;
-    let matrix = outputs.matrix(first, n, n);
     let width = trunk.len();
     let row = |j: usize| first + n * n + j * width..first + n * n + (j + 1) * width;
     let combined = (0..n).filter(|j| !row(*j).all(|k| outputs.is_zero(k)));
     let combined: Vec<String> = combined.map(|j| format!("({j}, {})", outputs.list(row(j)))).collect();
     if combined.is_empty() {
-        return format!("let inverse = {matrix};\n");
+        return String::new();
     }
     format!(
-        "let mut inverse = {matrix};
-        ::linkwork::__private::combine::<{}, {}, {n}, {width}, {}>(&mut inverse, {trunk:?}, &[{}]);\n",
+        "::linkwork::__private::combine::<Ops, {}, {}, {n}, {width}, {}>(&mut {place}, {trunk:?}, &[{}]);\n",
         s.scalar.name(),
-        n.div_ceil(WIDTH),
+        registers(n),
         combined.len(),
         combined.join(", ")
     )
@@ -93,10 +105,24 @@ fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Ou
 /// Derivatives of the accelerations in the place of those of the forces: `−M⁻¹ ∂τ/∂x`.
 fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
     let is_zero = |k: usize| structure.zeros.get(k).is_some_and(|zero| *zero);
-    let product = |k: usize| {
-        format!("columns.minus_times(&mut {}, {});\n", forces[k], groups(n, n, k * n * n, &is_zero))
-    };
-    format!("let columns = {};\n{}{}", packed(inverse, n, s), product(0), product(1))
+    let factor = |k: usize| format!("(&mut {}, {})", forces[k], groups(n, n, k * n * n, &is_zero));
+    products(inverse, n, n, &[factor(0), factor(1)], s)
+}
+
+/// Minus the products of the inverse with factors of so many columns, in the place of these.
+fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
+    format!(
+        "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
+        s.scalar.name(),
+        registers(n),
+        factors.len(),
+        factors.join(", ")
+    )
+}
+
+/// How many registers a column fills: what the compilation's target has decides.
+fn registers(n: usize) -> String {
+    format!("{{ ::linkwork::__private::registers({n}) }}")
 }
 
 /// The columns of the matrix after the first so many entries, those together whose entries are zero in the same rows:
@@ -136,11 +162,6 @@ fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
     )
 }
 
-fn packed(matrix: &str, n: usize, s: &Signature<'_>) -> String {
-    let blocks = n.div_ceil(WIDTH);
-    format!("::linkwork::__private::Columns::<{}, {blocks}, {n}>::of(&{matrix})", s.scalar.name())
-}
-
 fn number(x: &str, s: &Signature<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>({x})", s.scalar.name())
 }
@@ -148,10 +169,10 @@ fn number(x: &str, s: &Signature<'_>) -> String {
 /// The system's two matrices, with the derivatives by the inputs and what turns displacements after the first so many
 /// outputs.
 fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let factor = format!("(&mut by_u, {})", groups(n, m, first, &|k| outputs.is_zero(k)));
     format!(
         "let mut by_u = {by_u};
-        {columns}.minus_times(&mut by_u, {rows});
-        let turning = {turning};
+        {product}        let turning = {turning};
         let mut a = [[{zero}; {twice}]; {twice}];
         let mut b = [[{zero}; {twice}]; {m}];
         for j in 0..{n} {{
@@ -167,8 +188,7 @@ fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outp
         }}
         ({storage}(a)), {storage}(b)))\n",
         by_u = outputs.matrix(first, n, m),
-        columns = packed("inverse", n, s),
-        rows = groups(n, m, first, &|k| outputs.is_zero(k)),
+        product = products("inverse", n, m, &[factor], s),
         turning = outputs.matrix(first + n * m, n, n),
         zero = number("0.0", s),
         one = number("1.0", s),
