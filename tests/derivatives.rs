@@ -68,9 +68,11 @@ robot!(CartPole, cartpole, "../models/urdf/cartpole.urdf",);
 robot!(DoublePendulum, double_pendulum, "../models/urdf/double_pendulum.urdf",);
 robot!(Ur5, ur5, "../models/urdf/ur5.urdf",);
 robot!(Kinova, kinova, "../models/urdf/kinova.urdf",);
+robot!(Gen3, gen3, "../models/urdf/gen3.urdf",);
 robot!(Panda, panda, "../models/urdf/panda.urdf", , mimic = independent);
 robot!(Solo12, solo12, "../models/urdf/solo12.urdf", , base = free);
 robot!(Humanoid, simple_humanoid, "../models/urdf/simple_humanoid.urdf", , base = free);
+robot!(G1, g1, "../models/urdf/g1.urdf", , base = free);
 
 // ---- Two derivations ---------------------------------------------------------------------------------------------
 

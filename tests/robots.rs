@@ -139,9 +139,11 @@ robot!(cartpole, CartPole, "cartpole", "pole");
 robot!(double_pendulum, DoublePendulum, "double_pendulum", "link3");
 robot!(ur5, Ur5, "ur5", "tool0");
 robot!(kinova, Kinova, "kinova", "j2s6s200_link_finger_tip_2");
+robot!(gen3, Gen3, "gen3", "EndEffector_Link");
 robot!(panda, Panda, "panda", "panda_rightfinger");
 robot!(solo12, Solo12, "solo12", "HR_FOOT");
 robot!(simple_humanoid, Humanoid, "simple_humanoid", "r_wrist");
+robot!(g1, G1, "g1", "right_rubber_hand");
 
 /// One finger follows the other: one coordinate less.
 mod panda_mimic {

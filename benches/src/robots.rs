@@ -11,3 +11,13 @@ pub struct Panda;
 #[mechanism(urdf = "../models/urdf/kinova.urdf", derivatives)]
 #[derive(Clone, Copy)]
 pub struct Kinova;
+
+/// The Gen3 of Kinova: a seven-axis arm, every other joint of which turns for ever.
+#[mechanism(urdf = "../models/urdf/gen3.urdf", derivatives)]
+#[derive(Clone, Copy)]
+pub struct Gen3;
+
+/// The G1 of Unitree: a humanoid with legs of six joints, a waist of three and arms of seven, hips and shoulders inclined.
+#[mechanism(urdf = "../models/urdf/g1.urdf", base = free, derivatives)]
+#[derive(Clone, Copy)]
+pub struct G1;

@@ -19,3 +19,11 @@ pub struct Kinova;
 /// A seven-axis arm with a gripper, both fingers free.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent)]
 pub struct Panda;
+
+/// A seven-axis arm, every other joint of which turns for ever.
+#[mechanism(urdf = "../models/urdf/gen3.urdf")]
+pub struct Gen3;
+
+/// A humanoid whose hips and shoulders are inclined.
+#[mechanism(urdf = "../models/urdf/g1.urdf", base = free)]
+pub struct G1;

@@ -3,7 +3,7 @@
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::own::{Call, Flat, Own};
-use linkwork_benches::robots::{Kinova, Panda};
+use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
@@ -123,9 +123,11 @@ pub fn robots() -> Vec<fn() -> Robot> {
         || file!("panda_arm", "panda", LOCKED, PandaArm),
         || file!("panda", "panda", FIXED, Panda),
         || file!("kinova", "kinova", FIXED, Kinova),
+        || file!("gen3", "gen3", FIXED, Gen3),
         || file!("solo12", "solo12", FREE, Solo12),
         || file!("anymal_b", "anymal_b", FREE, AnymalB),
         || file!("simple_humanoid", "simple_humanoid", FREE, SimpleHumanoid),
+        || file!("g1", "g1", FREE, G1),
     ];
     #[cfg(feature = "chains")]
     return files.into_iter().chain(chains::robots()).collect();
