@@ -170,7 +170,7 @@ fn functions<'g>(
         }
     }
     for f in &mut functions {
-        f.program = std::mem::take(&mut f.program).with_shared_sums();
+        f.program = std::mem::take(&mut f.program).with_shared_sums().scheduled();
     }
     functions
 }

@@ -9,6 +9,7 @@ mod factor;
 mod fuse;
 mod hoist;
 mod lanes;
+mod schedule;
 mod signs;
 mod sums;
 mod terms;

@@ -1,0 +1,163 @@
+//! The order of instructions. A processor looks a few hundred instructions ahead of the oldest that still waits; what
+//! the algorithms compute one after another, such as the bias forces and the factors of the mass matrix, it would
+//! compute side by side only if both were within its sight. So at every step that instruction comes next which the most
+//! latency hangs on, among those whose operands would be there by then.
+
+use super::{Op, Operand, Program};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// How many operations are begun in a cycle.
+const CYCLE: u32 = 3;
+/// Most instructions for each cycle of the longest chain: where there are more, the processor never lacks something to
+/// do, and another order only keeps more values waiting.
+const BROADEST: f64 = 3.5;
+
+impl Program {
+    /// The same program, and what it has in lanes, in an order that keeps the processor busy.
+    #[must_use]
+    pub fn scheduled(mut self) -> Program {
+        self.in_lanes = self.in_lanes.map(|program| Box::new(program.scheduled()));
+        let Some(order) = self.order() else { return self };
+        let mut number = vec![0; order.len()];
+        for (place, k) in order.iter().enumerate() {
+            number[*k] = place;
+        }
+        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
+        self.uses = order.iter().map(|k| self.uses[*k]).collect();
+        for output in &mut self.outputs {
+            *output = super::renumber(*output, &number);
+        }
+        self
+    }
+
+    /// The instructions by their numbers, operands before operations. `None` where the order does not matter.
+    fn order(&self) -> Option<Vec<usize>> {
+        let n = self.instructions.len();
+        let mut users = vec![Vec::new(); n];
+        let mut missing = vec![0; n];
+        for (k, op) in self.instructions.iter().enumerate() {
+            op.operands(|o| {
+                if let Operand::Value(a) = o {
+                    users[a].push(k);
+                    missing[k] += 1;
+                }
+            });
+        }
+        // From the beginning of an operation until the last of what hangs on it.
+        let mut rest = vec![0; n];
+        for k in (0..n).rev() {
+            let after = users[k].iter().map(|u| rest[*u]).max().unwrap_or(0);
+            rest[k] = after + latency(&self.instructions[k]);
+        }
+        let cycles = f64::from(*rest.iter().max()?) / f64::from(CYCLE);
+        if n as f64 > BROADEST * cycles {
+            return None;
+        }
+        let mut ready = vec![0; n];
+        let mut waiting: BinaryHeap<Reverse<(u32, usize)>> =
+            (0..n).filter(|k| missing[*k] == 0).map(|k| Reverse((0, k))).collect();
+        let mut able: BinaryHeap<(u32, Reverse<usize>)> = BinaryHeap::new();
+        let (mut order, mut time) = (Vec::with_capacity(n), 0);
+        loop {
+            while let Some(&Reverse((_, k))) = waiting.peek().filter(|Reverse((at, _))| *at <= time) {
+                waiting.pop();
+                able.push((rest[k], Reverse(k)));
+            }
+            let Some((_, Reverse(k))) = able.pop() else {
+                let Some(&Reverse((at, _))) = waiting.peek() else { return Some(order) };
+                time = at;
+                continue;
+            };
+            order.push(k);
+            for &user in &users[k] {
+                ready[user] = ready[user].max(time + latency(&self.instructions[k]));
+                missing[user] -= 1;
+                if missing[user] == 0 {
+                    waiting.push(Reverse((ready[user], user)));
+                }
+            }
+            time += issue(&self.instructions[k]);
+        }
+    }
+}
+
+/// How long the result of an operation takes, in thirds of a cycle: usual figures of processors with fused operations.
+/// Sines and cosines are evaluated before all else.
+fn latency(op: &Op) -> u32 {
+    CYCLE
+        * match op {
+            Op::Call(..) => 0,
+            Op::Neg(_) => 1,
+            Op::Lane(..) => 2,
+            Op::Add(..) | Op::Sub(..) => 3,
+            Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => 4,
+            Op::Sum(lanes, _) => 5 * halvings(*lanes),
+            Op::Div(..) => 13,
+            Op::Atan2(..) | Op::Pow(..) => 50,
+        }
+}
+
+/// How long an operation keeps others waiting, in thirds of a cycle.
+fn issue(op: &Op) -> u32 {
+    match op {
+        Op::Call(..) => 0,
+        Op::Sum(lanes, _) => 2 * halvings(*lanes),
+        _ => 1,
+    }
+}
+
+/// How often the upper half of so many lanes is added to the lower half.
+fn halvings(lanes: usize) -> u32 {
+    lanes.next_power_of_two().trailing_zeros()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Expr, Graph, Symbol};
+    use crate::lower::{Op, Operand, lower};
+
+    /// A long chain, and after it what a longer one begins with.
+    fn chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
+        let [x, y] = [0, 1].map(|k| g.symbol(Symbol(k)));
+        let chain = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
+        let first = chain(x + y, 8);
+        vec![first, chain((x - y).sin() / y, 12)]
+    }
+
+    #[test]
+    fn values_stay() {
+        let g = Graph::new();
+        let before = lower(&chains(&g)).fused();
+        let after = before.clone().scheduled();
+        let symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
+        assert_eq!(before.run(&symbol), after.run(&symbol));
+        assert_eq!(after.counts, before.counts);
+        let mut uses = vec![0; after.instructions.len()];
+        for (k, op) in after.instructions.iter().enumerate() {
+            op.operands(|o| {
+                if let Operand::Value(a) = o {
+                    assert!(a < k, "{a} is used by {k}");
+                    uses[a] += 1;
+                }
+            });
+        }
+        for output in &after.outputs {
+            if let Operand::Value(a) = output {
+                uses[*a] += 1;
+            }
+        }
+        assert_eq!(after.uses, uses);
+    }
+
+    #[test]
+    fn the_longest_chain_comes_first() {
+        let g = Graph::new();
+        let place = |program: &crate::lower::Program| {
+            program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
+        };
+        let program = lower(&chains(&g)).fused();
+        assert!(place(&program) > 8, "the quotient comes after the other chain");
+        assert!(place(&program.scheduled()) < 6, "the quotient begins the longest chain");
+    }
+}
