@@ -3,6 +3,7 @@
 //! gravity, so the recursion has no velocity terms.
 
 use super::kinematics::{Dof, Joint, resistance};
+use super::ldl::second_inverse;
 use super::{Spatial, is_plain_tree};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::model::{Inertia, Model};
@@ -40,8 +41,11 @@ fn solve<'g>(
     let mut handles: Vec<Vec<Handle<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
         let (mut inertia, mut wrench) = (inertias[k], wrenches[k]);
-        for dof in joint.dofs.iter().rev() {
-            let handle = Handle::new(dof, &inertia, &wrench, r[dof.index]);
+        let mut inverse = None;
+        for (place, dof) in joint.dofs.iter().enumerate().rev() {
+            let next = place.checked_sub(1).map(|next| &joint.dofs[next]).filter(|_| inverse.is_none());
+            let handle = Handle::new(dof, &inertia, &wrench, r[dof.index], inverse);
+            inverse = next.and_then(|next| inertia.second_inverse(&dof.subspace, &next.subspace));
             // Nothing above the last degree of freedom needs what is left of the inertia of a root.
             inertia.eliminate(&handle);
             wrench = handle.transmit(&wrench);
@@ -117,10 +121,17 @@ fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> 
 }
 
 impl<'g> Handle<'g> {
-    fn new(dof: &Dof<'g>, inertia: &Articulated<'g>, wrench: &Spatial<'g>, r: Expr<'g>) -> Handle<'g> {
+    /// The inverse of `D` is given if it is known already.
+    fn new(
+        dof: &Dof<'g>,
+        inertia: &Articulated<'g>,
+        wrench: &Spatial<'g>,
+        r: Expr<'g>,
+        inverse: Option<Expr<'g>>,
+    ) -> Handle<'g> {
         let axis = Axis::of(&dof.subspace);
         let mut column = inertia.times(&dof.subspace);
-        let inverse = r.num(1.0) / dof.subspace.dot(&column);
+        let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
         if let Some(axis) = axis {
             column = with_entry(column, axis.entry, r.zero());
         }
@@ -165,6 +176,13 @@ impl<'g> Articulated<'g> {
             linear: self.m * s.linear + self.h.transpose() * s.angular,
             angular: self.h * s.linear + self.i * s.angular,
         }
+    }
+
+    /// The inverse of `D` of a second degree of freedom once the first is eliminated; `None` where the two do not meet. See
+    /// [`second_inverse`].
+    fn second_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
+        let column = self.times(first);
+        second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.times(second)))
     }
 
     /// `IA − U Uᵀ / D`. Rows and columns of a coordinate axis that the joint leaves free are exactly zero then.
