@@ -1,6 +1,7 @@
 //! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms and next to other
 //! libraries, and the time that the compiler takes. The README beside this package says how to run what.
 
+pub mod assembly;
 pub mod chains;
 pub mod generic;
 pub mod operations;

@@ -1,0 +1,186 @@
+//! The functions of an assembly file in the AT&T syntax that rustc writes for x86-64: their size, their stack and what they
+//! call. It knows as much of the language as that needs.
+
+use rustc_demangle::demangle;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A function of an assembly file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Routine {
+    /// Instructions, without those that fill gaps.
+    pub instructions: usize,
+    /// Bytes of stack that it takes for itself.
+    pub stack: usize,
+    /// What it calls or jumps to, by the names of the linker.
+    pub calls: BTreeSet<String>,
+    /// It calls what it has computed or read from memory.
+    pub calls_by_address: bool,
+}
+
+/// All functions by the names of the linker.
+#[must_use]
+pub fn routines(text: &str) -> BTreeMap<String, Routine> {
+    let mut found = BTreeMap::new();
+    let (mut names, mut routine) = (BTreeSet::new(), None);
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("\t.type\t").and_then(|rest| rest.strip_suffix(",@function")) {
+            names.insert(name);
+        } else if let Some(name) = line.strip_suffix(':').filter(|name| names.contains(name)) {
+            routine = Some((name, Reader::default()));
+        } else if line.starts_with("\t.size\t")
+            && let Some((name, reader)) = routine.take()
+        {
+            found.insert(name.to_string(), reader.routine);
+        } else if let Some((_, reader)) = &mut routine
+            && let Some(instruction) = instruction(line)
+        {
+            reader.read(instruction);
+        }
+    }
+    found
+}
+
+/// The instruction of a line, without its comment.
+fn instruction(line: &str) -> Option<&str> {
+    let text = line.strip_prefix('\t')?.split('#').next()?.trim_end();
+    let is_one = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.starts_with("nop");
+    is_one.then_some(text)
+}
+
+#[derive(Default)]
+struct Reader {
+    routine: Routine,
+    /// Registers that have held the address of a function.
+    addresses: BTreeMap<String, String>,
+    /// A loop takes the stack page by page, up to a limit that is counted already.
+    probing: bool,
+}
+
+impl Reader {
+    fn read(&mut self, instruction: &str) {
+        self.routine.instructions += 1;
+        let (name, operands) = instruction.split_once('\t').unwrap_or((instruction, ""));
+        match name {
+            "pushq" => self.routine.stack += 8,
+            "subq" => self.take_stack(operands),
+            "leaq" if operands.ends_with("(%rsp), %r11") && operands.starts_with('-') => {
+                self.routine.stack += number(&operands[1..]);
+                self.probing = true;
+            }
+            "jne" => self.probing = false,
+            "movq" => self.copy(operands),
+            "callq" | "jmp" | "jmpq" => self.call(operands),
+            _ => {}
+        }
+        if let Some((function, register)) = operands.split_once("@GOTPCREL(%rip), ") {
+            self.addresses.insert(register.to_string(), function.to_string());
+        }
+    }
+
+    /// An address goes from one register to another.
+    fn copy(&mut self, operands: &str) {
+        if let Some((from, to)) = operands.split_once(", ")
+            && let Some(function) = self.addresses.get(from)
+        {
+            self.addresses.insert(to.to_string(), function.clone());
+        }
+    }
+
+    fn take_stack(&mut self, operands: &str) {
+        if let Some(bytes) = operands.strip_suffix(", %rsp").and_then(|bytes| bytes.strip_prefix('$'))
+            && !self.probing
+        {
+            self.routine.stack += number(bytes);
+        }
+    }
+
+    fn call(&mut self, target: &str) {
+        if let Some(address) = target.strip_prefix('*') {
+            let direct = address.strip_suffix("@GOTPCREL(%rip)").map(str::to_string);
+            match direct.or_else(|| self.addresses.get(address).cloned()) {
+                Some(function) => self.routine.calls.insert(function),
+                None => std::mem::replace(&mut self.routine.calls_by_address, true),
+            };
+        } else if !target.starts_with(".L") {
+            let function = target.strip_suffix("@PLT").unwrap_or(target);
+            self.routine.calls.insert(function.to_string());
+        }
+    }
+}
+
+fn number(text: &str) -> usize {
+    let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    text[..end].parse().unwrap_or(0)
+}
+
+/// The name of a function as the source has it, without the types that it is for.
+#[must_use]
+pub fn name_in_source(symbol: &str) -> String {
+    let full = format!("{:#}", demangle(symbol));
+    let (mut name, mut depth) = (String::new(), 0);
+    for (k, c) in full.char_indices() {
+        match c {
+            '<' => depth += 1,
+            '>' => depth -= 1,
+            _ if depth == 0 || k == 0 => name.push(c),
+            _ => {}
+        }
+    }
+    name.replace("::::", "::").trim_matches(':').to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "\t.type\t_ZN4work5outer17h0123456789abcdefE,@function
+_ZN4work5outer17h0123456789abcdefE:
+\t.cfi_startproc
+\tpushq\t%rbx
+\t.cfi_def_cfa_offset 16
+\tleaq\t-8192(%rsp), %r11
+.LBB0_1:
+\tsubq\t$4096, %rsp
+\tmovq\t$0, (%rsp)
+\tcmpq\t%r11, %rsp
+\tjne\t.LBB0_1
+\tsubq\t$24, %rsp
+\tmovq\tmemcpy@GOTPCREL(%rip), %rbx
+\tmovq\t%rbx, %r14
+\tcallq\t*%r14
+\tcallq\t*sin@GOTPCREL(%rip)
+\tnopw\t(%rax)
+\tjmp\t.LBB0_2
+.LBB0_2:
+\tjmp\t_ZN4work5inner17h0123456789abcdefE # TAILCALL
+.Lfunc_end0:
+\t.size\t_ZN4work5outer17h0123456789abcdefE, .Lfunc_end0-_ZN4work5outer17h0123456789abcdefE
+\t.type\t_ZN4work5inner17h0123456789abcdefE,@function
+_ZN4work5inner17h0123456789abcdefE:
+\tcallq\t*16(%rax)
+\tretq
+.Lfunc_end1:
+\t.size\t_ZN4work5inner17h0123456789abcdefE, .Lfunc_end1-_ZN4work5inner17h0123456789abcdefE
+";
+
+    #[test]
+    fn calls_and_stack_are_found() {
+        let found = routines(TEXT);
+        assert_eq!(found.len(), 2);
+        let outer = &found["_ZN4work5outer17h0123456789abcdefE"];
+        let calls: Vec<String> = outer.calls.iter().map(|call| name_in_source(call)).collect();
+        assert_eq!(calls, ["work::inner", "memcpy", "sin"]);
+        assert_eq!((outer.instructions, outer.stack, outer.calls_by_address), (13, 8 + 8192 + 24, false));
+        let inner = &found["_ZN4work5inner17h0123456789abcdefE"];
+        assert_eq!((inner.instructions, inner.stack, inner.calls_by_address), (2, 0, true));
+        assert!(inner.calls.is_empty());
+    }
+
+    #[test]
+    fn names_are_those_of_the_source() {
+        let panic = "_ZN4core9panicking18panic_bounds_check17h0123456789abcdefE";
+        assert_eq!(name_in_source(panic), "core::panicking::panic_bounds_check");
+        let generic = "_ZN88_$LT$linkwork..arithmetic..Compiled$u20$as$u20$linkwork..lanes..registers..Registers$GT$6within17h5068f906a8b23952E";
+        assert_eq!(name_in_source(generic), "within");
+    }
+}
