@@ -194,3 +194,43 @@ fn single_precision() {
     let expected = Everything.inverse_dynamics(&q, &v, &v);
     assert_close("forces", forces.cast::<f64>().as_slice(), expected.as_slice(), 1e-5);
 }
+
+/// An arm whose right angles are written with five digits, as they stand and as they were meant.
+#[test]
+fn rounded_frames_are_those_that_were_meant() {
+    #[mechanism(urdf = "../models/urdf/gen3.urdf")]
+    struct Written;
+    #[mechanism(urdf = "../models/urdf/gen3.urdf", snap = 1e-4)]
+    struct Meant;
+
+    let mut random = Random::new(23);
+    for _ in 0..10 {
+        let (q, v, a) = (random.vector(3.0), random.vector(1.0), random.vector(1.0));
+        let (written, meant) = (Written.inverse_dynamics(&q, &v, &a), Meant.inverse_dynamics(&q, &v, &a));
+        let difference = (written - meant).norm() / written.norm();
+        assert!(difference > 1e-9 && difference < 1e-4, "{difference}");
+    }
+    // Stretched out upwards, the arm has only its small offsets on one side, all of them: the file's digits add to that.
+    let up = SVector::zeros();
+    let aside = 0.005375 + 3.0 * 0.006375 + 2.0 * 0.00017505;
+    let meant = Meant.frame_placement(frame!(Meant, "EndEffector_Link"), &up).translation;
+    assert!((meant.y + aside).abs() < 1e-15 && meant.x.abs() < 1e-15, "{meant}");
+    let written = Written.frame_placement(frame!(Written, "EndEffector_Link"), &up).translation;
+    assert!((written.y + aside).abs() > 1e-7, "{written}");
+}
+
+/// What was rounded stands in the documentation of the struct.
+#[test]
+fn rounded_numbers_are_documented() {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let arguments = |more: &str| tokens(&format!("urdf = \"../models/urdf/gen3.urdf\"{more}"));
+    let docs = linkwork_compiler::expand(arguments(", snap = 1e-4"), tokens("struct Robot;"), folder)
+        .tokens
+        .to_string();
+    assert!(
+        docs.contains("Rounded numbers") && docs.contains("`Actuator1`: roll 3.1416 → 3.141592653589793")
+    );
+    let docs = linkwork_compiler::expand(arguments(""), tokens("struct Robot;"), folder).tokens.to_string();
+    assert!(!docs.contains("Rounded numbers"));
+}

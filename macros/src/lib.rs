@@ -31,6 +31,7 @@ use std::path::PathBuf;
 /// | `inertia = check` or `trust` | whether an inertia that no body can have is an error |
 /// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input |
 /// | `lock = ["joint", …]` | joints frozen at zero |
+/// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 ///
 /// Mistakes are compile errors at the token, all of them at once; those of a file carry its line and column.
 #[proc_macro_attribute]

@@ -93,6 +93,7 @@ fn merge(description: &mut Description, imported: import::Imported, cx: &mut Dia
     }
     description.bodies.extend(own_bodies);
     description.joints.extend(own_joints);
+    description.snapped = imported.snapped;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
         description.gravity = Some(syntax::Expr::vector([0.0, 0.0, -9.81], &place));
@@ -219,6 +220,7 @@ impl Source {
             velocity_inputs: false,
             batch: self.mechanism.requests.batch,
             detect: !self.mechanism.requests.target_only,
+            snapped: &d.snapped,
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }

@@ -41,6 +41,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             trust_inertia: false,
             inputs: false,
             lock: Vec::new(),
+            snap: None,
         };
         if let Some(imported) = import::import_urdf(text, &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;

@@ -54,6 +54,13 @@ mod names_used_twice {
     struct Robot;
 }
 
+mod rounded_too_far {
+    use linkwork::prelude::*;
+
+    #[mechanism(urdf = "urdf/arm.urdf", snap = 0.5)]
+    struct Robot;
+}
+
 mod negative_mass {
     use linkwork::prelude::*;
 

@@ -27,6 +27,12 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     list(&mut text, "Frames", &interface.frames);
     units(&mut text, interface);
     constraints(&mut text, interface);
+    if !interface.snapped.is_empty() {
+        text.push_str("\n# Rounded numbers\n\nOther than in the file, by `snap`:\n\n");
+        for number in interface.snapped {
+            let _ = writeln!(text, "- {number}");
+        }
+    }
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let _ = writeln!(text, "\n# Structure\n\n`M(q) v̇ + h(q, v) = τ`, too long to be written out.\n");
         for joint in &interface.structure {

@@ -51,6 +51,8 @@ pub struct Interface<'a> {
     pub batch: bool,
     /// Large functions choose their arithmetic at run time.
     pub detect: bool,
+    /// Numbers of the file that were rounded.
+    pub snapped: &'a [String],
 }
 
 /// What was derived.

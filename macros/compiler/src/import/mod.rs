@@ -29,6 +29,8 @@ pub struct Imported {
     pub bodies: Vec<Body>,
     /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
     pub joints: Vec<Joint>,
+    /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
+    pub snapped: Vec<String>,
 }
 
 /// Reads the text of a URDF file.

@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
-use super::{Base, Description, Formulation, Name, ScalarType, guard};
+use super::{Base, Description, Expr, ExprKind, Formulation, Name, ScalarType, guard};
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
@@ -76,14 +76,19 @@ pub struct UrdfOptions {
     pub inputs: bool,
     /// Joints frozen at zero.
     pub lock: Vec<Name>,
+    /// How far off round numbers the file's frames and axes may be to be taken for round, rad and m.
+    pub snap: Option<f64>,
 }
 
 /// The words of [`Requests`].
 const REQUESTS: [&str; 7] =
     ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
 
+/// Most that `snap` may change a frame by, rad and m.
+const LARGEST_SNAP: f64 = 0.01;
+
 /// The options that have a value.
-const OPTIONS: [&str; 13] = [
+const OPTIONS: [&str; 14] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -96,6 +101,7 @@ const OPTIONS: [&str; 13] = [
     "inertia",
     "inputs",
     "lock",
+    "snap",
     "processor",
 ];
 
@@ -224,6 +230,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         dissipations: Vec::new(),
         constraints: Vec::new(),
         formulation: Formulation::default(),
+        snapped: Vec::new(),
     }
 }
 
@@ -356,7 +363,7 @@ fn read_options(
         unify_scalar(scalar, found, place, cx);
     }
     let path = arguments.take_text("urdf", cx);
-    let file_only = ["base", "passive", "mimic", "inertia", "inputs", "lock"];
+    let file_only = ["base", "passive", "mimic", "inertia", "inputs", "lock", "snap"];
     if path.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -375,6 +382,7 @@ fn read_options(
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     let lock = arguments.take_texts("lock", cx);
+    let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     Some(UrdfOptions {
         path: path?,
@@ -384,7 +392,20 @@ fn read_options(
         trust_inertia,
         inputs: !no_inputs,
         lock,
+        snap,
     })
+}
+
+/// The tolerance of `snap`: a positive number, small beside an angle that is meant.
+fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
+    match e.kind {
+        ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
+        _ => {
+            cx.error(e.place.clone(), format!("expected a number above 0, at most {LARGEST_SNAP}"))
+                .help("`snap = 1e-4` rounds what is 0.0001 rad or 0.0001 m off at most");
+            None
+        }
+    }
 }
 
 /// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.

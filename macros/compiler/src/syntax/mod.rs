@@ -175,6 +175,8 @@ pub struct Description {
     pub constraints: Vec<Constraint>,
     /// How constrained motion is solved.
     pub formulation: Formulation,
+    /// Numbers of a file that were rounded, as the user asked for.
+    pub snapped: Vec<String>,
 }
 
 /// How the accelerations of a mechanism with constraints are found.

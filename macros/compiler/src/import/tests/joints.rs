@@ -190,6 +190,29 @@ fn a_locked_joint_is_a_weld() {
 }
 
 #[test]
+fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
+    let robot = chain(&[
+        ("revolute", "<origin xyz='1e-5 0.5 0' rpy='1.5708 -3.14159 0.3'/><axis xyz='0 -2 1e-4'/>"),
+        ("prismatic", "<origin xyz='0.002 0 0' rpy='1.572 0 0'/><axis xyz='1 0 0.01'/>"),
+        ("fixed", "<origin rpy='0 -1.571 0'/>"),
+    ]);
+    check_with(
+        &UrdfOptions { snap: Some(1e-3), ..defaults() },
+        &robot,
+        "body l0\nbody l1\nbody l2\nbody l3
+         Weld root_joint: ground -> l0
+         Pin j1: l0.at([0, 0.5, 0]).rotated(z(0.3), y(-3.141592653589793), x(1.5707963267948966)) -> l1 about [0, -2, 0]
+         Sleeve j2: l1.at([0.002, 0, 0]).rotated(x(1.572)) -> l2 along [1, 0, 0.01]
+         Weld j3: l2.rotated(y(-1.5707963267948966)) -> l3
+         rounded `j1`: roll 1.5708 → 1.5707963267948966
+         rounded `j1`: pitch -3.14159 → -3.141592653589793
+         rounded `j1`: x 0.00001 → 0
+         rounded `j1`: axis z 0.0001 → 0
+         rounded `j3`: pitch -1.571 → -1.5707963267948966",
+    );
+}
+
+#[test]
 fn what_follows_a_locked_joint_stands_at_its_offset() {
     let follow = "<mimic joint='j6' offset='0.5'/>";
     check_chain(

@@ -26,6 +26,7 @@ fn defaults() -> UrdfOptions {
         trust_inertia: false,
         inputs: false,
         lock: Vec::new(),
+        snap: None,
     }
 }
 
@@ -66,7 +67,8 @@ fn run(options: &UrdfOptions, text: &str) -> String {
 fn render(imported: &Imported) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
-    bodies.chain(joints).map(|line| line + "\n").collect()
+    let rounded = imported.snapped.iter().map(|line| format!("rounded {line}"));
+    bodies.chain(joints).chain(rounded).map(|line| line + "\n").collect()
 }
 
 fn render_body(body: &Body) -> String {

@@ -27,7 +27,7 @@ pub(super) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints }
+    Imported { bodies, joints, snapped: robot.snapped }
 }
 
 /// The joint that holds the root, which no URDF file names.
@@ -80,7 +80,7 @@ fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut
         move_end(&mut parent, &given, coordinate, cx);
         return bare_joint(given.name, JointKind::Weld, parent, end_at(given.child));
     }
-    let alone = given.has_coordinate();
+    let (alone, has_axis) = (given.has_coordinate(), given.has_axis());
     let mut joint = bare_joint(given.name, given.kind, parent, end_at(given.child));
     let axis = Expr::vector(given.axis.value, &given.axis.place);
     match given.kind {
@@ -89,7 +89,7 @@ fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut
         JointKind::Sleeve => joint.along.push(axis),
         _ => {}
     }
-    joint.normalise_axis = !matches!(given.kind, JointKind::Weld | JointKind::Free);
+    joint.normalise_axis = has_axis;
     (joint.damping, joint.friction) = (given.damping, given.friction);
     match motion {
         Motion::Follows(mimic) => joint.mimic = Some(mimic),

@@ -46,6 +46,11 @@ impl FileJoint {
     pub(super) fn has_coordinate(&self) -> bool {
         matches!(self.kind, JointKind::Pin | JointKind::Sleeve)
     }
+
+    /// True if it moves about or along its axis.
+    pub(super) fn has_axis(&self) -> bool {
+        !matches!(self.kind, JointKind::Weld | JointKind::Free)
+    }
 }
 
 /// Reads a joint; `None` if it does not say what it joins.

@@ -16,6 +16,7 @@ mod link;
 mod motion;
 mod names;
 mod origin;
+mod snap;
 mod tree;
 
 /// Links or joints of one file.
@@ -25,6 +26,8 @@ const MOST: usize = 1024;
 struct Robot {
     links: Vec<Body>,
     joints: Vec<FileJoint>,
+    /// What was rounded.
+    snapped: Vec<String>,
 }
 
 /// Reads the root element.
@@ -65,7 +68,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
 
 fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
-    let mut robot = Robot { links: Vec::new(), joints: Vec::new() };
+    let mut robot = Robot { links: Vec::new(), joints: Vec::new(), snapped: Vec::new() };
     for child in elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
@@ -84,6 +87,9 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
             0 => robot.links.extend(link::read_link(child, options, cx)),
             _ => robot.joints.extend(joint::read_joint(child, options, cx)),
         }
+    }
+    if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {
+        robot.snapped = robot.joints.iter_mut().flat_map(|joint| snap::snap(joint, tolerance)).collect();
     }
     if counts[0] == 0 && !cx.failed() {
         cx.error(&place(node, cx), "robot without a link", |d| d.help("expected `<link name=\"…\"/>`"));

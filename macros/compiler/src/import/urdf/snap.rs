@@ -1,0 +1,41 @@
+//! Numbers that were meant to be round: right angles written with five digits, axes that lean by what an exporter lost.
+//! They are rounded if the user asks for it, and each is reported, since this changes the robot.
+
+use super::joint::FileJoint;
+use std::f64::consts::FRAC_PI_2;
+
+/// Rounds the frame and the axis of a joint: angles that lie within `tolerance` (rad) of a multiple of a right one,
+/// positions within it (m) of zero, components of the unit axis within it of zero. Returns what it was, by entry.
+pub(super) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut report = |entry: &str, from: f64, to: f64| {
+        if from != to {
+            found.push(format!("`{}`: {entry} {from} → {to}", joint.name.text));
+        }
+    };
+    for (angle, entry) in joint.origin.rpy.value.iter_mut().zip(["roll", "pitch", "yaw"]) {
+        let right = (*angle / FRAC_PI_2).round() * FRAC_PI_2;
+        if (*angle - right).abs() <= tolerance {
+            report(entry, *angle, right);
+            *angle = right;
+        }
+    }
+    for (x, entry) in joint.origin.xyz.value.iter_mut().zip(["x", "y", "z"]) {
+        if x.abs() <= tolerance {
+            report(entry, *x, 0.0);
+            *x = 0.0;
+        }
+    }
+    if joint.has_axis() {
+        let axis = &mut joint.axis.value;
+        let largest = axis.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let length = largest * axis.iter().map(|c| (c / largest).powi(2)).sum::<f64>().sqrt();
+        for (c, entry) in axis.iter_mut().zip(["axis x", "axis y", "axis z"]) {
+            if c.abs() <= tolerance * length {
+                report(entry, *c, 0.0);
+                *c = 0.0;
+            }
+        }
+    }
+    found
+}
