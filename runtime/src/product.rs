@@ -6,8 +6,12 @@ use crate::arithmetic::{Arithmetic, Vector};
 use crate::lanes::{Lanes, Work};
 use nalgebra::SMatrix;
 
-/// How many numbers of a column are calculated together: a register of them.
-const WIDTH: usize = if cfg!(target_feature = "avx512f") { 8 } else { 4 };
+/// How many numbers of a column of so many are calculated together: a register of them, a smaller one for columns that do
+/// not fill the target's.
+#[must_use]
+pub const fn width(numbers: usize) -> usize {
+    if cfg!(target_feature = "avx512f") && numbers >= 8 { 8 } else { 4 }
+}
 
 /// How many registers hold sums at a time. The others are for what is added.
 const SUMS: usize = if cfg!(target_feature = "avx512f") { 24 } else { 12 };
@@ -15,29 +19,30 @@ const SUMS: usize = if cfg!(target_feature = "avx512f") { 24 } else { 12 };
 /// How many registers the numbers of a column fill.
 #[must_use]
 pub const fn registers(numbers: usize) -> usize {
-    numbers.div_ceil(WIDTH)
+    numbers.div_ceil(width(numbers))
 }
 
-/// A column in `B` registers. The last begins as much earlier as it would be too long.
-type Column<T, const B: usize> = [Lanes<T, WIDTH>; B];
+/// A column in `B` registers of `W` numbers. The last begins as much earlier as it would be too long.
+type Column<T, const W: usize, const B: usize> = [Lanes<T, W>; B];
 
 /// Sums in `B` registers.
-type Sums<A, T, const B: usize> = [Vector<A, T, WIDTH>; B];
+type Sums<A, T, const W: usize, const B: usize> = [Vector<A, T, W>; B];
 
 /// Columns of a matrix, beginning where lines of the cache do.
 #[repr(align(64))]
-struct Columns<T, const B: usize, const K: usize>([Column<T, B>; K]);
+struct Columns<T, const W: usize, const B: usize, const K: usize>([Column<T, W, B>; K]);
 
 /// A matrix with which another is multiplied: the columns from one number up to another, outside whose given rows there are
 /// zeros. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
     (&'a mut SMatrix<T, N, M>, &'a [(usize, usize, &'a [usize])]);
 
-/// Puts minus the products of a matrix with others in the place of these. Columns are read in `B` registers.
+/// Puts minus the products of a matrix with others in the place of these. Columns are read in `B` registers of `W` numbers.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
     T: Real,
+    const W: usize,
     const B: usize,
     const N: usize,
     const M: usize,
@@ -46,20 +51,20 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::within(Products::<T, B, N, M, COUNT> { matrix, factors });
+    A::within(Products::<T, W, B, N, M, COUNT> { matrix, factors });
 }
 
-struct Products<'a, T, const B: usize, const N: usize, const M: usize, const COUNT: usize> {
+struct Products<'a, T, const W: usize, const B: usize, const N: usize, const M: usize, const COUNT: usize> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
 }
 
-impl<T: Real, const B: usize, const N: usize, const M: usize, const COUNT: usize> Work
-    for Products<'_, T, B, N, M, COUNT>
+impl<T: Real, const W: usize, const B: usize, const N: usize, const M: usize, const COUNT: usize> Work
+    for Products<'_, T, W, B, N, M, COUNT>
 {
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let mut columns = Columns::<T, B, N>::zero();
+        let mut columns = Columns::<T, W, B, N>::zero();
         for (column, from) in columns.0.iter_mut().zip(&self.matrix.data.0) {
             pack(from, column);
         }
@@ -75,14 +80,14 @@ impl<T: Real, const B: usize, const N: usize, const M: usize, const COUNT: usize
     }
 }
 
-impl<T: Real, const B: usize, const K: usize> Columns<T, B, K> {
+impl<T: Real, const W: usize, const B: usize, const K: usize> Columns<T, W, B, K> {
     #[inline(always)]
     fn zero() -> Self {
-        Self([[Lanes([T::zero(); WIDTH]); B]; K])
+        Self([[Lanes([T::zero(); W]); B]; K])
     }
 }
 
-impl<T: Real, const B: usize, const N: usize> Columns<T, B, N> {
+impl<T: Real, const W: usize, const B: usize, const N: usize> Columns<T, W, B, N> {
     /// Puts minus their products in the place of columns, `K` at a time if there are registers enough; returns those that
     /// are left. A single sum has to wait for every addition.
     #[inline(always)]
@@ -101,14 +106,14 @@ impl<T: Real, const B: usize, const N: usize> Columns<T, B, N> {
                 let Some(from) = self.0.get(k) else { continue };
                 for (sums, column) in sums.iter_mut().zip(&*some) {
                     let Some(factor) = column.get(k) else { continue };
-                    add_multiple::<A, T, B>(sums, *factor, from);
+                    add_multiple::<A, T, W, B>(sums, *factor, from);
                 }
             }
             for (sums, column) in sums.iter_mut().zip(some) {
                 for sum in sums.iter_mut() {
                     *sum = -*sum;
                 }
-                unpack::<A, T, B, N>(sums, column);
+                unpack::<A, T, W, B, N>(sums, column);
             }
         }
         rest
@@ -116,28 +121,36 @@ impl<T: Real, const B: usize, const N: usize> Columns<T, B, N> {
 }
 
 /// Adds linear combinations of the columns `of` of a matrix to others, each given with its factors. Columns are read in `B`
-/// registers.
+/// registers of `W` numbers.
 #[inline]
-pub fn combine<A: Arithmetic, T: Real, const B: usize, const N: usize, const K: usize, const M: usize>(
+pub fn combine<
+    A: Arithmetic,
+    T: Real,
+    const W: usize,
+    const B: usize,
+    const N: usize,
+    const K: usize,
+    const M: usize,
+>(
     matrix: &mut SMatrix<T, N, N>,
     of: [usize; K],
     others: &[(usize, [T; K]); M],
 ) {
-    A::within(Combinations::<T, B, N, K, M> { matrix, of, others });
+    A::within(Combinations::<T, W, B, N, K, M> { matrix, of, others });
 }
 
-struct Combinations<'a, T, const B: usize, const N: usize, const K: usize, const M: usize> {
+struct Combinations<'a, T, const W: usize, const B: usize, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     of: [usize; K],
     others: &'a [(usize, [T; K]); M],
 }
 
-impl<T: Real, const B: usize, const N: usize, const K: usize, const M: usize> Work
-    for Combinations<'_, T, B, N, K, M>
+impl<T: Real, const W: usize, const B: usize, const N: usize, const K: usize, const M: usize> Work
+    for Combinations<'_, T, W, B, N, K, M>
 {
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let mut from = Columns::<T, B, K>::zero();
+        let mut from = Columns::<T, W, B, K>::zero();
         for (column, k) in from.0.iter_mut().zip(self.of) {
             if let Some(given) = self.matrix.data.0.get(k) {
                 pack(given, column);
@@ -145,26 +158,26 @@ impl<T: Real, const B: usize, const N: usize, const K: usize, const M: usize> Wo
         }
         for (at, factors) in self.others {
             let Some(column) = self.matrix.data.0.get_mut(*at) else { continue };
-            let mut start = [Lanes([T::zero(); WIDTH]); B];
+            let mut start = [Lanes([T::zero(); W]); B];
             pack(column, &mut start);
             let mut sums = [A::splat(T::zero()); B];
             for (sum, start) in sums.iter_mut().zip(start) {
                 *sum = Vector::from(start);
             }
             for (from, factor) in from.0.iter().zip(factors) {
-                add_multiple::<A, T, B>(&mut sums, *factor, from);
+                add_multiple::<A, T, W, B>(&mut sums, *factor, from);
             }
-            unpack::<A, T, B, N>(&sums, column);
+            unpack::<A, T, W, B, N>(&sums, column);
         }
     }
 }
 
 /// Adds a multiple of a column to sums.
 #[inline(always)]
-fn add_multiple<A: Arithmetic, T: Real, const B: usize>(
-    sums: &mut Sums<A, T, B>,
+fn add_multiple<A: Arithmetic, T: Real, const W: usize, const B: usize>(
+    sums: &mut Sums<A, T, W, B>,
     factor: T,
-    column: &Column<T, B>,
+    column: &Column<T, W, B>,
 ) {
     let factor = A::splat(factor);
     for (sum, x) in sums.iter_mut().zip(column) {
@@ -174,16 +187,19 @@ fn add_multiple<A: Arithmetic, T: Real, const B: usize>(
 
 /// Where a register begins that belongs to a column of `n` numbers.
 #[inline(always)]
-fn start(register: usize, n: usize) -> usize {
-    (register * WIDTH).min(n.saturating_sub(WIDTH))
+fn start<const W: usize>(register: usize, n: usize) -> usize {
+    (register * W).min(n.saturating_sub(W))
 }
 
 // No function of the standard library that takes closures: those are not always inlined.
 
 #[inline(always)]
-fn pack<T: Real, const N: usize, const B: usize>(column: &[T; N], into: &mut Column<T, B>) {
+fn pack<T: Real, const N: usize, const W: usize, const B: usize>(
+    column: &[T; N],
+    into: &mut Column<T, W, B>,
+) {
     for (register, numbers) in into.iter_mut().enumerate() {
-        let rest = column.get(start(register, N)..).unwrap_or(&[]);
+        let rest = column.get(start::<W>(register, N)..).unwrap_or(&[]);
         if let Some(all) = rest.first_chunk() {
             numbers.0 = *all;
         } else {
@@ -195,9 +211,12 @@ fn pack<T: Real, const N: usize, const B: usize>(column: &[T; N], into: &mut Col
 }
 
 #[inline(always)]
-fn unpack<A: Arithmetic, T: Real, const B: usize, const N: usize>(sums: &Sums<A, T, B>, column: &mut [T; N]) {
+fn unpack<A: Arithmetic, T: Real, const W: usize, const B: usize, const N: usize>(
+    sums: &Sums<A, T, W, B>,
+    column: &mut [T; N],
+) {
     for (register, sum) in sums.iter().enumerate() {
-        let rest = column.get_mut(start(register, N)..).unwrap_or(&mut []);
+        let rest = column.get_mut(start::<W>(register, N)..).unwrap_or(&mut []);
         let numbers = sum.numbers();
         if let Some(all) = rest.first_chunk_mut() {
             *all = *numbers;
@@ -219,13 +238,13 @@ mod tests {
     }
 
     /// The product for the compilation's target, and that for the processor where there is one.
-    fn product<const B: usize, const N: usize, const M: usize>(
+    fn product<const W: usize, const B: usize, const N: usize, const M: usize>(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
         groups: &[(usize, usize, &[usize])],
     ) -> SMatrix<f64, N, M> {
         let (mut found, mut other) = (*b, *b);
-        minus_products::<Compiled, _, B, N, M, 2>(a, [(&mut found, groups), (&mut other, groups)]);
+        minus_products::<Compiled, _, W, B, N, M, 2>(a, [(&mut found, groups), (&mut other, groups)]);
         assert_eq!(found, other);
         #[cfg(all(
             feature = "std",
@@ -234,7 +253,7 @@ mod tests {
         ))]
         if crate::lanes::avx2::is_available() {
             other = *b;
-            minus_products::<crate::lanes::avx2::Avx2, _, B, N, M, 1>(a, [(&mut other, groups)]);
+            minus_products::<crate::lanes::avx2::Avx2, _, W, B, N, M, 1>(a, [(&mut other, groups)]);
             assert!((found - other).amax() < 1e-13);
         }
         found
@@ -245,14 +264,15 @@ mod tests {
         const N: usize = 19;
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
-        let found = product::<{ registers(N) }, N, 10>(&a, &b, &[(0, 3, &rows), (3, 10, &rows)]);
+        let found =
+            product::<{ width(N) }, { registers(N) }, N, 10>(&a, &b, &[(0, 3, &rows), (3, 10, &rows)]);
         assert!((found + a * b).amax() < 1e-13);
     }
 
     #[test]
     fn small_matrices_do_not_fill_a_register() {
         let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
-        let found = product::<{ registers(3) }, 3, 7>(&a, &b, &[(0, 7, &[0, 1, 2])]);
+        let found = product::<{ width(3) }, { registers(3) }, 3, 7>(&a, &b, &[(0, 7, &[0, 1, 2])]);
         assert!((found + a * b).amax() < 1e-13);
     }
 
@@ -261,7 +281,11 @@ mod tests {
         let (a, mut b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let mut given = b;
         given.column_mut(1).fill(0.0);
-        let found = product::<{ registers(7) }, 7, 3>(&a, &given, &[(0, 1, &[0, 1, 4, 5, 6]), (2, 3, &[6])]);
+        let found = product::<{ width(7) }, { registers(7) }, 7, 3>(
+            &a,
+            &given,
+            &[(0, 1, &[0, 1, 4, 5, 6]), (2, 3, &[6])],
+        );
         b.view_mut((2, 0), (2, 1)).fill(0.0);
         b.column_mut(1).fill(0.0);
         b.view_mut((0, 2), (6, 1)).fill(0.0);
@@ -273,7 +297,7 @@ mod tests {
         let start = numbers::<9, 9>(4.0);
         let mut found = start;
         let others = [(3, [0.5, -2.0]), (8, [1.0, 0.0])];
-        combine::<Compiled, _, { registers(9) }, 9, 2, 2>(&mut found, [1, 7], &others);
+        combine::<Compiled, _, { width(9) }, { registers(9) }, 9, 2, 2>(&mut found, [1, 7], &others);
         let mut expected = start;
         expected.set_column(3, &(start.column(3) + start.column(1) * 0.5 - start.column(7) * 2.0));
         expected.set_column(8, &(start.column(8) + start.column(1)));

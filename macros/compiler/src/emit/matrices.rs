@@ -120,9 +120,9 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
     )
 }
 
-/// How many registers a column fills: what the compilation's target has decides.
+/// How many numbers of a column a register holds, and how many registers it fills: what the compilation's target has decides.
 fn registers(n: usize) -> String {
-    format!("{{ ::linkwork::__private::registers({n}) }}")
+    format!("{{ ::linkwork::__private::width({n}) }}, {{ ::linkwork::__private::registers({n}) }}")
 }
 
 /// The columns of the matrix after the first so many entries, those together whose entries are zero in the same rows:
