@@ -206,10 +206,19 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
          Weld j3: l2.rotated(y(-1.5707963267948966)) -> l3
          rounded `j1`: roll 1.5708 → 1.5707963267948966
          rounded `j1`: pitch -3.14159 → -3.141592653589793
-         rounded `j1`: x 0.00001 → 0
-         rounded `j1`: axis z 0.0001 → 0
+         rounded `j1`: x 1e-5 → 0.0
+         rounded `j1`: axis z 0.0001 → 0.0
          rounded `j3`: pitch -1.571 → -1.5707963267948966",
     );
+}
+
+/// An axis may have any length.
+#[test]
+fn long_axes_are_rounded_by_their_direction() {
+    let robot = chain(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
+    let options = UrdfOptions { snap: Some(1e-3), ..defaults() };
+    let imported = import_urdf(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
+    assert_eq!(imported.snapped, ["`j1`: axis z 1e300 → 0.0"]);
 }
 
 #[test]

@@ -136,7 +136,7 @@ fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
 }
 
 /// A vector of unit length; the detour by the largest entry keeps squares from overflow and underflow.
-fn unit(vector: [f64; 3]) -> [f64; 3] {
+pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let scaled = vector.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,6 +1,7 @@
 //! Numbers that were meant to be round: right angles written with five digits, axes that lean by what an exporter lost.
 //! They are rounded if the user asks for it, and each is reported, since this changes the robot.
 
+use super::assemble::unit;
 use super::joint::FileJoint;
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,7 +11,7 @@ pub(super) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
     let mut found = Vec::new();
     let mut report = |entry: &str, from: f64, to: f64| {
         if from != to {
-            found.push(format!("`{}`: {entry} {from} → {to}", joint.name.text));
+            found.push(format!("`{}`: {entry} {from:?} → {to:?}", joint.name.text));
         }
     };
     for (angle, entry) in joint.origin.rpy.value.iter_mut().zip(["roll", "pitch", "yaw"]) {
@@ -27,11 +28,9 @@ pub(super) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
         }
     }
     if joint.has_axis() {
-        let axis = &mut joint.axis.value;
-        let largest = axis.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-        let length = largest * axis.iter().map(|c| (c / largest).powi(2)).sum::<f64>().sqrt();
-        for (c, entry) in axis.iter_mut().zip(["axis x", "axis y", "axis z"]) {
-            if c.abs() <= tolerance * length {
+        let of_unit = unit(joint.axis.value).into_iter().zip(["axis x", "axis y", "axis z"]);
+        for (c, (part, entry)) in joint.axis.value.iter_mut().zip(of_unit) {
+            if part.abs() <= tolerance {
                 report(entry, *c, 0.0);
                 *c = 0.0;
             }
