@@ -37,7 +37,7 @@ impl Program {
                 late[*at] = *at != k;
             }
         }
-        self.sorted(&late)
+        if late.contains(&true) { self.sorted(&late) } else { self }
     }
 
     /// When the result of instruction `k` is there at the earliest, in cycles, if products fuse.
@@ -139,8 +139,9 @@ impl Program {
         let n = self.instructions.len();
         let mut places: Vec<Option<usize>> = vec![None; n];
         let mut instructions = Vec::with_capacity(n);
+        let mut todo = Vec::new();
         for k in (0..n).filter(|k| !late[*k]) {
-            let mut todo = vec![k];
+            todo.push(k);
             while let Some(&top) = todo.last() {
                 let before = todo.len();
                 self.instructions[top].operands(|o| match o {

@@ -9,23 +9,21 @@ impl Program {
     pub(super) fn factored(self) -> Program {
         // The sum that each addition is a part of.
         let inner = self.inner_additions();
-        let mut out = Program { tuples: self.tuples.clone(), ..Program::default() };
-        let mut values: Vec<Operand> = Vec::with_capacity(self.instructions.len());
-        let mut changed = false;
-        for (k, op) in self.instructions.iter().enumerate() {
-            let sum = if inner[k] { None } else { self.terms_of(k) };
-            let value = match sum.and_then(|terms| self.grouped(terms)) {
-                Some(groups) => {
-                    changed = true;
-                    out.add_groups(&groups, &|o| o.among(&values))
-                }
-                None => out.push(op.mapped(|o| o.among(&values))),
-            };
-            values.push(value);
-        }
-        if !changed {
+        let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
+        let mut groups = sums.filter_map(|k| Some((k, self.grouped(self.terms_of(k)?)?))).peekable();
+        if groups.peek().is_none() {
+            drop(groups);
             return self;
         }
+        let mut out = Program { tuples: self.tuples.clone(), ..Program::default() };
+        let mut values: Vec<Operand> = Vec::with_capacity(self.instructions.len());
+        for (k, op) in self.instructions.iter().enumerate() {
+            values.push(match groups.next_if(|(sum, _)| *sum == k) {
+                Some((_, groups)) => out.add_groups(&groups, &|o| o.among(&values)),
+                None => out.push(op.mapped(|o| o.among(&values))),
+            });
+        }
+        drop(groups);
         out.outputs = self.outputs.iter().map(|o| o.among(&values)).collect();
         out.gathers = self.gathers;
         out.sweep();
@@ -69,6 +67,9 @@ impl Program {
 
     /// The terms of a sum by common factors. `None` if there are none.
     fn grouped(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
+        if !self.may_share_factors(&open) {
+            return None;
+        }
         let mut groups = Vec::new();
         let mut saved = false;
         while let Some(factor) = self.most_common_factor(&open) {
@@ -91,6 +92,20 @@ impl Program {
         // What is there first comes first.
         groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.number()).max());
         saved.then_some(groups)
+    }
+
+    /// False if no two of the terms have a factor in common, which is told quickly.
+    fn may_share_factors(&self, terms: &[Term]) -> bool {
+        let mut factors: Vec<u64> = Vec::new();
+        for term in terms {
+            let Some((a, b)) = self.lone_product(term.operand) else { continue };
+            let [a, b] = [a, b].map(likeness);
+            if factors.contains(&a) || factors.contains(&b) {
+                return true;
+            }
+            factors.extend([a, b]);
+        }
+        false
     }
 
     /// The factor that two terms or more have, that of most terms.
@@ -157,6 +172,17 @@ impl Program {
 struct Group {
     factor: Option<Operand>,
     others: Vec<Term>,
+}
+
+/// The same number for operands that are equal up to their sign.
+fn likeness(o: Operand) -> u64 {
+    match o {
+        Operand::Const(c) => c.abs().to_bits(),
+        Operand::Symbol(s) => 1 << 32 | u64::from(s.0),
+        Operand::Value(k) => 2 << 32 | k as u64,
+        Operand::Tuple(k) => 3 << 32 | k as u64,
+        Operand::Gather(k) => 4 << 32 | k as u64,
+    }
 }
 
 fn signed_constant(term: &Term) -> Option<f64> {

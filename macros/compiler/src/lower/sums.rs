@@ -10,8 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest program that is looked at, in instructions.
 const MOST_INSTRUCTIONS: usize = 3000;
+/// Up to how many instructions all ways are tried that may take as few operations as another.
+const SMALL: usize = 1000;
 /// Most times that sums are shared again where that has helped.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
 /// Longest sum that is looked at as one: there are as many pairs as half its square.
 const LONGEST: usize = 32;
 /// Longest sum that is written out.
@@ -21,17 +23,32 @@ const MOST_TERMS: usize = 8;
 const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), (4, false)];
 
 /// What is summed: the number 1, a value that is no sum, or a sum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Key {
     One,
     Atom(usize),
     Sum(usize),
 }
 
+impl Key {
+    /// Numbers in order: 1, then the values, then the sums.
+    fn number(self) -> u32 {
+        match self {
+            Key::One => 0,
+            Key::Atom(a) => 1 + a as u32,
+            Key::Sum(s) => FIRST_SUM | s as u32,
+        }
+    }
+}
+
+/// The number of the first sum: there are fewer values.
+const FIRST_SUM: u32 = 1 << 31;
+
 /// Terms with their coefficients, by key.
 type Terms = Vec<(Key, f64)>;
 
 /// The sums of a program.
+#[derive(Clone)]
 struct Sums {
     atoms: Vec<Operand>,
     /// By atom: a product that is used once.
@@ -39,6 +56,8 @@ struct Sums {
     sums: Vec<Terms>,
     /// By instruction: the sum that it ends.
     ends: Vec<Option<usize>>,
+    /// Sums that are used by other instructions, or are outputs.
+    wanted: Vec<usize>,
 }
 
 impl Program {
@@ -48,33 +67,51 @@ impl Program {
         if self.instructions.len() > MOST_INSTRUCTIONS {
             return self;
         }
-        for _ in 0..ROUNDS {
-            if !self.share_sums() {
-                break;
-            }
+        for _ in 0..=ROUNDS {
+            let Some(program) = self.sharing_sums() else { break };
+            self = Program { in_lanes: self.in_lanes, ..program };
         }
         self
     }
 
-    /// Shares sums in the way that takes the fewest instructions; false if all take more than before.
-    fn share_sums(&mut self) -> bool {
+    /// The program with sums shared in a way that takes fewer instructions: of a small program the best one, of others the
+    /// first. `None` if there is no such way.
+    fn sharing_sums(&self) -> Option<Program> {
         let plain = self.unfused();
-        let mut better = false;
+        let all = Sums::of(&plain);
+        let is_small = plain.instructions.len() <= SMALL;
+        let mut best: Option<Program> = None;
+        let mut fewest = all.operations();
+        let mut tried: Vec<Vec<Terms>> = Vec::new();
         for (short, products) in SHORT {
-            let mut sums = Sums::of(&plain);
+            let mut sums = all.clone();
             sums.write_out(short, products);
+            if tried.contains(&sums.sums) {
+                continue;
+            }
+            tried.push(sums.sums.clone());
             sums.share();
+            let operations = sums.operations();
+            if operations > fewest || (operations == fewest && !is_small && tried.len() > 1) {
+                continue;
+            }
+            fewest = operations;
             // Sums are as cheap with the opposite sign.
             let mut program = plain.with_sums(&sums).with_cheap_signs();
             program.counts = program.count();
+            if program.counts.total() > best.as_ref().unwrap_or(self).counts.total() {
+                continue;
+            }
             let program = program.fused();
             let cost = |p: &Program| (p.instructions.len(), p.counts.total());
-            if cost(&program) < cost(self) && program.counts.total() <= self.counts.total() {
-                *self = Program { in_lanes: self.in_lanes.take(), ..program };
-                better = true;
+            if cost(&program) < cost(best.as_ref().unwrap_or(self)) {
+                best = Some(program);
+                if !is_small {
+                    break;
+                }
             }
         }
-        better
+        best
     }
 
     /// The same program with products and sums apart.
@@ -146,9 +183,14 @@ impl Program {
 impl Sums {
     fn of(program: &Program) -> Sums {
         let n = program.instructions.len();
-        let mut sums =
-            Sums { atoms: Vec::new(), lone_products: Vec::new(), sums: Vec::new(), ends: vec![None; n] };
-        let mut known: BTreeMap<(u8, u64), usize> = BTreeMap::new();
+        let mut sums = Sums {
+            atoms: Vec::new(),
+            lone_products: Vec::new(),
+            sums: Vec::new(),
+            ends: vec![None; n],
+            wanted: Vec::new(),
+        };
+        let mut known = Known { values: vec![None; n], others: BTreeMap::new() };
         for (k, op) in program.instructions.iter().enumerate() {
             let Some(signed) = op.terms() else { continue };
             let mut terms = Terms::new();
@@ -178,19 +220,48 @@ impl Sums {
         }
         let lone = |o: &Operand| program.lone_product(*o).is_some();
         sums.lone_products = sums.atoms.iter().map(lone).collect();
+        let ends = |o: Operand| match o {
+            Operand::Value(k) => sums.ends[k],
+            _ => None,
+        };
+        let mut wanted: Vec<usize> = program.outputs.iter().filter_map(|o| ends(*o)).collect();
+        for op in program.instructions.iter().filter(|op| op.terms().is_none()) {
+            op.operands(|o| wanted.extend(ends(o)));
+        }
+        sums.wanted = wanted;
         sums
     }
 
-    fn atom(&mut self, o: Operand, known: &mut BTreeMap<(u8, u64), usize>) -> Key {
-        let name = match o {
-            Operand::Const(c) => (0, c.to_bits()),
-            Operand::Symbol(s) => (1, s.0.into()),
-            Operand::Value(k) => (2, k as u64),
-            Operand::Tuple(k) => (3, k as u64),
-            Operand::Gather(k) => (4, k as u64),
+    /// Additions and multiplications that the sums take.
+    fn operations(&self) -> usize {
+        let mut seen = vec![false; self.sums.len()];
+        let mut todo = self.wanted.clone();
+        let mut operations = 0;
+        while let Some(k) = todo.pop() {
+            if std::mem::replace(&mut seen[k], true) {
+                continue;
+            }
+            operations += self.sums[k].len().saturating_sub(1);
+            for (key, c) in &self.sums[k] {
+                operations += usize::from(*key != Key::One && c.abs() != 1.0);
+                if let Key::Sum(inner) = key {
+                    todo.push(*inner);
+                }
+            }
+        }
+        operations
+    }
+
+    fn atom(&mut self, o: Operand, known: &mut Known) -> Key {
+        let place = match o {
+            Operand::Value(k) => &mut known.values[k],
+            Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
+            Operand::Symbol(s) => known.others.entry((1, s.0.into())).or_default(),
+            Operand::Tuple(k) => known.others.entry((2, k as u64)).or_default(),
+            Operand::Gather(k) => known.others.entry((3, k as u64)).or_default(),
         };
         let atoms = &mut self.atoms;
-        Key::Atom(*known.entry(name).or_insert_with(|| {
+        Key::Atom(*place.get_or_insert_with(|| {
             atoms.push(o);
             atoms.len() - 1
         }))
@@ -220,58 +291,101 @@ impl Sums {
 
     /// Makes sums of the pairs of terms that are shared most.
     fn share(&mut self) {
-        let mut pairs = Pairs::default();
-        for (k, terms) in self.sums.iter().enumerate() {
-            pairs_of(terms).for_each(|pair| pairs.add(pair, k));
-        }
+        let mut pairs = Pairs::of(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
             let new = Key::Sum(self.sums.len());
-            self.sums.push(pair.terms());
-            for k in list {
+            let mut with_new = Vec::new();
+            for &k in &list {
                 let terms = &mut self.sums[k];
-                let Some(c) = terms.iter().find(|(key, _)| *key == pair.first).map(|(_, c)| *c) else {
+                let Some(c) = terms.iter().find(|(key, _)| key.number() == pair.first()).map(|(_, c)| *c)
+                else {
                     continue;
                 };
-                let gone = |key: Key| key == pair.first || key == pair.second;
-                pairs_of(terms).filter(|p| gone(p.first) || gone(p.second)).for_each(|p| pairs.remove(p, k));
-                terms.retain(|(key, _)| !gone(*key));
+                let is_gone = |key: u32| key == pair.first() || key == pair.second();
+                for (i, a) in terms.iter().enumerate() {
+                    for b in &terms[i + 1..] {
+                        if is_gone(a.0.number()) || is_gone(b.0.number()) {
+                            pairs.remove(Pair::of(*a, *b), k);
+                        }
+                    }
+                }
+                terms.retain(|(key, _)| !is_gone(key.number()));
+                with_new.extend(terms.iter().map(|term| (Pair::of(*term, (new, c)), k)));
                 terms.push((new, c));
-                pairs_of(terms).filter(|p| p.first == new || p.second == new).for_each(|p| pairs.add(p, k));
             }
+            pairs.add(with_new);
+            let [a, b] = [pair.first(), pair.second()].map(|number| self.key(number));
+            self.sums.push(vec![(a, 1.0), (b, pair.ratio())]);
+        }
+    }
+
+    fn key(&self, number: u32) -> Key {
+        match number {
+            0 => Key::One,
+            n if n < FIRST_SUM => Key::Atom(n as usize - 1),
+            n => Key::Sum((n - FIRST_SUM) as usize),
         }
     }
 }
 
-/// Which sums have which pairs of terms.
+/// The numbers of the values that were met as terms.
+struct Known {
+    /// By instruction.
+    values: Vec<Option<usize>>,
+    /// By kind and number.
+    others: BTreeMap<(u8, u64), Option<usize>>,
+}
+
+/// Which sums have which pairs of terms, for pairs that some sums share.
 #[derive(Default)]
 struct Pairs {
     lists: BTreeMap<Pair, Vec<usize>>,
-    /// Those of several sums, by how many.
+    /// The same by how many.
     shared: BTreeSet<(usize, Reverse<Pair>)>,
 }
 
 impl Pairs {
-    fn add(&mut self, pair: Pair, sum: usize) {
-        let list = self.lists.entry(pair).or_default();
-        list.push(sum);
-        let n = list.len();
-        self.count(pair, n - 1, n);
+    /// Those of some sums of so many values and each other.
+    fn of(sums: &[Terms], atoms: usize) -> Pairs {
+        let place = |key: Key| match key {
+            Key::One => 0,
+            Key::Atom(a) => 1 + a,
+            Key::Sum(s) => 1 + atoms + s,
+        };
+        // What is a term of one sum alone is in no pair that is shared.
+        let mut uses = vec![0_u32; 1 + atoms + sums.len()];
+        for (key, _) in sums.iter().flatten() {
+            uses[place(*key)] += 1;
+        }
+        let mut all = Vec::new();
+        let mut common = Terms::new();
+        for (k, terms) in sums.iter().enumerate() {
+            common.clear();
+            common.extend(terms.iter().filter(|(key, _)| uses[place(*key)] > 1));
+            for (i, a) in common.iter().enumerate() {
+                all.extend(common[i + 1..].iter().map(|b| (Pair::of(*a, *b), k)));
+            }
+        }
+        let mut pairs = Pairs::default();
+        pairs.add(all);
+        pairs
+    }
+
+    /// Adds pairs that no sum had before, each with a sum that has it.
+    fn add(&mut self, mut pairs: Vec<(Pair, usize)>) {
+        pairs.sort_unstable();
+        for same in pairs.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+            self.shared.insert((same.len(), Reverse(same[0].0)));
+            self.lists.insert(same[0].0, same.iter().map(|(_, sum)| *sum).collect());
+        }
     }
 
     fn remove(&mut self, pair: Pair, sum: usize) {
         let Some(list) = self.lists.get_mut(&pair) else { return };
-        let before = list.len();
+        self.shared.remove(&(list.len(), Reverse(pair)));
         list.retain(|other| *other != sum);
-        let n = list.len();
-        self.count(pair, before, n);
-    }
-
-    fn count(&mut self, pair: Pair, before: usize, now: usize) {
-        if before > 1 {
-            self.shared.remove(&(before, Reverse(pair)));
-        }
-        if now > 1 {
-            self.shared.insert((now, Reverse(pair)));
+        if list.len() > 1 {
+            self.shared.insert((list.len(), Reverse(pair)));
         }
     }
 
@@ -282,35 +396,44 @@ impl Pairs {
     }
 }
 
-/// Two keys and the ratio of their coefficients.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-struct Pair {
-    first: Key,
-    second: Key,
-    ratio: u64,
-}
+/// The numbers of two keys and the ratio of their coefficients, in one number: its highest and its middle 32 bits, and
+/// the lower half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Pair(u128);
 
 impl Pair {
-    fn terms(self) -> Terms {
-        vec![(self.first, 1.0), (self.second, f64::from_bits(self.ratio))]
+    /// Two terms in order, but the number 1 comes second: a sum begins with a value.
+    fn of(a: (Key, f64), b: (Key, f64)) -> Pair {
+        let [x, y] = [a.0.number(), b.0.number()];
+        let swap = x == 0 || (y != 0 && y < x);
+        let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };
+        Pair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
     }
-}
 
-fn pairs_of(terms: &Terms) -> impl Iterator<Item = Pair> {
-    let all = terms.iter().enumerate().flat_map(|(i, a)| terms[i + 1..].iter().map(move |b| (a, b)));
-    all.map(|(a, b)| {
-        // The number comes second: a sum begins with a value.
-        let (a, b) = if a.0 == Key::One || (b.0 != Key::One && b.0 < a.0) { (b, a) } else { (a, b) };
-        Pair { first: a.0, second: b.0, ratio: (b.1 / a.1).to_bits() }
-    })
+    fn first(self) -> u32 {
+        (self.0 >> 96) as u32
+    }
+
+    fn second(self) -> u32 {
+        (self.0 >> 64) as u32
+    }
+
+    fn ratio(self) -> f64 {
+        f64::from_bits(self.0 as u64)
+    }
 }
 
 fn add(terms: &mut Terms, key: Key, c: f64) {
-    match terms.iter_mut().find(|(other, _)| *other == key) {
-        Some((_, sum)) => *sum += c,
+    match terms.iter().position(|(other, _)| *other == key) {
+        Some(k) => {
+            terms[k].1 += c;
+            if terms[k].1 == 0.0 {
+                terms.remove(k);
+            }
+        }
+        None if c == 0.0 => {}
         None => terms.push((key, c)),
     }
-    terms.retain(|(_, c)| *c != 0.0);
 }
 
 /// A program with other sums, as far as it is written.
