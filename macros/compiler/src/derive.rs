@@ -3,10 +3,10 @@
 use crate::diag::Diagnostics;
 use crate::emit::frames::{FrameSteps, LinkSteps};
 use crate::emit::{Function, Output, Shape};
-use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
-use crate::lower::{Program, lower, lower_without};
+use crate::expr::{Expr, Symbol};
+use crate::lower::{Program, lower, lower_without, size};
 use crate::mechanics::{self, Joint, crba, energy, forces, frames, massless, power, reactions};
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
@@ -102,6 +102,15 @@ fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
     all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
 }
 
+/// By how many operations equal functions may change places when their sums are factored: so many, and one in so many.
+const SPREAD: (usize, usize) = (3, 100);
+
+/// Outputs with their size, in operations.
+struct Sized<'g> {
+    size: usize,
+    outputs: Vec<Expr<'g>>,
+}
+
 /// How the expressions of a function become its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
@@ -113,12 +122,55 @@ enum Stage {
 
 impl Stage {
     fn program(self, outputs: &[Expr<'_>]) -> Program {
-        let parameter = |s| matches!(Quantity::of(s), Quantity::Parameter(_));
-        match self {
-            Stage::Whole => done(outputs),
-            Stage::Prepared => lower_without(outputs, &parameter).fused(),
+        self.lowered(outputs).fused()
+    }
+
+    /// The program before its products are fused into sums.
+    fn lowered(self, outputs: &[Expr<'_>]) -> Program {
+        lower_without(outputs, &|s| self.knows(s))
+    }
+
+    /// The program of the outputs that take the fewest operations of some that compute the same, and of equally many
+    /// the fewest instructions; with their number.
+    fn cheapest<'g>(self, lists: impl Iterator<Item = Sized<'g>>) -> (usize, Program) {
+        let all = promising(lists);
+        let mut programs: Vec<(usize, Program)> =
+            all.iter().map(|(k, list)| (*k, self.lowered(list))).collect();
+        let fewest = programs.iter().map(|(_, p)| p.counts.total()).min();
+        programs.retain(|(_, p)| Some(p.counts.total()) == fewest);
+        let fused = programs.into_iter().map(|(k, program)| (k, program.fused()));
+        fused.min_by_key(|(_, program)| program.instructions.len()).unwrap_or_default()
+    }
+
+    /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
+    /// numbers.
+    fn programs<'g>(self, lists: impl Iterator<Item = Sized<'g>>) -> Vec<(usize, Program)> {
+        promising(lists).into_iter().map(|(k, list)| (k, self.program(&list))).collect()
+    }
+
+    fn sized(self, outputs: Vec<Expr<'_>>) -> Sized<'_> {
+        Sized { size: size(&outputs, &|s| self.knows(s)), outputs }
+    }
+
+    /// True for what is known before.
+    fn knows(self, symbol: Symbol) -> bool {
+        self == Stage::Prepared && matches!(Quantity::of(symbol), Quantity::Parameter(_))
+    }
+}
+
+/// Those lists of outputs that may take the fewest operations of some that compute the same, with their numbers; of
+/// lists that are the same, the first.
+fn promising<'g>(lists: impl Iterator<Item = Sized<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
+    let mut all: Vec<(usize, Sized<'g>)> = lists.enumerate().collect();
+    let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);
+    all.retain(|(_, list)| list.size <= most);
+    let mut chosen: Vec<(usize, Vec<Expr<'g>>)> = Vec::new();
+    for (k, list) in all {
+        if !chosen.iter().any(|(_, known)| *known == list.outputs) {
+            chosen.push((k, list.outputs));
         }
     }
+    chosen
 }
 
 /// All functions with their programs.

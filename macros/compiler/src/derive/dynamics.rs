@@ -1,7 +1,7 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::{Stage, done, in_lanes};
+use super::{Sized, Stage, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::mechanics::{
@@ -19,28 +19,34 @@ pub(super) struct Dynamics<'g> {
     forms: Forms<'g>,
     mass_matrix: Program,
     inverse_dynamics: Program,
+    bias: Choice,
+}
+
+/// A program, and the forms it was derived from: one of all, and one of those with alike limbs as lanes if there are
+/// any.
+struct Choice {
+    program: Program,
+    form: usize,
+    limbs: Option<usize>,
 }
 
 impl<'g> Dynamics<'g> {
     /// The forms that the passes give; of a small mechanism, in the frames as they are or in the moved ones, whichever
     /// cost less.
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
-        let moved = Dynamics::of(Forms::new(model, passes, stage));
-        if !passes.frames || model.nv() > COMPARE {
-            return moved;
+        let mut all = vec![Forms::new(model, passes, stage)];
+        if passes.frames && model.nv() <= COMPARE {
+            all.push(Forms::new(model, Passes { frames: false, ..passes }, stage));
         }
-        let still = Dynamics::of(Forms::new(model, Passes { frames: false, ..passes }, stage));
-        let total = |d: &Dynamics<'g>| d.mass_matrix.counts.total() + d.inverse_dynamics.counts.total();
-        Dynamics {
-            forms: if total(&still) < total(&moved) { still.forms } else { moved.forms },
-            mass_matrix: cheapest([moved.mass_matrix, still.mass_matrix].into_iter()),
-            inverse_dynamics: cheapest([moved.inverse_dynamics, still.inverse_dynamics].into_iter()),
-        }
-    }
-
-    fn of(forms: Forms<'g>) -> Dynamics<'g> {
-        let (mass_matrix, inverse_dynamics) = (forms.mass_matrix(), forms.recursion(true));
-        Dynamics { forms, mass_matrix, inverse_dynamics }
+        let mass = Compared::of(&all, |forms| forms.mass_matrices().collect());
+        let inverse = Compared::of(&all, |forms| forms.recursions(true).collect());
+        let mass_matrix = mass.program.or_in_lanes(all[mass.best].mass_matrices_in_lanes());
+        let in_lanes = stage.programs(all[inverse.best].recursions_in_lanes(true));
+        let inverse_dynamics = inverse.program.or_in_lanes(in_lanes.into_iter().map(|(_, program)| program));
+        let best = (0..all.len()).min_by_key(|k| mass.sizes[*k] + inverse.sizes[*k]).unwrap_or(0);
+        let forms = all.swap_remove(best);
+        let bias = forms.bias();
+        Dynamics { forms, mass_matrix, inverse_dynamics, bias }
     }
 
     /// The program of a function; `None` if it is none of dynamics.
@@ -48,9 +54,9 @@ impl<'g> Dynamics<'g> {
         let expressions: fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>> = match name {
             "mass_matrix" => return Some(self.mass_matrix.clone()),
             "inverse_dynamics" => return Some(self.inverse_dynamics.clone()),
-            "bias_forces" => return Some(self.forms.recursion(false)),
-            "forward_dynamics" => return Some(self.forms.forward_dynamics()),
-            "__constrained_dynamics" => return Some(self.forms.constrained_dynamics()),
+            "bias_forces" => return Some(self.bias.program.clone()),
+            "forward_dynamics" => return Some(self.forms.forward_dynamics(&self.bias)),
+            "__constrained_dynamics" => return Some(self.forms.constrained_dynamics(&self.bias)),
             "__constraint_correction" => return Some(self.forms.constraint_correction()),
             "__slipping_response" => return Some(self.forms.slipping_response()),
             "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
@@ -64,10 +70,31 @@ impl<'g> Dynamics<'g> {
             _ => return None,
         };
         let joints = &self.forms.joints;
-        Some(cheapest(self.forms.plain().map(|model| {
-            let v = mechanics::velocities(model);
-            self.forms.stage.program(&expressions(model, joints, &v))
-        })))
+        Some(self.forms.smallest(|model| expressions(model, joints, &mechanics::velocities(model))))
+    }
+}
+
+/// A function derived with frames of several kinds.
+struct Compared {
+    /// Of the smallest outputs with frames of each kind.
+    sizes: Vec<usize>,
+    /// The kind that the program is of.
+    best: usize,
+    program: Program,
+}
+
+impl Compared {
+    fn of<'g>(all: &[Forms<'g>], outputs: impl Fn(&Forms<'g>) -> Vec<Sized<'g>>) -> Compared {
+        let (mut sizes, mut kinds, mut lists) = (Vec::new(), Vec::new(), Vec::new());
+        for (kind, forms) in all.iter().enumerate() {
+            let own = outputs(forms);
+            sizes.push(own.iter().map(|list| list.size).min().unwrap_or(0));
+            kinds.extend(own.iter().map(|_| kind));
+            lists.extend(own);
+        }
+        let (k, program) =
+            all.first().map(|forms| forms.stage.cheapest(lists.into_iter())).unwrap_or_default();
+        Compared { sizes, best: kinds.get(k).copied().unwrap_or(0), program }
     }
 }
 
@@ -102,75 +129,97 @@ impl<'g> Forms<'g> {
         self.limbs.iter().filter(|(_, anchored)| !anchored).map(|(limbs, _)| limbs)
     }
 
-    fn mass_matrix(&self) -> Program {
-        let program = cheapest(
-            self.plain().map(|model| self.stage.program(&crba::mass_matrix(model, &self.joints).concat())),
-        );
-        program.or_in_lanes(self.plain_limbs().map(|limbs| done(&in_lanes::mass_matrix(limbs))))
+    /// The program of the form in which a function of any kind takes the fewest operations.
+    fn cheapest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        let lists = self.plain().map(outputs).map(|list| self.stage.sized(list));
+        self.stage.cheapest(lists).1
+    }
+
+    /// The program of the form in which its outputs are the smallest, which is found quicker.
+    fn smallest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        let lists = self.plain().map(outputs).map(|list| self.stage.sized(list));
+        lists
+            .min_by_key(|list| list.size)
+            .map_or_else(Program::default, |list| self.stage.program(&list.outputs))
+    }
+
+    fn mass_matrices(&self) -> impl Iterator<Item = Sized<'g>> {
+        let all = self.plain().map(|model| crba::mass_matrix(model, &self.joints).concat());
+        all.map(|list| self.stage.sized(list))
+    }
+
+    fn mass_matrices_in_lanes(&self) -> Vec<Program> {
+        self.programs(self.plain_limbs().map(in_lanes::mass_matrix))
     }
 
     /// Inverse dynamics, or the bias alone.
-    fn recursion(&self, accelerations: bool) -> Program {
-        let program = cheapest(self.all.iter().map(|form| self.recursion_of(&form.model, accelerations)));
-        program.or_in_lanes(
-            self.limbs.iter().map(|(limbs, _)| done(&in_lanes::inverse_dynamics(limbs, accelerations))),
-        )
+    fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Sized<'g>> {
+        self.all.iter().map(move |form| {
+            let (v, a) = (mechanics::velocities(&form.model), mechanics::accelerations(&form.model));
+            let a = accelerations.then_some(a.as_slice());
+            self.stage.sized(rnea::inverse_dynamics(&form.model, &self.joints, &v, a))
+        })
     }
 
-    fn recursion_of(&self, model: &Model<'g>, accelerations: bool) -> Program {
-        let v = mechanics::velocities(model);
-        let a = accelerations.then(|| mechanics::accelerations(model));
-        self.stage.program(&rnea::inverse_dynamics(model, &self.joints, &v, a.as_deref()))
+    fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Sized<'g>> {
+        let all = self.limbs.iter().map(move |(limbs, _)| in_lanes::inverse_dynamics(limbs, accelerations));
+        all.map(|list| self.stage.sized(list))
+    }
+
+    fn programs(&self, lists: impl Iterator<Item = Vec<Expr<'g>>>) -> Vec<Program> {
+        let programs = self.stage.programs(lists.map(|list| self.stage.sized(list)));
+        programs.into_iter().map(|(_, program)| program).collect()
+    }
+
+    fn bias(&self) -> Choice {
+        let (form, program) = self.stage.cheapest(self.recursions(false));
+        let in_lanes = self.stage.programs(self.recursions_in_lanes(false));
+        let in_lanes = in_lanes.into_iter().min_by_key(|(_, program)| program.cost());
+        let limbs = in_lanes.as_ref().map(|(k, _)| *k);
+        Choice { program: program.or_in_lanes(in_lanes.map(|(_, program)| program)), form, limbs }
     }
 
     /// Forward dynamics, also with alike limbs as lanes.
-    fn forward_dynamics(&self) -> Program {
-        let program = self.forward_dynamics_alone();
-        let bias =
-            self.limbs.iter().min_by_key(|(limbs, _)| cost(&done(&in_lanes::inverse_dynamics(limbs, false))));
-        let Some((bias, _)) = bias else { return program };
-        program.or_in_lanes(
-            self.plain_limbs().filter_map(|limbs| Some(done(&in_lanes::forward_dynamics(limbs, bias)?))),
-        )
+    fn forward_dynamics(&self, bias: &Choice) -> Program {
+        let program = self.forward_dynamics_alone(bias);
+        let Some((bias, _)) = bias.limbs.and_then(|k| self.limbs.get(k)) else { return program };
+        let all = self.plain_limbs().filter_map(|limbs| in_lanes::forward_dynamics(limbs, bias));
+        program.or_in_lanes(self.programs(all))
     }
 
     /// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
     /// divisions wait less for each other.
-    fn forward_dynamics_alone(&self) -> Program {
+    fn forward_dynamics_alone(&self, bias: &Choice) -> Program {
         // All forms need the same forces, so that each part can be taken from the form where it is cheapest.
-        let bias = self.all.iter().min_by_key(|form| cost(&self.recursion_of(&form.model, false)));
-        let Some(bias) = bias.map(|form| &form.model) else { return Program::default() };
+        let Some(bias) = self.all.get(bias.form).map(|form| &form.model) else { return Program::default() };
         let v = mechanics::velocities(bias);
         let tau: Vec<Expr<'g>> = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph)).collect();
         let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
-        let articulated = self.plain().filter_map(|model| {
-            let a = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(self.stage.program(&a))
-        });
-        let articulated = articulated.min_by_key(cost);
-        if let Some(program) = &articulated
-            && bias.nv() > COMPARE
-        {
-            return program.clone();
+        let articulated = self
+            .plain()
+            .filter_map(|model| aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau));
+        let articulated: Vec<Sized<'g>> = articulated.map(|list| self.stage.sized(list)).collect();
+        if !articulated.is_empty() && bias.nv() > COMPARE {
+            return self.stage.cheapest(articulated.into_iter()).1;
         }
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let r: Vec<Expr<'g>> = tau.iter().zip(h).map(|(tau, h)| *tau - h).collect();
-        let factorised = cheapest(self.plain().map(|model| {
+        let factorised = self.plain().map(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
-            self.stage.program(&ldl::solve(mass, r.clone(), &self.joints))
-        }));
-        match articulated {
-            Some(program) if factorised.counts.total() * 20 > program.counts.total() * 21 => program,
-            _ => factorised,
-        }
+            self.stage.sized(ldl::solve(mass, r.clone(), &self.joints))
+        });
+        let factorised: Vec<Sized<'g>> = factorised.collect();
+        let size = |all: &[Sized<'g>]| all.iter().map(|list| list.size).min();
+        let is_shorter =
+            size(&articulated).is_some_and(|a| size(&factorised).is_none_or(|f| f * 20 > a * 21));
+        self.stage.cheapest(if is_shorter { articulated } else { factorised }.into_iter()).1
     }
 }
 
 impl<'g> Forms<'g> {
     /// Accelerations and multipliers under the forces `tau`.
-    fn constrained_dynamics(&self) -> Program {
-        let bias = self.all.iter().min_by_key(|form| cost(&self.recursion_of(&form.model, false)));
-        let Some(bias) = bias.map(|form| &form.model) else { return Program::default() };
+    fn constrained_dynamics(&self, bias: &Choice) -> Program {
+        let Some(bias) = self.all.get(bias.form).map(|form| &form.model) else { return Program::default() };
         let v = mechanics::velocities(bias);
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
@@ -180,10 +229,10 @@ impl<'g> Forms<'g> {
             return self.slipping(&force, &biases);
         }
         let Some(pivots) = &bias.dependent else { return self.multipliers(&force, &biases) };
-        cheapest(self.plain().map(|model| {
+        self.cheapest(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
-            self.stage.program(&constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots))
-        }))
+            constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)
+        })
     }
 
     /// The same for forces and biases that are given.
@@ -201,23 +250,22 @@ impl<'g> Forms<'g> {
     }
 
     fn multipliers(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        cheapest(self.plain().map(|model| {
+        self.cheapest(|model| {
             let rows = constraints::jacobian(model);
             if model.is_overdetermined() {
                 let mass = crba::mass_matrix(model, &self.joints);
-                let parts = constraints::responses(&mass, &rows, force.to_vec(), bias, &self.joints);
-                return self.stage.program(&parts);
+                return constraints::responses(&mass, &rows, force.to_vec(), bias, &self.joints);
             }
             let (mass, force) = self.loaded(model, force, bias);
-            self.stage.program(&constraints::solve(model, &mass, &rows, force, bias.to_vec()))
-        }))
+            constraints::solve(model, &mass, &rows, force, bias.to_vec())
+        })
     }
 
     fn slipping(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        cheapest(self.plain().map(|model| {
+        self.cheapest(|model| {
             let (mass, force) = self.loaded(model, force, bias);
-            self.stage.program(&friction::solve(model, &mass, force, bias.to_vec()))
-        }))
+            friction::solve(model, &mass, force, bias.to_vec())
+        })
     }
 
     /// Mass matrix and forces with what makes up for coordinates without inertia.
@@ -231,13 +279,4 @@ impl<'g> Forms<'g> {
         let force = massless::loaded_force(model, &self.joints, force, bias);
         (massless::loaded_mass(model, &self.joints, mass), force)
     }
-}
-
-fn cheapest(programs: impl Iterator<Item = Program>) -> Program {
-    programs.min_by_key(cost).unwrap_or_default()
-}
-
-/// Operations, and of equally many the instructions that are left when products are fused into sums.
-fn cost(program: &Program) -> (usize, usize) {
-    (program.counts.total(), program.instructions.len())
 }

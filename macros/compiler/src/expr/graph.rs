@@ -9,7 +9,7 @@
 use super::handle::Expr;
 use super::lanes::Tables;
 use super::node::{Function, Id, Node, Symbol};
-use std::cell::{RefCell, RefMut};
+use std::cell::{Ref, RefCell, RefMut};
 use std::fmt;
 
 struct Store {
@@ -105,9 +105,9 @@ impl Graph {
         self.store.borrow().nodes[id as usize]
     }
 
-    /// A copy of all nodes, operands before operations.
-    pub fn nodes(&self) -> Vec<Node> {
-        self.store.borrow().nodes.clone()
+    /// All nodes, operands before operations. None can be made while they are borrowed.
+    pub fn nodes(&self) -> Ref<'_, [Node]> {
+        Ref::map(self.store.borrow(), |store| store.nodes.as_slice())
     }
 
     /// A table with a zero for every node. Who borrows it sets back to zero what was written.

@@ -80,8 +80,8 @@ impl Lanes {
 
 impl Program {
     /// The same with the cheapest of some programs that compute it with lanes, if that is cheaper.
-    pub fn or_in_lanes(mut self, candidates: impl Iterator<Item = Program>) -> Program {
-        let best = candidates.min_by_key(Program::cost);
+    pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
+        let best = candidates.into_iter().min_by_key(Program::cost);
         self.in_lanes = best.filter(|best| best.cost() < self.cost()).map(Box::new);
         self
     }

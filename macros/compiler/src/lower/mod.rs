@@ -2,7 +2,7 @@
 //! before it is used, with operations counted. Knows no mechanics.
 
 use crate::expr::lanes::MOST;
-use crate::expr::{Expr, Function, Id, Node, Symbol};
+use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
 
 mod chain;
 mod factor;
@@ -159,7 +159,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     let mut places = graph.borrow_table();
     let order = needed(outputs, &mut places);
     let place = |id: Id| places[id as usize] as usize - 1;
-    let nodes: Vec<Node> = order.iter().map(|id| graph.node(*id)).collect();
+    let nodes = nodes_of(graph, &order);
     let before = hoist::known_before(&nodes, place, known);
     let mut uses = vec![0_u32; order.len()];
     for (node, _) in nodes.iter().zip(&before).filter(|(_, before)| !**before) {
@@ -215,16 +215,47 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     program
 }
 
+/// Operations that the outputs take as they stand, without negations and elementary functions: what a program of them
+/// has before its sums are factored, within a few hundredths. Quicker than the program.
+pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
+    let Some(first) = outputs.first() else { return 0 };
+    let graph = first.graph();
+    let mut places = graph.borrow_table();
+    let order = needed(outputs, &mut places);
+    let nodes = nodes_of(graph, &order);
+    let before = hoist::known_before(&nodes, |id| places[id as usize] as usize - 1, known);
+    for id in &order {
+        places[*id as usize] = 0;
+    }
+    let counts = |node: &Node| {
+        matches!(
+            node,
+            Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Sum(..) | Node::Pow(..)
+        )
+    };
+    nodes.iter().zip(before).filter(|(node, before)| !before && counts(node)).count()
+}
+
+fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
+    let nodes = graph.nodes();
+    ids.iter().map(|id| nodes[*id as usize]).collect()
+}
+
 /// Ids of all nodes that the outputs need, operands first; their places, counted from one, go into the table.
 fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();
     };
-    let graph = first.graph();
+    let nodes = first.graph().nodes();
     let mut todo: Vec<Id> = Vec::new();
-    let mut order: Vec<Id> = Vec::new();
+    // Creation order is the algorithm's order, and operands are made before operations: a bit for every node.
+    let last = outputs.iter().map(|o| o.id()).max().unwrap_or(0);
+    let mut bits = vec![0_u64; last as usize / 64 + 1];
     let mut visit = |id: Id, todo: &mut Vec<Id>| {
-        if std::mem::replace(&mut places[id as usize], 1) == 0 {
+        let word = &mut bits[id as usize / 64];
+        let bit = 1 << (id % 64);
+        if *word & bit == 0 {
+            *word |= bit;
             todo.push(id);
         }
     };
@@ -232,13 +263,17 @@ fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
         visit(output.id(), &mut todo);
     }
     while let Some(id) = todo.pop() {
-        order.push(id);
-        graph.node(id).operands(|a| visit(a, &mut todo));
+        nodes[id as usize].operands(|a| visit(a, &mut todo));
     }
-    // Creation order is the algorithm's order, and operands are made before operations.
-    order.sort_unstable();
-    for (place, id) in order.iter().enumerate() {
-        places[*id as usize] = place as u32 + 1;
+    let mut order: Vec<Id> = Vec::new();
+    for (k, &word) in bits.iter().enumerate() {
+        let mut rest = word;
+        while rest != 0 {
+            let id = k as Id * 64 + rest.trailing_zeros();
+            order.push(id);
+            places[id as usize] = order.len() as u32;
+            rest &= rest - 1;
+        }
     }
     order
 }
@@ -256,44 +291,42 @@ impl Program {
     /// Drops instructions without use, renumbers the others and counts the uses.
     fn sweep(&mut self) {
         let n = self.instructions.len();
-        let mut live = vec![false; n];
+        self.uses.clear();
+        self.uses.resize(n, 0);
         for output in &self.outputs {
             if let Operand::Value(k) = output {
-                live[*k] = true;
+                self.uses[*k] += 1;
             }
         }
+        let mut dead = 0;
         for k in (0..n).rev() {
-            if live[k] {
-                self.instructions[k].operands(|o| {
-                    if let Operand::Value(a) = o {
-                        live[a] = true;
-                    }
-                });
+            if self.uses[k] == 0 {
+                dead += 1;
+                continue;
             }
+            self.instructions[k].operands(|o| {
+                if let Operand::Value(a) = o {
+                    self.uses[a] += 1;
+                }
+            });
+        }
+        if dead == 0 {
+            return;
         }
         let mut number = vec![0; n];
-        let mut kept = Vec::with_capacity(n);
+        let mut next = 0;
         for k in 0..n {
-            if live[k] {
-                number[k] = kept.len();
-                kept.push(self.instructions[k].renumbered(&number));
+            if self.uses[k] > 0 {
+                number[k] = next;
+                self.instructions[next] = self.instructions[k].renumbered(&number);
+                self.uses[next] = self.uses[k];
+                next += 1;
             }
         }
-        self.instructions = kept;
+        self.instructions.truncate(next);
+        self.uses.truncate(next);
         for output in &mut self.outputs {
             *output = renumber(*output, &number);
-        }
-        self.uses = vec![0; self.instructions.len()];
-        let mut count = |o: Operand| {
-            if let Operand::Value(k) = o {
-                self.uses[k] += 1;
-            }
-        };
-        for op in &self.instructions {
-            op.operands(&mut count);
-        }
-        for output in &self.outputs {
-            count(*output);
         }
     }
 

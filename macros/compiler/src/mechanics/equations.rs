@@ -82,7 +82,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
 fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let nodes = model.graph.nodes();
     let mut angle = vec![false; model.nq()];
-    for node in &nodes {
+    for node in nodes.iter() {
         if let Node::Call(Function::Sin | Function::Cos, argument) = node
             && let Node::Symbol(symbol) = nodes[*argument as usize]
             && let Quantity::Configuration(k) = Quantity::of(symbol)
@@ -91,6 +91,7 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
             *angle = true;
         }
     }
+    drop(nodes);
     let of_angles = (0..model.nq()).filter(|k| angle[*k]);
     of_angles.map(|k| Quantity::Configuration(k).expr(model.graph)).collect()
 }
