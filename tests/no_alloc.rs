@@ -206,6 +206,8 @@ fn on_request() {
     assert_eq!(heap_calls(|| m.inverse_dynamics_by_parameters(q, v, a)), 0, "inverse_dynamics_by_parameters");
     assert_eq!(heap_calls(|| m.forward_dynamics_by_parameters(q, v, a)), 0, "forward_dynamics_by_parameters");
     assert_eq!(heap_calls(|| m.mass_matrix_packed(q)), 0, "mass_matrix_packed");
+    let mut kept = Default::default();
+    assert_eq!(heap_calls(|| m.mass_matrix_into(q, &mut kept)), 0, "mass_matrix_into");
 }
 
 /// Everything in the trait `Constrained`, about a state that fulfils the constraints.

@@ -1,7 +1,8 @@
 //! The mass matrix without its zeros is the mass matrix.
 
+use linkwork::lanes::f64x4;
 use linkwork::mechanism;
-use linkwork::nalgebra::SMatrix;
+use linkwork::nalgebra::{SMatrix, SVector};
 use support::compare::assert_close;
 use support::random::Random;
 
@@ -41,6 +42,9 @@ struct TwoArms {
     other: Pin,
 }
 
+/// Not a number that a mass matrix has.
+const UNTOUCHED: f64 = -1e30;
+
 macro_rules! check {
     ($robot:ident, $at:expr) => {{
         let robot = $at;
@@ -55,6 +59,14 @@ macro_rules! check {
                 (full[(i, j)], full[(j, i)]) = (*entry, *entry);
             }
             assert_close("mass matrix", full.as_slice(), robot.mass_matrix(&q).as_slice(), 1e-14);
+            // What is always zero is not touched, whatever stands there.
+            let mut kept = SMatrix::from_element(UNTOUCHED);
+            robot.mass_matrix_into(&q, &mut kept);
+            for (i, j) in (0..$robot::NV).flat_map(|i| (0..$robot::NV).map(move |j| (i, j))) {
+                let is_written = $robot::MASS_MATRIX_ENTRIES.contains(&(i.max(j), i.min(j)));
+                let expected = if is_written { full[(i, j)] } else { UNTOUCHED };
+                assert_eq!(kept[(i, j)], expected, "entry {i}, {j}");
+            }
         }
         $robot::MASS_MATRIX_ENTRIES.len()
     }};
@@ -69,8 +81,14 @@ fn packed_is_whole() {
     assert_eq!(check!(Panda, Panda), 7 * 8 / 2 + 1);
     assert_eq!(check!(TwoArms, TwoArms { m: 1.2, l: 0.5 }), 5);
     let arms = TwoArms { m: 1.2, l: 0.5 };
-    let q = [0.1, 0.2, 0.3].into();
+    let q = SVector::from([0.1, 0.2, 0.3]);
     let (one, other) = (arms.prepare().mass_matrix_packed(&q), arms.mass_matrix_packed(&q));
     assert_close("prepared", one.as_slice(), other.as_slice(), 1e-15);
+    let (mut one, mut several) = (SMatrix::zeros(), SMatrix::zeros());
+    arms.prepare().mass_matrix_into(&q, &mut one);
+    assert_close("prepared", one.as_slice(), arms.mass_matrix(&q).as_slice(), 1e-15);
+    arms.mass_matrix_into_lanes::<4>(&q.map(f64x4::splat), &mut several);
+    arms.mass_matrix_into(&q, &mut one);
+    assert_eq!(several, one.map(f64x4::splat));
     assert_eq!(TwoArms::MASS_MATRIX_ENTRIES, [(0, 0), (1, 0), (2, 0), (1, 1), (2, 2)]);
 }

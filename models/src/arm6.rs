@@ -10,7 +10,7 @@ use linkwork::mechanism;
 /// - Closed form: `base` to `tool0` by the manufacturer's Denavit–Hartenberg parameters,
 ///   d = (89.159, 0, 0, 109.15, 94.65, 82.3) mm, a = (0, −425, −392.25, 0, 0, 0) mm,
 ///   α = (90, 0, 0, 90, −90, 0)°.
-#[mechanism(urdf = "urdf/ur5.urdf", derivatives)]
+#[mechanism(urdf = "urdf/ur5.urdf", derivatives, packed)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ur5;
 

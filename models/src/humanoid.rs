@@ -8,7 +8,7 @@ use linkwork::mechanism;
 /// - Configuration: position and quaternion of the base, then the angles of the joints, rad, depth first, the joints of
 ///   one link in alphabetical order of their names. Inputs: a torque on each joint, N·m.
 /// - Closed form: in free fall, at rest, everything accelerates with g and no joint moves.
-#[mechanism(urdf = "urdf/simple_humanoid.urdf", base = free, derivatives)]
+#[mechanism(urdf = "urdf/simple_humanoid.urdf", base = free, derivatives, packed)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SimpleHumanoid;
 

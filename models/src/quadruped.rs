@@ -12,7 +12,7 @@ use linkwork::mechanism;
 /// - Closed forms: in free fall, at rest, everything accelerates with g and no joint moves; a leg is two segments of
 ///   160 mm, so its foot is at `−0.16 (sin α + sin(α + β))` ahead of and `−0.16 (cos α + cos(α + β))` above its hip at
 ///   HFE = α and KFE = β.
-#[mechanism(urdf = "urdf/solo12.urdf", base = free, derivatives)]
+#[mechanism(urdf = "urdf/solo12.urdf", base = free, derivatives, packed)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Solo12;
 
@@ -27,7 +27,7 @@ pub struct Solo12;
 ///   with HAA (hip abduction, about x), HFE (hip flexion, about y) and KFE (knee flexion, about y), rad.
 ///   Inputs: a torque on each joint of the legs, N·m.
 /// - Closed form: in free fall, at rest, everything accelerates with g and no joint moves.
-#[mechanism(urdf = "urdf/anymal_b.urdf", base = free, inertia = trust, derivatives)]
+#[mechanism(urdf = "urdf/anymal_b.urdf", base = free, inertia = trust, derivatives, packed)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AnymalB;
 

@@ -49,6 +49,44 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
     }
 }
 
+/// The generated function that puts the mass matrix into one that keeps its zeros.
+pub struct Keeping<M, const NQ: usize, const NV: usize> {
+    /// The mechanism.
+    pub mechanism: M,
+    /// What it is called on.
+    pub states: Rc<Vec<State<NQ, NV>>>,
+    /// The function.
+    pub call: fn(&M, &State<NQ, NV>, &mut SMatrix<f64, NV, NV>),
+    /// The matrix.
+    pub matrix: SMatrix<f64, NV, NV>,
+}
+
+impl<M, const NQ: usize, const NV: usize> Contender for Keeping<M, NQ, NV> {
+    fn owner(&self) -> Owner {
+        Owner::Kept
+    }
+
+    fn variant(&self) -> String {
+        String::new()
+    }
+
+    fn pass(&mut self) {
+        for state in self.states.iter() {
+            (self.call)(black_box(&self.mechanism), black_box(state), &mut self.matrix);
+            black_box(&self.matrix);
+        }
+    }
+
+    fn result(&mut self, state: usize) -> Vec<f64> {
+        (self.call)(&self.mechanism, &self.states[state], &mut self.matrix);
+        self.matrix.flat()
+    }
+
+    fn bytes(&self) -> Option<u64> {
+        code::bytes::<M>(self.call as *const (), "mass_matrix_into")
+    }
+}
+
 /// Results as lists.
 pub trait Flat {
     /// All numbers, column by column.

@@ -39,7 +39,10 @@ pub fn agree(
             let message =
                 format!("{what}: {:?} {} is off by {error:e}", contender.owner(), contender.variant());
             eprintln!("{message}");
-            if matches!(contender.owner(), Owner::Linkwork | Owner::Parameters | Owner::Prepared) {
+            if matches!(
+                contender.owner(),
+                Owner::Linkwork | Owner::Kept | Owner::Parameters | Owner::Prepared
+            ) {
                 wrong.push(message);
             }
         }

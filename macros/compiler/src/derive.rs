@@ -217,7 +217,7 @@ fn functions<'g>(
     if let Some(entries) = &extras.entries {
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * model.nv() + i).collect();
         let program = dynamics.program("mass_matrix").map(|whole| whole.with_outputs(&at));
-        for f in signatures::packed(&sizes, entries.len()) {
+        for f in signatures::packed(&sizes, entries) {
             functions.push(Function { program: program.clone().unwrap_or_default(), ..f });
         }
     }

@@ -253,7 +253,7 @@ impl Source {
         }
         if requests.packed {
             let entries = vec![(0, 0); sizes.nv * (sizes.nv + 1) / 2];
-            functions.extend(signatures::packed(&sizes, entries.len()));
+            functions.extend(signatures::packed(&sizes, &entries));
             constants.push(signatures::entries(&entries));
         }
         if outline.constrained {

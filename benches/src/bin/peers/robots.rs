@@ -1,8 +1,9 @@
 //! The robots that are compared.
 
+use linkwork::nalgebra::SMatrix;
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Call, Flat, Own};
+use linkwork_benches::peers::own::{Call, Flat, Keeping, Own};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
@@ -71,6 +72,21 @@ macro_rules! derivatives {
     }};
 }
 
+/// The mass matrix into one that keeps its zeros, if it has any.
+macro_rules! kept {
+    ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
+        const N: usize = <$type>::NV;
+        let keeping = Keeping {
+            mechanism: $value,
+            states: $states.clone(),
+            call: |m: &$type, s, into| m.mass_matrix_into(&s.q, into),
+            matrix: SMatrix::<f64, N, N>::zeros(),
+        };
+        let has_zeros = <$type>::MASS_MATRIX_ENTRIES.len() < N * (N + 1) / 2;
+        has_zeros.then(|| -> Generated { (Function::Mass, Box::new(keeping)) })
+    }};
+}
+
 /// A robot: its name, its file and how that is read, its type, and the functions of several of its values.
 macro_rules! robot {
     ($name:literal, $urdf:expr, $options:expr, $type:ident, $($macro:ident!($of:ident, $value:expr, $owner:ident)),+) => {{
@@ -104,6 +120,7 @@ macro_rules! file {
             $options,
             $type,
             functions!($type, $type, Linkwork),
+            kept!($type, $type, Linkwork),
             derivatives!($type, $type, Linkwork)
         )
     };

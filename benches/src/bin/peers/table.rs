@@ -28,7 +28,11 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
             let what = format!("{} {}", robot.name, function.title());
             wrong.extend(agree(&mut contenders, &what, (robot.nv, STATES), TOLERANCE));
             if contenders.iter().any(|contender| contender.owner() == Owner::Linkwork) {
-                println!("{}", line(&robot, function, &time(&mut contenders, STATES, budget)));
+                let measured = time(&mut contenders, STATES, budget);
+                println!("{}", line(&robot, function, Owner::Linkwork, &measured));
+                if measured.iter().any(|m| m.owner == Owner::Kept) {
+                    println!("{}", line(&robot, function, Owner::Kept, &measured));
+                }
             }
         }
     }
@@ -62,16 +66,17 @@ fn contenders(
     all
 }
 
-/// A line of the table.
-fn line(robot: &Robot, function: Function, measured: &[Measured]) -> String {
+/// A line of the table, for one of our own functions.
+fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
     let best = |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
-    let own = best(Owner::Linkwork);
+    let own = best(owner);
     let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(best);
     let number = |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
     let time =
         |m: Option<&Measured>| number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)));
     let ratio = |m: Option<&Measured>| number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
-    let mut cells = vec![format!("{} ({})", robot.name, robot.nv), function.title().to_string()];
+    let title = if owner == Owner::Kept { "mass matrix, zeros kept" } else { function.title() };
+    let mut cells = vec![format!("{} ({})", robot.name, robot.nv), title.to_string()];
     cells.extend([own, best(Owner::Parameters), best(Owner::Prepared)].map(time));
     cells.extend(others.map(time));
     cells.extend(others.map(ratio));

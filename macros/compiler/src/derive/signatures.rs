@@ -271,21 +271,29 @@ fn strings(name: &'static str, docs: &'static str, list: &[String]) -> Constant 
     Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
 }
 
-/// The function of the word `packed`, for so many entries.
-pub fn packed(sizes: &Sizes, entries: usize) -> Vec<Function> {
-    vec![sizes.function(
+/// The functions of the word `packed`, for the entries that are not always zero.
+pub fn packed(sizes: &Sizes, entries: &[(usize, usize)]) -> Vec<Function> {
+    let packed = sizes.function(
         "mass_matrix_packed",
         &[Q],
-        Shape::Vector(entries),
+        Shape::Vector(entries.len()),
         &["The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: entry `k` stands at `MASS_MATRIX_ENTRIES[k]`, row first."],
-    )]
+    );
+    let mut into = sizes.function(
+        "mass_matrix_into",
+        &[Q, Argument::Into(sizes.nv)],
+        Shape::Symmetric(sizes.nv),
+        &["Puts the [`mass_matrix`](Self::mass_matrix) into `m`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too."],
+    );
+    into.structure.entries = entries.to_vec();
+    vec![packed, into]
 }
 
 /// Where they stand.
 pub fn entries(list: &[(usize, usize)]) -> Constant {
     Constant {
         name: "MASS_MATRIX_ENTRIES",
-        docs: "Row and column of every entry of `mass_matrix_packed`.",
+        docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass matrix without what is always zero.",
         item: "(usize, usize)",
         list: list.iter().map(|entry| format!("{entry:?}")).collect(),
     }

@@ -360,6 +360,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             Argument::U => (s.nu, false),
             Argument::Standard(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
+            Argument::Into(_) => continue,
         };
         if n == 0 {
             continue;
@@ -436,6 +437,7 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         Shape::Matrix(rows, columns) => {
             let _ = writeln!(out, "{}", outputs.matrix(0, rows, columns));
         }
+        Shape::Symmetric(n) => out.push_str(&matrices::symmetric(n, &f.structure.entries, outputs)),
         Shape::Inverse(_)
         | Shape::Pair(_)
         | Shape::Forward(_)
@@ -453,6 +455,11 @@ pub struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
+    /// One of them.
+    pub fn text(&self, k: usize) -> &str {
+        self.pieces.get(k).map_or("", |p| p.text.as_str())
+    }
+
     /// An array of some of them.
     pub fn list(&self, range: std::ops::Range<usize>) -> String {
         let texts: Vec<&str> =

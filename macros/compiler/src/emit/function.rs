@@ -26,6 +26,8 @@ pub enum Argument {
     Given(&'static str, usize, usize),
     /// Parameters of mass properties, so many given numbers in a vector.
     Standard(usize),
+    /// The square matrix of so many rows that the result goes into.
+    Into(usize),
 }
 
 impl Argument {
@@ -40,6 +42,7 @@ impl Argument {
             Argument::U => "u",
             Argument::Given(name, ..) => name,
             Argument::Standard(_) => "standard",
+            Argument::Into(_) => "m",
         }
     }
 
@@ -90,6 +93,8 @@ pub enum Shape {
     CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
+    /// Nothing: the outputs go into a square matrix of so many rows, to both sides of the diagonal.
+    Symmetric(usize),
 }
 
 impl Shape {
@@ -120,6 +125,8 @@ pub struct Function {
 pub struct Structure {
     /// Where the inverse of the mass matrix is in parts: the velocities of the trunk, in the order of the factors.
     pub trunk: Vec<usize>,
+    /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
+    pub entries: Vec<(usize, usize)>,
     /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
     pub zeros: Vec<bool>,
 }
@@ -165,6 +172,7 @@ impl Signature<'_> {
             Argument::U => self.nu,
             Argument::Standard(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
+            Argument::Into(n) => return format!("&mut {}", self.shape(Shape::Square(n))),
         };
         format!("&{}", self.vector(n))
     }
@@ -185,6 +193,7 @@ impl Signature<'_> {
             }
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
+            Shape::Symmetric(_) => "()".to_string(),
             Shape::Pair(_)
             | Shape::Forward(_)
             | Shape::Linear(..)
@@ -227,9 +236,10 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if !f.docs.is_empty() {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
+    let must_use = if matches!(f.shape, Shape::Symmetric(_)) { "" } else { "#[must_use]\n" };
     let _ = writeln!(
         out,
-        "#[inline]\n#[must_use]\npub fn {}{}({}) -> {} {{",
+        "#[inline]\n{must_use}pub fn {}{}({}) -> {} {{",
         f.name,
         s.generics(),
         s.parameters(&f.arguments),

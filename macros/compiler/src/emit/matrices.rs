@@ -2,6 +2,7 @@
 
 use super::body::Outputs;
 use super::function::{Function, Shape, Signature, Structure};
+use std::fmt::Write;
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -15,6 +16,25 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
         }
         _ => String::new(),
     }
+}
+
+/// Puts the outputs where they stand in the matrix `m` of so many rows, and to the other side of its diagonal; column by
+/// column, so that what stands together is stored together.
+pub fn symmetric(n: usize, entries: &[(usize, usize)], outputs: &Outputs<'_>) -> String {
+    let mut text = String::new();
+    let mut names = vec![None; n * n];
+    for (k, (i, j)) in entries.iter().enumerate() {
+        let _ = writeln!(text, "let entry{k} = {};", outputs.text(k));
+        for place in [j * n + i, i * n + j] {
+            names[place] = Some(k);
+        }
+    }
+    for (place, name) in names.iter().enumerate() {
+        if let Some(k) = name {
+            let _ = writeln!(text, "m.data.0[{}][{}] = entry{k};", place / n, place % n);
+        }
+    }
+    text
 }
 
 /// The result from the outputs.
