@@ -72,7 +72,7 @@ macro_rules! derivatives {
     }};
 }
 
-/// The mass matrix into one that keeps its zeros, if it has any.
+/// The mass matrix into one that keeps its zeros, if they are a quarter of it.
 macro_rules! kept {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         const N: usize = <$type>::NV;
@@ -82,8 +82,8 @@ macro_rules! kept {
             call: |m: &$type, s, into| m.mass_matrix_into(&s.q, into),
             matrix: SMatrix::<f64, N, N>::zeros(),
         };
-        let has_zeros = <$type>::MASS_MATRIX_ENTRIES.len() < N * (N + 1) / 2;
-        has_zeros.then(|| -> Generated { (Function::Mass, Box::new(keeping)) })
+        let is_sparse = <$type>::MASS_MATRIX_ENTRIES.len() * 8 < 3 * N * (N + 1);
+        is_sparse.then(|| -> Generated { (Function::Mass, Box::new(keeping)) })
     }};
 }
 
