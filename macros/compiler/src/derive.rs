@@ -105,8 +105,8 @@ fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
 /// By how many operations equal functions may change places when their sums are factored: so many, and one in so many.
 const SPREAD: (usize, usize) = (3, 100);
 
-/// Outputs with their size, in operations.
-struct Sized<'g> {
+/// Outputs of one of several forms of a function, with their size in operations.
+struct Candidate<'g> {
     size: usize,
     outputs: Vec<Expr<'g>>,
 }
@@ -132,7 +132,7 @@ impl Stage {
 
     /// The program of the outputs that take the fewest operations of some that compute the same, and of equally many
     /// the fewest instructions; with their number.
-    fn cheapest<'g>(self, lists: impl Iterator<Item = Sized<'g>>) -> (usize, Program) {
+    fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
         let all = promising(lists);
         let mut programs: Vec<(usize, Program)> =
             all.iter().map(|(k, list)| (*k, self.lowered(list))).collect();
@@ -144,12 +144,12 @@ impl Stage {
 
     /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
     /// numbers.
-    fn programs<'g>(self, lists: impl Iterator<Item = Sized<'g>>) -> Vec<(usize, Program)> {
+    fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
         promising(lists).into_iter().map(|(k, list)| (k, self.program(&list))).collect()
     }
 
-    fn sized(self, outputs: Vec<Expr<'_>>) -> Sized<'_> {
-        Sized { size: size(&outputs, &|s| self.knows(s)), outputs }
+    fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
+        Candidate { size: size(&outputs, &|s| self.knows(s)), outputs }
     }
 
     /// True for what is known before.
@@ -160,8 +160,8 @@ impl Stage {
 
 /// Those lists of outputs that may take the fewest operations of some that compute the same, with their numbers; of
 /// lists that are the same, the first.
-fn promising<'g>(lists: impl Iterator<Item = Sized<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
-    let mut all: Vec<(usize, Sized<'g>)> = lists.enumerate().collect();
+fn promising<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
+    let mut all: Vec<(usize, Candidate<'g>)> = lists.enumerate().collect();
     let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);
     all.retain(|(_, list)| list.size <= most);
     let mut chosen: Vec<(usize, Vec<Expr<'g>>)> = Vec::new();

@@ -1,7 +1,7 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::{Sized, Stage, in_lanes};
+use super::{Candidate, Stage, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::mechanics::{
@@ -84,7 +84,7 @@ struct Compared {
 }
 
 impl Compared {
-    fn of<'g>(all: &[Forms<'g>], outputs: impl Fn(&Forms<'g>) -> Vec<Sized<'g>>) -> Compared {
+    fn of<'g>(all: &[Forms<'g>], outputs: impl Fn(&Forms<'g>) -> Vec<Candidate<'g>>) -> Compared {
         let (mut sizes, mut kinds, mut lists) = (Vec::new(), Vec::new(), Vec::new());
         for (kind, forms) in all.iter().enumerate() {
             let own = outputs(forms);
@@ -143,7 +143,7 @@ impl<'g> Forms<'g> {
             .map_or_else(Program::default, |list| self.stage.program(&list.outputs))
     }
 
-    fn mass_matrices(&self) -> impl Iterator<Item = Sized<'g>> {
+    fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
         let all = self.plain().map(|model| crba::mass_matrix(model, &self.joints).concat());
         all.map(|list| self.stage.sized(list))
     }
@@ -153,7 +153,7 @@ impl<'g> Forms<'g> {
     }
 
     /// Inverse dynamics, or the bias alone.
-    fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Sized<'g>> {
+    fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         self.all.iter().map(move |form| {
             let (v, a) = (mechanics::velocities(&form.model), mechanics::accelerations(&form.model));
             let a = accelerations.then_some(a.as_slice());
@@ -161,7 +161,7 @@ impl<'g> Forms<'g> {
         })
     }
 
-    fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Sized<'g>> {
+    fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         let all = self.limbs.iter().map(move |(limbs, _)| in_lanes::inverse_dynamics(limbs, accelerations));
         all.map(|list| self.stage.sized(list))
     }
@@ -198,7 +198,7 @@ impl<'g> Forms<'g> {
         let articulated = self
             .plain()
             .filter_map(|model| aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau));
-        let articulated: Vec<Sized<'g>> = articulated.map(|list| self.stage.sized(list)).collect();
+        let articulated: Vec<Candidate<'g>> = articulated.map(|list| self.stage.sized(list)).collect();
         if !articulated.is_empty() && bias.nv() > COMPARE {
             return self.stage.cheapest(articulated.into_iter()).1;
         }
@@ -208,8 +208,8 @@ impl<'g> Forms<'g> {
             let mass = crba::mass_matrix(model, &self.joints);
             self.stage.sized(ldl::solve(mass, r.clone(), &self.joints))
         });
-        let factorised: Vec<Sized<'g>> = factorised.collect();
-        let size = |all: &[Sized<'g>]| all.iter().map(|list| list.size).min();
+        let factorised: Vec<Candidate<'g>> = factorised.collect();
+        let size = |all: &[Candidate<'g>]| all.iter().map(|list| list.size).min();
         let is_shorter =
             size(&articulated).is_some_and(|a| size(&factorised).is_none_or(|f| f * 20 > a * 21));
         self.stage.cheapest(if is_shorter { articulated } else { factorised }.into_iter()).1
