@@ -74,7 +74,7 @@ macro_rules! derivatives {
 
 /// The mass matrix into one that keeps its zeros, if they are a quarter of it.
 macro_rules! kept {
-    ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
+    ($type:ty, $value:expr, Linkwork, $states:expr) => {{
         const N: usize = <$type>::NV;
         let keeping = Keeping {
             mechanism: $value,

@@ -129,23 +129,27 @@ impl<'g> Forms<'g> {
         self.limbs.iter().filter(|(_, anchored)| !anchored).map(|(limbs, _)| limbs)
     }
 
+    /// The outputs of a function of any kind, form by form.
+    fn candidates(
+        &self,
+        outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
+    ) -> impl Iterator<Item = Candidate<'g>> {
+        self.plain().map(outputs).map(|list| self.stage.sized(list))
+    }
+
     /// The program of the form in which a function of any kind takes the fewest operations.
     fn cheapest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        let lists = self.plain().map(outputs).map(|list| self.stage.sized(list));
-        self.stage.cheapest(lists).1
+        self.stage.cheapest(self.candidates(outputs)).1
     }
 
     /// The program of the form in which its outputs are the smallest, which is found quicker.
     fn smallest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        let lists = self.plain().map(outputs).map(|list| self.stage.sized(list));
-        lists
-            .min_by_key(|list| list.size)
-            .map_or_else(Program::default, |list| self.stage.program(&list.outputs))
+        let smallest = self.candidates(outputs).min_by_key(|list| list.size);
+        smallest.map_or_else(Program::default, |list| self.stage.program(&list.outputs))
     }
 
     fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
-        let all = self.plain().map(|model| crba::mass_matrix(model, &self.joints).concat());
-        all.map(|list| self.stage.sized(list))
+        self.candidates(|model| crba::mass_matrix(model, &self.joints).concat())
     }
 
     fn mass_matrices_in_lanes(&self) -> Vec<Program> {
@@ -204,10 +208,8 @@ impl<'g> Forms<'g> {
         }
         let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
         let r: Vec<Expr<'g>> = tau.iter().zip(h).map(|(tau, h)| *tau - h).collect();
-        let factorised = self.plain().map(|model| {
-            let mass = crba::mass_matrix(model, &self.joints);
-            self.stage.sized(ldl::solve(mass, r.clone(), &self.joints))
-        });
+        let factorised = self
+            .candidates(|model| ldl::solve(crba::mass_matrix(model, &self.joints), r.clone(), &self.joints));
         let factorised: Vec<Candidate<'g>> = factorised.collect();
         let size = |all: &[Candidate<'g>]| all.iter().map(|list| list.size).min();
         let is_shorter =

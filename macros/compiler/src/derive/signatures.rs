@@ -283,7 +283,7 @@ pub fn packed(sizes: &Sizes, entries: &[(usize, usize)]) -> Vec<Function> {
         "mass_matrix_into",
         &[Q, Argument::Into(sizes.nv)],
         Shape::Symmetric(sizes.nv),
-        &["Puts the [`mass_matrix`](Self::mass_matrix) into `m`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too."],
+        &["Puts the [`mass_matrix`](Self::mass_matrix) into `m`, `NV` by `NV`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too."],
     );
     into.structure.entries = entries.to_vec();
     vec![packed, into]

@@ -228,10 +228,7 @@ pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
         places[*id as usize] = 0;
     }
     let counts = |node: &Node| {
-        matches!(
-            node,
-            Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Sum(..) | Node::Pow(..)
-        )
+        matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Sum(..))
     };
     nodes.iter().zip(before).filter(|(node, before)| !before && counts(node)).count()
 }
