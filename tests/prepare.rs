@@ -291,8 +291,8 @@ fn puma(lengths: bool, parameters: bool) -> String {
     format!("pub struct Puma {{ {fields} }}")
 }
 
-/// Chains of rods about alternating axes; lengths and masses are numbers or parameters.
-fn chain(n: usize, parameters: bool) -> String {
+/// Chains of rods along x about these axes in turn; lengths and masses are numbers or parameters.
+fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     let mut fields = String::new();
     for k in 0..n {
         let number = |name: &str, x: f64| if parameters { format!("{name}{k}") } else { format!("{x}") };
@@ -308,20 +308,26 @@ fn chain(n: usize, parameters: bool) -> String {
         fields += &format!(
             "#[body(mass = {m}, com = {l} / 2 * x, inertia = cylinder({m}, 0.05, {l}, x))] b{k}: Body,
              #[joint({parent} -> b{k}, about = {})] j{k}: Pin,",
-            ["z", "y"][k % 2]
+            axes[k % axes.len()]
         );
     }
     format!("pub struct Chain {{ {fields} }}")
 }
 
-/// Within ten per cent of the same mechanism in numbers, and exactly.
+/// Within ten per cent of the same mechanism in numbers, and exactly. Where rods lie along an axis two lengths become one.
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [
         ("puma, masses", puma(false, false), puma(false, true), [497, 466, 262, 893]),
         ("puma, lengths too", puma(false, false), puma(true, true), [497, 466, 266, 897]),
-        ("chain of 4", chain(4, false), chain(4, true), [177, 157, 70, 278]),
-        ("chain of 8", chain(8, false), chain(8, true), [473, 449, 422, 1186]),
+        ("chain of 4", chain(4, &["z", "y"], false), chain(4, &["z", "y"], true), [177, 157, 70, 278]),
+        ("chain of 8", chain(8, &["z", "y"], false), chain(8, &["z", "y"], true), [473, 449, 422, 1186]),
+        (
+            "chain about three axes",
+            chain(8, &["z", "y", "x"], false),
+            chain(8, &["z", "y", "x"], true),
+            [423, 399, 378, 931],
+        ),
     ] {
         let (numbers, _) = operations("gravity = -9.81 * z", &numbers);
         let (whole, prepared) = operations("gravity = -9.81 * z, prepare", &parameters);

@@ -10,13 +10,13 @@ use std::f64::consts::FRAC_PI_2;
 /// A rotation about a coordinate axis.
 const TURN: f64 = 150.0;
 /// A component of a translation.
-const LENGTH: f64 = 80.0;
+pub const LENGTH: f64 = 80.0;
 /// An addition to an angle.
 const OFFSET: f64 = 3.0;
 /// A component of the first moment normal to the axis.
 const MOMENT: f64 = 20.0;
 /// A product of inertia.
-const PRODUCT: f64 = 12.0;
+pub const PRODUCT: f64 = 12.0;
 /// The part of these costs that a joint on the ground has: forces on the ground do not matter.
 const GROUND: f64 = 0.02;
 

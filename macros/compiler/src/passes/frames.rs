@@ -112,7 +112,7 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
 }
 
 /// Everything that is fixed in the links, seen from their new frames: `back` are the old frames there.
-fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
+pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     // All fields are named, so that whoever adds one is asked what the frames mean to it. Expressions of the state,
     // as those of loads and outputs, are complete by now: they do not know the frames.
     let Model {

@@ -9,6 +9,7 @@ mod frames;
 pub mod limbs;
 mod number;
 mod regroup;
+mod slide;
 
 pub use frames::place_frames;
 pub use regroup::{Gauge, Regroup, regroup};
@@ -49,6 +50,7 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
         regroup(&mut start, Regroup::default());
     }
     if passes.frames {
+        slide::slide_frames(&mut start);
         place_frames(&mut start, passes.free_parameters);
     }
     if !passes.regroup {

@@ -1,0 +1,68 @@
+//! Link frames moved along the axes they turn about where places are parameters: as in the frames of Denavit and
+//! Hartenberg (1955) two lengths along one axis become one, next to the one joint or the other. Mass properties in a frame
+//! that was moved by a parameter cost operations, fewer than they save.
+
+use super::cost::{LENGTH, PRODUCT};
+use super::frames::move_contents;
+use super::regroup::coordinate_axis;
+use crate::expr::{Expr, Vec3};
+use crate::model::{Inertia, Link, Model, Motion, Pose};
+
+/// Moves the frames, parents before their children.
+pub fn slide_frames(model: &mut Model<'_>) {
+    let g = model.graph;
+    for k in 0..model.links.len() {
+        let Some(shift) = best(model, k) else { continue };
+        let step = Pose { translation: shift, ..Pose::identity(g) };
+        let back = step.inverse();
+        let link = &mut model.links[k];
+        link.placement = link.placement.then(&step);
+        link.inertia = Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation);
+        for child in model.links.iter_mut().filter(|c| c.parent.is_some_and(|p| p.0 == k)) {
+            child.placement = back.then(&child.placement);
+        }
+        let mut all = vec![Pose::identity(g); model.links.len()];
+        all[k] = back;
+        move_contents(model, &all);
+    }
+}
+
+/// The shift of link `k` that saves most, if one saves anything.
+fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
+    let link = &model.links[k];
+    let Motion::Turn { axis, .. } = &link.motion else { return None };
+    let a = coordinate_axis(*axis)?;
+    let children: Vec<&Link<'g>> =
+        model.links.iter().filter(|c| c.parent.is_some_and(|p| p.0 == k)).collect();
+    let is_placed = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
+    let is_number = |c: &&Link<'g>| c.placement.translation.values().is_some();
+    let own = link.placement.translation;
+    // Between numbers frames are placed by all of their costs.
+    if !children.iter().all(is_placed) || is_number(&link) && children.iter().all(is_number) {
+        return None;
+    }
+    let along = link.placement.rotation.to_parent(Vec3::axis(model.graph, a));
+    let cost = |s: Expr<'g>| {
+        let shift = Vec3::axis(model.graph, a) * s;
+        let lengths = children.iter().map(|c| nonzero(c.placement.translation - shift)).sum::<usize>();
+        // A joint on the ground may be anywhere.
+        let lengths = lengths + if link.parent.is_some() { nonzero(own + along * s) } else { 0 };
+        let h = link.inertia.moment;
+        let products = [(a + 1) % 3, (a + 2) % 3]
+            .map(|i| usize::from(!(link.inertia.tensor.at(a, i) - h[i] * s).is_zero()));
+        LENGTH * lengths as f64 + PRODUCT * products.iter().sum::<usize>() as f64
+    };
+    let mut best = (model.graph.zero(), cost(model.graph.zero()));
+    let ends = children.iter().map(|c| c.placement.translation[a]);
+    for s in ends.chain([-link.placement.rotation.to_child(own)[a]]) {
+        let cost = cost(s);
+        if cost < best.1 {
+            best = (s, cost);
+        }
+    }
+    (!best.0.is_zero()).then(|| Vec3::axis(model.graph, a) * best.0)
+}
+
+fn nonzero(v: Vec3<'_>) -> usize {
+    v.0.iter().filter(|c| !c.is_zero()).count()
+}
