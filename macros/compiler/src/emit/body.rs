@@ -79,7 +79,6 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
         f.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
-    write_prepared_numbers(out, program, s.prepared);
     write_inputs(out, &early, s, &w);
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
     write_inputs(out, &late, s, &w);
@@ -262,7 +261,7 @@ impl Writer<'_> {
         }
         match quantity {
             Quantity::Parameter(k) => return self.scalar.value(k),
-            Quantity::Prepared(k) => return self.scalar.spread(format!("c{k}")),
+            Quantity::Prepared(k) => return self.scalar.spread(format!("self.numbers[{k}]")),
             _ => {}
         }
         self.arguments
@@ -322,28 +321,6 @@ impl Writer<'_> {
 
 fn wrap(piece: &Piece, level: u8) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
-}
-
-/// The numbers that were computed before, as far as the program names them.
-fn write_prepared_numbers(out: &mut String, program: &Program, count: usize) {
-    let mut named = vec![false; count];
-    let mut name = |o: Operand| {
-        if let Operand::Symbol(s) = o
-            && let Quantity::Prepared(k) = Quantity::of(s)
-        {
-            named[k] = true;
-        }
-    };
-    program.instructions.iter().for_each(|op| op.operands(&mut name));
-    program.outputs.iter().for_each(|o| name(*o));
-    if named.contains(&true) {
-        let list: Vec<String> = named
-            .iter()
-            .enumerate()
-            .map(|(k, named)| if *named { format!("c{k}") } else { "_".into() })
-            .collect();
-        let _ = writeln!(out, "let [{}] = self.numbers;", list.join(", "));
-    }
 }
 
 /// The numbers of arguments, and those of them that are lanes.

@@ -158,8 +158,6 @@ pub struct Signature<'a> {
     pub nu: usize,
     /// Functions take time first.
     pub time: bool,
-    /// How many numbers were computed before.
-    pub prepared: usize,
 }
 
 impl Signature<'_> {

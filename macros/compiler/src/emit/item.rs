@@ -214,7 +214,6 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
         nv: interface.velocities.len(),
         nu: interface.inputs.len(),
         time: interface.time,
-        prepared: 0,
     }
 }
 

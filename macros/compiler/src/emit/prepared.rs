@@ -44,7 +44,6 @@ pub fn write_prepared(
     let name = format!("Prepared{}", ident.to_string().trim_start_matches("r#"));
     let count = content.numbers.map_or(0, |numbers| numbers.outputs.len());
     write_struct(out, i, s, &name, count, functions);
-    let s = &Signature { prepared: count, ..*s };
     let mut methods = String::new();
     write_sizes(&mut methods, i);
     let mut bodies = Bodies::new(i.detect);
@@ -75,7 +74,7 @@ pub fn write_prepared(
         program: content.numbers.cloned().unwrap_or_default(),
         ..Function::new(Shape::Array(count))
     };
-    write_function(out, &numbers, &Signature { prepared: 0, ..*s }, content.numbers.is_none());
+    write_function(out, &numbers, s, content.numbers.is_none());
     out.push_str("}\n");
 }
 
