@@ -61,7 +61,7 @@ fn totals(arguments: &str, item: &str) -> [usize; 4] {
 
 /// Instructions where products are fused into sums, without sines and cosines.
 fn instructions(program: &Program) -> usize {
-    let operations = program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..)));
+    let operations = program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..)));
     operations.count() - program.counts.calls
 }
 

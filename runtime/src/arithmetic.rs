@@ -99,6 +99,15 @@ pub trait Arithmetic: Registers {
         Vector::from(Lanes([x; N]))
     }
 
+    /// The lanes of one vector, then those of another. Does not compile if `M` is not `2 N`.
+    #[inline(always)]
+    fn join<T: Copy, const N: usize, const M: usize>(
+        a: Vector<Self, T, N>,
+        b: Vector<Self, T, N>,
+    ) -> Vector<Self, T, M> {
+        Vector::joined(&a, &b)
+    }
+
     /// Arguments in lanes.
     #[inline(always)]
     fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {

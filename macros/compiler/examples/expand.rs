@@ -174,7 +174,8 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
             div: sum.div + c.div,
             calls: sum.calls + c.calls,
         };
-        instructions += program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..))).count();
+        instructions +=
+            program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..))).count();
     }
     println!(
         "{name:24}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}",

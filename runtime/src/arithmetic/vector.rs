@@ -58,6 +58,21 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         self.0.0[K]
     }
 
+    /// The lanes of one, then those of another. Does not compile if `M` is not `2 N`.
+    #[inline(always)]
+    pub(crate) fn joined<const M: usize>(a: &Vector<A, T, N>, b: &Vector<A, T, N>) -> Vector<A, T, M> {
+        const { assert!(N > 0 && M == 2 * N, "half of the lanes come from either") };
+        let mut numbers = [a.0.0[0]; M];
+        let mut places = numbers.iter_mut();
+        for (x, place) in a.numbers().iter().zip(places.by_ref()) {
+            *place = *x;
+        }
+        for (x, place) in b.numbers().iter().zip(places) {
+            *place = *x;
+        }
+        Vector::of(numbers)
+    }
+
     /// The first `M` lanes. Does not compile if there are fewer.
     #[inline(always)]
     pub fn first<const M: usize>(self) -> Vector<A, T, M> {

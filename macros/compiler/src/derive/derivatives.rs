@@ -23,6 +23,9 @@ const MEDIUM: usize = 24;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
+/// Lanes in which changes are carried to the root together.
+const WIDE: [usize; 2] = [4, 8];
+
 /// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
 pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
@@ -98,6 +101,8 @@ struct Parts<'a, 'g> {
     trunk: Option<Trunk>,
     /// The same with alike limbs as lanes.
     limbs: Option<InLanes<'g>>,
+    /// In how many lanes changes are carried to the root, beside none.
+    wide: &'static [usize],
 }
 
 /// A mechanism with alike limbs as lanes.
@@ -111,11 +116,21 @@ impl<'a, 'g> Parts<'a, 'g> {
     fn new(model: &'a Model<'g>, stage: Stage) -> Parts<'a, 'g> {
         let joints = mechanics::joints(model);
         let mass = crba::mass_matrix(model, &joints);
-        Parts { model, joints, mass, method: Method::Recursion, stage, trunk: None, limbs: None }
+        Parts {
+            model,
+            joints,
+            mass,
+            method: Method::Recursion(1),
+            stage,
+            trunk: None,
+            limbs: None,
+            wide: &[],
+        }
     }
 
     /// Finds alike limbs, and what all limbs hang from.
     fn take_apart(&mut self, lanes: bool) {
+        self.wide = if lanes { &WIDE } else { &[] };
         let groups = if lanes { limbs::find(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::of(self.model, &self.joints, &groups);
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
@@ -134,29 +149,36 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     fn cost(&self) -> usize {
-        self.inverse_dynamics().counts.total()
+        self.stage.program(&self.force_columns(self.method)).counts.total()
+    }
+
+    fn force_columns(&self, method: Method) -> Vec<Expr<'g>> {
+        let a = mechanics::accelerations(self.model);
+        force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
     }
 
     fn inverse_dynamics(&self) -> Program {
-        let a = mechanics::accelerations(self.model);
-        self.stage.program(&force_columns(&derivatives::inverse_dynamics(
-            self.model,
-            &self.joints,
-            &a,
-            self.method,
-        )))
+        let program = self.stage.program(&self.force_columns(self.method));
+        let wide = self.wide.iter().map(|most| done(&self.force_columns(Method::Recursion(*most))));
+        let in_lanes = self.limbs.iter().flat_map(|lanes| {
+            let a = lanes.limbs.symbols(Quantity::Acceleration);
+            [1].iter().chain(self.wide).map(move |most| {
+                let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
+                done(&force_columns(&forces))
+            })
+        });
+        program.or_in_lanes(wide.chain(in_lanes))
     }
 
     fn forward_dynamics(&self) -> Program {
         let g = self.model.graph;
         let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
-        self.stage.program(&all_columns(&derivatives::forward_dynamics(
-            self.model,
-            &self.joints,
-            &self.mass,
-            &tau,
-            self.method,
-        )))
+        let outputs = |method: Method| {
+            let (model, joints) = (self.model, &self.joints);
+            all_columns(&derivatives::forward_dynamics(model, joints, &self.mass, &tau, method))
+        };
+        let wide = self.wide.iter().map(|most| done(&outputs(Method::Recursion(*most))));
+        self.stage.program(&outputs(self.method)).or_in_lanes(wide)
     }
 
     /// The same with `M⁻¹` in parts.
@@ -169,12 +191,20 @@ impl<'a, 'g> Parts<'a, 'g> {
             [force_columns(forces), columns(&inverse), factors.concat()].concat()
         };
         let program = self.stage.program(&outputs(&forces, [inverse.columns(), inverse.factors()]));
-        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
-            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-            let a = in_lanes::accelerations(&lanes.limbs, &inverse);
-            let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a);
-            Some(done(&outputs(&forces, in_lanes::inverse(&lanes.limbs, &inverse))))
-        }))
+        program.or_in_lanes(
+            self.limbs
+                .iter()
+                .filter_map(|lanes| {
+                    let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+                    let a = in_lanes::accelerations(&lanes.limbs, &inverse);
+                    let parts = in_lanes::inverse(&lanes.limbs, &inverse);
+                    Some([1].iter().chain(self.wide).map(move |most| {
+                        let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
+                        done(&outputs(&forces, parts.clone()))
+                    }))
+                })
+                .flatten(),
+        )
     }
 
     /// `M⁻¹`, in parts where there are some; on request after the accelerations.
@@ -265,16 +295,7 @@ impl<'a, 'g> Parts<'a, 'g> {
                 let v = mechanics::velocities(self.model);
                 self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
             }
-            "inverse_dynamics_derivatives" => {
-                self.inverse_dynamics().or_in_lanes(self.limbs.iter().map(|lanes| {
-                    let a = lanes.limbs.symbols(Quantity::Acceleration);
-                    done(&force_columns(&in_lanes::inverse_dynamics_derivatives(
-                        &lanes.limbs,
-                        self.model,
-                        &a,
-                    )))
-                }))
-            }
+            "inverse_dynamics_derivatives" => self.inverse_dynamics(),
             "forward_dynamics_derivatives" => match &self.trunk {
                 Some(trunk) => self.forward_dynamics_in_parts(trunk),
                 None => self.forward_dynamics(),

@@ -33,14 +33,15 @@ pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<E
 }
 
 /// Derivatives of inverse dynamics at accelerations here by the recursion, those of springs and the like taken from the
-/// whole mechanism.
+/// whole mechanism; in up to `most` lanes.
 pub fn inverse_dynamics_derivatives<'g>(
     limbs: &Limbs<'g>,
     whole: &Model<'g>,
     a: &[Expr<'g>],
+    most: usize,
 ) -> ForceDerivatives<'g> {
     let v = limbs.symbols(Quantity::Velocity);
-    let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a);
+    let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a, most);
     let [by_q, by_v] = [found.by_q, found.by_v].map(|m| scattered_rows(limbs, &m));
     let mut scattered = ForceDerivatives { by_q, by_v };
     symbolic::add_resistance(whole, &mut scattered);

@@ -291,6 +291,14 @@ impl Writer<'_> {
             Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
             Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
             Op::Lane(k, a) => self.suffix(a, &format!(".lane::<{k}>()")),
+            Op::Join(n, a, b) => {
+                let (a, b) = (self.widened(a, n), self.widened(b, n));
+                let text = match n {
+                    1 => format!("Ops::lanes([{}, {}])", a.text, b.text),
+                    _ => format!("Ops::join::<_, {n}, {}>({}, {})", 2 * n, a.text, b.text),
+                };
+                Piece { text, needs: [a.needs, b.needs].concat(), level: 3 }
+            }
         }
     }
 

@@ -62,6 +62,7 @@ impl<'g> Derivative<'g> {
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),
             Node::Sum(n, a) => d(a).lane_sum(n.into()),
             Node::Lane(k, a) => d(a).lane(k.into()),
+            Node::Join(n, a, b) => d(a).joined(n.into(), d(b)),
             Node::Symbol(s) => self
                 .rates
                 .iter()

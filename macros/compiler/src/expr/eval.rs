@@ -41,8 +41,7 @@ impl<'g> Tape<'g> {
                 count += 1;
             });
             places[id] = tape.steps.len() as u32;
-            tape.in_lanes |=
-                matches!(nodes[id], Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..));
+            tape.in_lanes |= is_of_lanes(nodes[id]);
             tape.steps.push((nodes[id], operands));
         }
         tape.roots = roots.iter().map(|r| places[r.id() as usize]).collect();
@@ -74,6 +73,7 @@ impl<'g> Tape<'g> {
                 Node::Gather(k) => padded(&graph.gather(k).into_iter().map(symbol).collect::<Vec<_>>()),
                 Node::Sum(n, _) => [at(*a)[..usize::from(n)].iter().sum(); N],
                 Node::Lane(k, _) => [at(*a)[usize::from(k)]; N],
+                Node::Join(n, _, _) => joined(n.into(), at(*a), at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
                     let (a, b) = (at(*a), at(*b));
@@ -98,6 +98,15 @@ fn needed(nodes: &[Node], roots: &[Expr<'_>]) -> Vec<bool> {
     needed
 }
 
+fn is_of_lanes(node: Node) -> bool {
+    matches!(node, Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..))
+}
+
+/// So many lanes of `a`, then those of `b`.
+pub fn joined<const N: usize>(n: usize, a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| if k < n { a[k] } else { b[k - n] })
+}
+
 fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
     std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN))
 }
@@ -114,6 +123,11 @@ fn step(node: Node, a: f64, b: f64) -> f64 {
         Node::Call(f, _) => f.apply(a),
         Node::Atan2(..) => a.atan2(b),
         Node::Pow(..) => a.powf(b),
-        Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) => f64::NAN,
+        Node::Symbol(_)
+        | Node::Tuple(_)
+        | Node::Gather(_)
+        | Node::Sum(..)
+        | Node::Lane(..)
+        | Node::Join(..) => f64::NAN,
     }
 }

@@ -17,6 +17,8 @@ pub struct Tables {
     /// Index of a tuple by its bits.
     known: BTreeMap<Vec<u64>, u32>,
     gathers: Vec<Vec<Symbol>>,
+    /// By node: how many lanes it has, one for none; as far as anybody asked.
+    widths: Vec<u8>,
 }
 
 impl Graph {
@@ -47,6 +49,50 @@ impl Graph {
     /// The symbols of a gather.
     pub fn gather(&self, k: u32) -> Vec<Symbol> {
         self.lanes.borrow().gathers[k as usize].clone()
+    }
+
+    /// How many lanes a node has, one for none.
+    fn width(&self, id: Id) -> usize {
+        let (nodes, mut tables) = (self.nodes(), self.lanes.borrow_mut());
+        for node in &nodes[tables.widths.len().min(id as usize + 1)..=id as usize] {
+            let mut width = 1;
+            node.operands(|a| width = width.max(tables.widths[a as usize]));
+            let width = match *node {
+                Node::Tuple(k) => tables.tuples[k as usize].len() as u8,
+                Node::Gather(k) => tables.gathers[k as usize].len() as u8,
+                Node::Sum(..) | Node::Lane(..) => 1,
+                Node::Join(n, ..) => 2 * n,
+                _ => width,
+            };
+            tables.widths.push(width);
+        }
+        tables.widths[id as usize].into()
+    }
+
+    /// So many lanes of `a`, then as many of `b`.
+    fn join(&self, n: usize, a: Id, b: Id) -> Id {
+        if a == b && self.width(a) == 1 {
+            return a;
+        }
+        if let (Some(a), Some(b)) = (self.expr(a).lane_values(n), self.expr(b).lane_values(n)) {
+            return self.lane_constant([a, b].concat());
+        }
+        if let (Some(a), Some(b)) = (self.lane_inputs(n, a), self.lane_inputs(n, b)) {
+            return self.lane_symbols(&[a, b].concat()).id();
+        }
+        match (self.node(a), self.node(b)) {
+            (Node::Neg(a), Node::Neg(b)) => self.neg(self.intern(Node::Join(n as u8, a, b))),
+            _ => self.intern(Node::Join(n as u8, a, b)),
+        }
+    }
+
+    /// The inputs that a node has for its lanes, if it is made of them.
+    fn lane_inputs(&self, n: usize, id: Id) -> Option<Vec<Symbol>> {
+        match self.node(id) {
+            Node::Symbol(s) => Some(vec![s; n]),
+            Node::Gather(k) => Some(self.gather(k)),
+            _ => None,
+        }
     }
 
     fn lane_constant(&self, mut values: Vec<f64>) -> Id {
@@ -136,6 +182,12 @@ impl<'g> Expr<'g> {
         g.expr(g.signed(negative, g.intern(Node::Sum(n as u8, id))))
     }
 
+    /// Its `n` lanes, then as many of another. What has no lanes has the same value in each.
+    pub fn joined(self, n: usize, other: Expr<'g>) -> Expr<'g> {
+        let g = self.graph();
+        g.expr(g.join(n, self.id(), other.id()))
+    }
+
     /// Its value in lane `k`.
     pub fn lane(self, k: usize) -> Expr<'g> {
         let g = self.graph();
@@ -143,6 +195,10 @@ impl<'g> Expr<'g> {
             Node::Const(_) | Node::Symbol(_) => return self,
             Node::Tuple(t) => return g.num(g.tuple(t)[k]),
             Node::Gather(t) => return g.symbol(g.gather(t)[k]),
+            Node::Join(n, a, b) => {
+                let n = usize::from(n);
+                return if k < n { g.expr(a).lane(k) } else { g.expr(b).lane(k - n) };
+            }
             _ => {}
         }
         // The sign stays inside: all lanes are negated at once.

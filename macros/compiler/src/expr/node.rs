@@ -114,6 +114,8 @@ pub enum Node {
     Sum(u8, Id),
     /// One lane of `a`.
     Lane(u8, Id),
+    /// So many lanes of `a`, then as many of `b`.
+    Join(u8, Id, Id),
 }
 
 impl Node {
@@ -127,7 +129,8 @@ impl Node {
             | Node::Mul(a, b)
             | Node::Div(a, b)
             | Node::Atan2(a, b)
-            | Node::Pow(a, b) => {
+            | Node::Pow(a, b)
+            | Node::Join(_, a, b) => {
                 f(a);
                 f(b);
             }
@@ -149,6 +152,7 @@ impl Node {
             Node::Gather(k) => (33, k.into(), 0),
             Node::Sum(n, a) => (34, a.into(), n.into()),
             Node::Lane(k, a) => (35, a.into(), k.into()),
+            Node::Join(n, a, b) => (36 + u64::from(n), a.into(), b.into()),
             Node::Call(f, a) => (10 + f as u64, a.into(), 0),
         };
         let mut h = (a ^ tag.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xFF51_AFD7_ED55_8CCD);

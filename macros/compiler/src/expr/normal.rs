@@ -73,7 +73,9 @@ impl<'g> Normal<'g> {
             Node::Call(f, a) => Atom::Call(f, at(a).clone()),
             Node::Atan2(a, b) => Atom::Atan2(at(a).clone(), at(b).clone()),
             Node::Pow(a, b) => Atom::Power(at(a).clone(), at(b).clone()),
-            Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) => return None,
+            Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..) => {
+                return None;
+            }
         };
         Some(Polynomial::single(self.ring.atom(atom)?, 1.0))
     }

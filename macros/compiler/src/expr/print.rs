@@ -37,6 +37,7 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
         }
         Node::Sum(_, a) => (format!("sum({})", at(a, 0)), 4),
         Node::Lane(k, a) => (format!("{}[{k}]", at(a, 4)), 4),
+        Node::Join(_, a, b) => (format!("[{}; {}]", at(a, 0), at(b, 0)), 4),
         Node::Neg(a) => (format!("-{}", at(a, 2)), 1),
         Node::Add(a, b) => (format!("{} + {}", at(a, 1), at(b, 1)), 1),
         Node::Sub(a, b) => (format!("{} - {}", at(a, 1), at(b, 2)), 1),

@@ -53,6 +53,7 @@ fn rebuilt<'g>(
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
         Node::Sum(n, a) => at(a).lane_sum(n.into()),
         Node::Lane(k, a) => at(a).lane(k.into()),
+        Node::Join(n, a, b) => at(a).joined(n.into(), at(b)),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
         Node::Neg(a) => -at(a),
         Node::Add(a, b) => at(a) + at(b),

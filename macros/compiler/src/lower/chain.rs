@@ -54,7 +54,7 @@ impl Program {
         op.operands(|o| start = start.max(value_ready(o, ready)));
         start
             + match op {
-                Op::Lane(..) => 1,
+                Op::Lane(..) | Op::Join(..) => 1,
                 Op::Div(..) | Op::Sum(..) => 3 * LATENCY,
                 Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 10 * LATENCY,
                 _ => LATENCY,

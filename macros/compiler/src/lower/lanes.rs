@@ -3,6 +3,10 @@
 use super::{Op, Operand, Program};
 use crate::expr::{Graph, Id, Node};
 
+/// About how many instructions the processor's first cache holds: those of a larger program have to be fetched each time,
+/// however many lanes they have.
+const CACHED: usize = 4000;
+
 /// Lanes of the values of a program that is being written.
 #[derive(Default)]
 pub(super) struct Lanes {
@@ -61,6 +65,9 @@ impl Lanes {
 
     fn width_of(&self, op: &Op) -> usize {
         let mut width = 1;
+        if let Op::Join(n, ..) = op {
+            return 2 * n;
+        }
         if !matches!(op, Op::Sum(..) | Op::Lane(..)) {
             op.operands(|o| width = width.max(self.width(o)));
         }
@@ -88,22 +95,21 @@ impl Program {
 
     /// What it costs, roughly, in tenths of an instruction of one lane.
     pub fn cost(&self) -> usize {
-        let lanes = self.lanes();
         let gathers: usize = self.gathers.iter().map(|g| 8 * g.len()).sum();
-        gathers
-            + self
-                .instructions
-                .iter()
-                .zip(lanes)
-                .map(|(op, lanes)| match op {
-                    Op::Lane(..) => 5,
-                    Op::Sum(n, _) => 10 * n,
-                    Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 20 * lanes,
-                    _ if lanes > 4 => 30,
-                    _ if lanes > 2 => 15,
-                    _ => 10,
-                })
-                .sum::<usize>()
+        let all = self.instructions.iter().zip(self.lanes());
+        let instructions: usize = all
+            .map(|(op, lanes)| match op {
+                Op::Lane(..) => 5,
+                Op::Sum(n, _) => 10 * n,
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 20 * lanes,
+                _ if lanes > 4 => 25,
+                _ if lanes > 2 => 15,
+                _ => 10,
+            })
+            .sum();
+        let count = self.instructions.len();
+        let fetched = if count > CACHED { 15 * count } else { 0 };
+        gathers + instructions.max(fetched)
     }
 
     /// By value: how many lanes it has, one for none.

@@ -1,6 +1,7 @@
 //! Expressions → a straight-line program: only what the outputs need, in an order in which every value is computed
 //! before it is used, with operations counted. Knows no mechanics.
 
+use crate::expr::eval::joined;
 use crate::expr::lanes::MOST;
 use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
 
@@ -78,6 +79,8 @@ pub enum Op {
     Sum(usize, Operand),
     /// One lane.
     Lane(usize, Operand),
+    /// So many lanes of one value, then as many of another.
+    Join(usize, Operand, Operand),
 }
 
 impl Op {
@@ -90,7 +93,8 @@ impl Op {
             | Op::Mul(a, b)
             | Op::Div(a, b)
             | Op::Atan2(a, b)
-            | Op::Pow(a, b) => {
+            | Op::Pow(a, b)
+            | Op::Join(_, a, b) => {
                 f(a);
                 f(b);
             }
@@ -188,6 +192,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => continue,
             Node::Sum(n, a) => lanes.sum(n.into(), at(a)),
             Node::Lane(k, a) => Op::Lane(k.into(), at(a)),
+            Node::Join(n, a, b) => Op::Join(n.into(), at(a), at(b)),
             Node::Neg(a) => match nodes[place(a)] {
                 // −(a − b) is b − a where nothing else wants a − b.
                 Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(at(y), at(x)),
@@ -339,7 +344,7 @@ impl Program {
                     counts.add += 1;
                 }
                 Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => counts.calls += 1,
-                Op::Lane(..) => {}
+                Op::Lane(..) | Op::Join(..) => {}
             }
         }
         counts
@@ -358,9 +363,10 @@ impl Program {
 
     /// The values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        match self.tuples.is_empty() && self.gathers.is_empty() {
-            true => self.run_lanes::<1>(symbol),
-            false => self.run_lanes::<MOST>(symbol),
+        let joins = self.instructions.iter().any(|op| matches!(op, Op::Join(..)));
+        match joins || !self.tuples.is_empty() || !self.gathers.is_empty() {
+            true => self.run_lanes::<MOST>(symbol),
+            false => self.run_lanes::<1>(symbol),
         }
     }
 
@@ -378,6 +384,7 @@ impl Program {
             let result = match *op {
                 Op::Sum(n, a) => [at(&values, a)[..n].iter().sum(); N],
                 Op::Lane(k, a) => [at(&values, a)[k]; N],
+                Op::Join(n, a, b) => joined(n, at(&values, a), at(&values, b)),
                 op => {
                     let mut operands = Vec::with_capacity(3);
                     op.operands(|o| operands.push(at(&values, o)));
@@ -405,7 +412,7 @@ impl Op {
             Op::Call(f, _) => f.apply(get(0)),
             Op::Atan2(..) => get(0).atan2(get(1)),
             Op::Pow(..) => get(0).powf(get(1)),
-            Op::Sum(..) | Op::Lane(..) => get(0),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
         }
     }
 
@@ -429,6 +436,7 @@ impl Op {
             Op::Pow(a, b) => Op::Pow(n(a), n(b)),
             Op::Sum(count, a) => Op::Sum(count, n(a)),
             Op::Lane(k, a) => Op::Lane(k, n(a)),
+            Op::Join(count, a, b) => Op::Join(count, n(a), n(b)),
         }
     }
 }

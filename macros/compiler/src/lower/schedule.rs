@@ -89,7 +89,7 @@ fn latency(op: &Op) -> u32 {
         * match op {
             Op::Call(..) => 0,
             Op::Neg(_) => 1,
-            Op::Lane(..) => 2,
+            Op::Lane(..) | Op::Join(..) => 2,
             Op::Add(..) | Op::Sub(..) => 3,
             Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => 4,
             Op::Sum(lanes, _) => 5 * halvings(*lanes),

@@ -42,8 +42,9 @@ pub struct Linearized<'g> {
 /// How the derivatives of inverse dynamics are found. The results are equal; what they cost is not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// By recursion, where every motion subspace is constant in link axes; else by differentiation.
-    Recursion,
+    /// By recursion, in up to so many lanes, where every motion subspace is constant in link axes; else by
+    /// differentiation.
+    Recursion(usize),
     /// By differentiation of the equations. It costs less where axes are parallel or meet, for a few degrees of freedom.
     Differentiation,
 }
@@ -56,8 +57,10 @@ pub fn inverse_dynamics<'g>(
     method: Method,
 ) -> ForceDerivatives<'g> {
     let v = velocities(model);
-    if method == Method::Recursion && is_analytic(model) {
-        let mut found = analytic::inverse_dynamics(model, joints, &v, a);
+    if let Method::Recursion(most) = method
+        && is_analytic(model)
+    {
+        let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
         symbolic::add_resistance(model, &mut found);
         return found;
     }

@@ -20,6 +20,7 @@ pub mod lagrange;
 pub mod ldl;
 pub mod massless;
 pub mod momentum;
+mod paths;
 pub mod power;
 pub mod reactions;
 pub mod regressor;

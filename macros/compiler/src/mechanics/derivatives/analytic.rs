@@ -12,6 +12,7 @@
 
 use super::super::crba::{Matrix, momentum};
 use super::super::kinematics::{Joint, time_derivative, twists, velocity_gradient};
+use super::super::paths::{Carried, Load, Paths, Walk, with_spatial, with_vector};
 use super::super::{Spatial, rnea};
 use super::ForceDerivatives;
 use super::columns::{Column, columns, motions, rate_columns};
@@ -19,19 +20,20 @@ use super::subtree::{Subtree, subtrees};
 use crate::expr::{Expr, Vec3};
 use crate::model::Model;
 
-/// Derivatives of `M a + h`, springs, dashpots and other loads left out.
+/// Derivatives of `M a + h`, springs, dashpots and other loads left out; in up to `most` lanes, one for none.
 pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
     a: &[Expr<'g>],
+    most: usize,
 ) -> ForceDerivatives<'g> {
     let motions = motions(model, joints, v, a);
     let columns: Vec<Vec<Column<'g>>> = joints.iter().zip(&motions).map(|(j, m)| columns(j, m)).collect();
     let twists: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::wrenches(model, joints, v, Some(a));
     let sums = subtrees(model, joints, &twists, &wrenches, 2.0);
-    entries(model, joints, &columns, &sums)
+    entries(model, joints, &columns, &sums, most)
 }
 
 /// A matrix with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew: half of the velocity map, and `Ṡ`.
@@ -41,7 +43,7 @@ pub fn coriolis_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g
         joints.iter().zip(&twists).map(|(j, t)| rate_columns(model, j, t)).collect();
     let still = vec![Spatial::zero(model); joints.len()];
     let sums = subtrees(model, joints, &twists, &still, 1.0);
-    let mut matrix = entries(model, joints, &columns, &sums).by_v;
+    let mut matrix = entries(model, joints, &columns, &sums, 1).by_v;
     add_inertances(model, &mut matrix);
     matrix
 }
@@ -59,37 +61,60 @@ fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
     }
 }
 
-/// All pairs of degrees of freedom on one path to the root.
+/// All pairs of degrees of freedom on one path to the root; up to `most` go there in lanes.
 fn entries<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     columns: &[Vec<Column<'g>>],
     sums: &[Subtree<'g>],
+    most: usize,
 ) -> ForceDerivatives<'g> {
     let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let mut out = ForceDerivatives { by_q: zero(), by_v: zero() };
-    for (link, sum) in sums.iter().enumerate() {
-        for own in &columns[link] {
-            let mut carried = Carried::new(own, sum);
-            for row in &columns[link] {
-                out.add(row, own, row.subspace.dot(&carried.by_q), row.subspace.dot(&carried.by_v));
+    let out = ForceDerivatives { by_q: zero(), by_v: zero() };
+    let paths = Paths::of(joints, most);
+    let mut entries = Entries { columns, all: columns.concat(), links: paths.links(), sums, out };
+    paths.carry(&mut entries);
+    entries.out
+}
+
+struct Entries<'a, 'g> {
+    /// Degrees of freedom, by link and all together.
+    columns: &'a [Vec<Column<'g>>],
+    all: Vec<Column<'g>>,
+    links: &'a [usize],
+    sums: &'a [Subtree<'g>],
+    out: ForceDerivatives<'g>,
+}
+
+impl<'g> Walk<'g> for Entries<'_, 'g> {
+    type Load = Changes<'g>;
+
+    fn start(&mut self, dof: usize) -> Changes<'g> {
+        let (own, link) = (&self.all[dof], self.links[dof]);
+        let mut changes = Changes::new(own, &self.sums[link]);
+        for row in &self.columns[link] {
+            self.out.add(row, own, row.subspace.dot(&changes.by_q), row.subspace.dot(&changes.by_v));
+        }
+        changes.by_q = changes.by_q.plus(&cross_force(&own.subspace, &self.sums[link].wrench));
+        changes
+    }
+
+    fn meet(&mut self, carried: &Carried<Changes<'g>>) {
+        for other in &self.columns[carried.link] {
+            let [above, below] = carried.load.meet(&other.map(&|e| carried.spread(e)));
+            let parts = |[by_q, by_v]: [Expr<'g>; 2]| carried.parts(by_q).zip(carried.parts(by_v));
+            for ((dof, by_q), (_, by_v)) in parts(above) {
+                self.out.add(other, &self.all[dof], by_q, by_v);
             }
-            carried.by_q = carried.by_q.plus(&cross_force(&own.subspace, &sum.wrench));
-            let mut at = link;
-            while let Some(parent) = joints[at].parent {
-                carried.move_to_parent(&joints[at]);
-                at = parent.0;
-                for other in &columns[at] {
-                    carried.meet(own, other, &mut out);
-                }
+            for ((dof, by_q), (_, by_v)) in parts(below) {
+                self.out.add(&self.all[dof], other, by_q, by_v);
             }
         }
     }
-    out
 }
 
 /// What one degree of freedom brings to its ancestors: wrenches about their origins in their axes.
-struct Carried<'g> {
+struct Changes<'g> {
     /// Change of the forces with its displacement.
     by_q: Spatial<'g>,
     /// Change of the forces with its rate.
@@ -100,9 +125,9 @@ struct Carried<'g> {
     moment: Vec3<'g>,
 }
 
-impl<'g> Carried<'g> {
-    fn new(column: &Column<'g>, sum: &Subtree<'g>) -> Carried<'g> {
-        Carried {
+impl<'g> Changes<'g> {
+    fn new(column: &Column<'g>, sum: &Subtree<'g>) -> Changes<'g> {
+        Changes {
             by_q: momentum(&sum.inertia, &column.second).plus(&sum.map(&column.first)),
             by_v: sum.map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
             momentum: momentum(&sum.inertia, &column.subspace),
@@ -110,20 +135,33 @@ impl<'g> Carried<'g> {
         }
     }
 
-    fn move_to_parent(&mut self, joint: &Joint<'g>) {
-        self.by_q = joint.wrench_to_parent(&self.by_q);
-        self.by_v = joint.wrench_to_parent(&self.by_v);
-        self.momentum = joint.wrench_to_parent(&self.momentum);
-        self.moment = joint.rotation.to_parent(self.moment);
-    }
-
-    /// The entries of the degree of freedom with one of an ancestor.
-    fn meet(&self, own: &Column<'g>, other: &Column<'g>, out: &mut ForceDerivatives<'g>) {
+    /// The derivatives of the force of a degree of freedom of an ancestor by `q` and `v` of this one, and the other way
+    /// round.
+    fn meet(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
         let s = &other.subspace;
-        out.add(other, own, s.dot(&self.by_q), s.dot(&self.by_v));
         let by_q = self.momentum.dot(&other.second) + self.moment.dot(other.first.angular);
         let by_v = self.momentum.dot(&other.rate) + self.moment.dot(s.angular);
-        out.add(own, other, by_q, by_v);
+        [[s.dot(&self.by_q), s.dot(&self.by_v)], [by_q, by_v]]
+    }
+}
+
+impl<'g> Load<'g> for Changes<'g> {
+    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        Changes {
+            by_q: with_spatial(&self.by_q, &other.by_q, f),
+            by_v: with_spatial(&self.by_v, &other.by_v, f),
+            momentum: with_spatial(&self.momentum, &other.momentum, f),
+            moment: with_vector(self.moment, other.moment, f),
+        }
+    }
+
+    fn moved(&self, joint: &Joint<'g>) -> Self {
+        Changes {
+            by_q: joint.wrench_to_parent(&self.by_q),
+            by_v: joint.wrench_to_parent(&self.by_v),
+            momentum: joint.wrench_to_parent(&self.momentum),
+            moment: joint.rotation.to_parent(self.moment),
+        }
     }
 }
 

@@ -101,6 +101,20 @@ pub struct Column<'g> {
     pub rate: Spatial<'g>,
 }
 
+impl<'g> Column<'g> {
+    /// It with a function applied to all expressions.
+    pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Column<'g> {
+        let each = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
+        Column {
+            subspace: each(&self.subspace),
+            first: each(&self.first),
+            second: each(&self.second),
+            rate: each(&self.rate),
+            ..*self
+        }
+    }
+}
+
 /// The columns of a link for the derivatives of inverse dynamics.
 pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
     let (above, single) = (&motion.parent, joint.dofs.len() == 1);
