@@ -47,6 +47,7 @@ fn functions<'g>(model: &Model<'g>) -> Vec<(&'static str, Vec<Expr<'g>>)> {
     let (mass, moment) = energy::mass_and_moment(model, joints);
     vec![
         ("mass matrix", crba::mass_matrix(model, joints).concat()),
+        ("mass matrix in lanes", crba::mass_matrix_in_lanes(model, joints, 4).concat()),
         ("bias", rnea::inverse_dynamics(model, joints, &v, None)),
         ("inverse dynamics", rnea::inverse_dynamics(model, joints, &v, Some(&a))),
         ("inputs", forces::generalized_forces(model, joints)),
@@ -217,7 +218,10 @@ fn check_limbs(model: &Model<'_>, seed: u64) {
         if form.anchored {
             continue;
         }
-        assert_near("mass matrix", seed, TOLERANCE, &eval(&in_lanes::mass_matrix(&limbs), &at), &mass);
+        for most in [1, 4, 8] {
+            let found = eval(&in_lanes::mass_matrix(&limbs, most), &at);
+            assert_near("mass matrix", seed, TOLERANCE, &found, &mass);
+        }
         let found = in_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
         assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
         // The same after lowering.

@@ -9,7 +9,7 @@
 //! [rolls out](Lanewise::roll_out) the motions of thousands, with the feature `rayon` on all processors.
 //!
 //! Each lane gives, bit for bit, what the function of a single state gives on the same machine; up to rounding where a
-//! single state has lanes of its own, one for each of several alike limbs.
+//! single state has lanes of its own, for alike limbs or for columns of a matrix.
 
 mod columns;
 mod error;

@@ -148,7 +148,7 @@ fn counts(input: &Input) -> Result<(), Failure> {
     for f in &output.functions {
         row(&f.name, [&f.program]);
         if let Some(program) = &f.program.in_lanes {
-            row("  with limbs as lanes", [&**program]);
+            row("  in lanes", [&**program]);
         }
     }
     let links = &output.links;

@@ -130,7 +130,7 @@ fn chooses() -> bool {
     return false;
 }
 
-/// Compares two mechanisms; `bits` says that lanes hold the bits of single states.
+/// Compares two mechanisms; `bits` says that lanes hold the bits of the dynamics of single states.
 fn compare<A, B, const NQ: usize, const NV: usize, const NU: usize>(a: &A, b: &B, bits: bool)
 where
     A: Mechanism<NQ, NV, NU, Scalar = f64> + Batch<NQ, NV, NU, Scalar = f64>,
@@ -167,7 +167,8 @@ where
             assert!(difference(&lane.0, &found.0) < 1e-13, "mass matrix in lanes");
             assert!(difference(&lane.1, &found.1) < 1e-12, "inverse dynamics in lanes");
             assert!(difference(&lane.2, &found.2) < 1e-9, "forward dynamics in lanes");
-            assert!(!bits || lane == found, "lanes hold the bits of single states");
+            let same = lane.1 == found.1 && lane.2 == found.2;
+            assert!(!bits || same, "lanes hold the bits of single states");
         }
     }
     // Rounding shows which instructions ran.

@@ -23,9 +23,6 @@ const MEDIUM: usize = 24;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
-/// Lanes in which changes are carried to the root together.
-const WIDE: [usize; 2] = [4, 8];
-
 /// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
 pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
@@ -45,6 +42,7 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         }
     }
     if derivatives::is_analytic(parts.model) {
+        parts.wide = passes.wide(model.nv());
         parts.take_apart(passes.lanes && stage == Stage::Whole);
     }
     let tau = forces::generalized_forces(model, &mechanics::joints(model));
@@ -130,7 +128,6 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Finds alike limbs, and what all limbs hang from.
     fn take_apart(&mut self, lanes: bool) {
-        self.wide = if lanes { &WIDE } else { &[] };
         let groups = if lanes { limbs::find(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::of(self.model, &self.joints, &groups);
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
@@ -159,7 +156,8 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn inverse_dynamics(&self) -> Program {
         let program = self.stage.program(&self.force_columns(self.method));
-        let wide = self.wide.iter().map(|most| done(&self.force_columns(Method::Recursion(*most))));
+        let wide =
+            self.wide.iter().map(|most| self.stage.program(&self.force_columns(Method::Recursion(*most))));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let a = lanes.limbs.symbols(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
@@ -173,12 +171,15 @@ impl<'a, 'g> Parts<'a, 'g> {
     fn forward_dynamics(&self) -> Program {
         let g = self.model.graph;
         let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
-        let outputs = |method: Method| {
-            let (model, joints) = (self.model, &self.joints);
-            all_columns(&derivatives::forward_dynamics(model, joints, &self.mass, &tau, method))
+        let program = |mass: &crba::Matrix<'g>, method: Method| {
+            let found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
+            self.stage.program(&all_columns(&found))
         };
-        let wide = self.wide.iter().map(|most| done(&outputs(Method::Recursion(*most))));
-        self.stage.program(&outputs(self.method)).or_in_lanes(wide)
+        let wide = self.wide.iter().map(|most| {
+            let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
+            program(&mass, Method::Recursion(*most))
+        });
+        program(&self.mass, self.method).or_in_lanes(wide)
     }
 
     /// The same with `M⁻¹` in parts.

@@ -105,6 +105,8 @@ struct Forms<'g> {
     stage: Stage,
     /// The forms with alike limbs as lanes, and whether they are anchored; none if there are no such limbs.
     limbs: Vec<(Limbs<'g>, bool)>,
+    /// In how many lanes columns are tried, beside none.
+    wide: &'static [usize],
 }
 
 impl<'g> Forms<'g> {
@@ -116,7 +118,13 @@ impl<'g> Forms<'g> {
             _ => Vec::new(),
         };
         let in_lanes = |form: &Form<'g>| Some((Limbs::of(&form.model, &joints, &groups)?, form.anchored));
-        Forms { limbs: all.iter().filter_map(in_lanes).collect(), all, joints, stage }
+        Forms {
+            wide: passes.wide(model.nv()),
+            limbs: all.iter().filter_map(in_lanes).collect(),
+            all,
+            joints,
+            stage,
+        }
     }
 
     /// Forms that serve all functions.
@@ -152,8 +160,15 @@ impl<'g> Forms<'g> {
         self.candidates(|model| crba::mass_matrix(model, &self.joints).concat())
     }
 
+    /// Those in which alike limbs, or columns, are lanes.
     fn mass_matrices_in_lanes(&self) -> Vec<Program> {
-        self.programs(self.plain_limbs().map(in_lanes::mass_matrix))
+        let mut all = self.programs(self.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, 1)));
+        for most in self.wide {
+            all.extend(self.programs(self.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, *most))));
+            let columns = |model: &Model<'g>| crba::mass_matrix_in_lanes(model, &self.joints, *most).concat();
+            all.extend(self.programs(self.plain().map(columns)));
+        }
+        all
     }
 
     /// Inverse dynamics, or the bias alone.

@@ -7,9 +7,9 @@ use crate::mechanics::{aba, crba, rnea};
 use crate::model::{Model, Quantity};
 use crate::passes::limbs::Limbs;
 
-/// The mass matrix, by rows.
-pub fn mass_matrix<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
-    limbs.scattered_matrix(&crba::mass_matrix(&limbs.model, &limbs.joints))
+/// The mass matrix, by rows; in up to `most` lanes.
+pub fn mass_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> Vec<Expr<'g>> {
+    limbs.scattered_matrix(&crba::mass_matrix_in_lanes(&limbs.model, &limbs.joints, most))
 }
 
 /// Inverse dynamics, or the bias alone.

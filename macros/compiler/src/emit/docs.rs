@@ -105,21 +105,24 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     }
 }
 
-/// Which functions evaluate alike limbs as the lanes of vectors, and which coordinates those are.
+/// Which functions evaluate limbs or joints as the lanes of vectors, and which coordinates those limbs have.
 fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let in_lanes: Vec<(&str, &Program)> = output
         .functions
         .iter()
         .filter_map(|f| Some((f.name.as_str(), f.program.in_lanes.as_deref()?)))
         .collect();
-    let Some((_, first)) = in_lanes.first() else { return };
+    let Some((_, most)) = in_lanes.iter().max_by_key(|(_, program)| program.gathers.len()) else { return };
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(
         text,
-        "\n# Limbs as lanes\n\nAlike limbs are evaluated side by side, as the lanes of vectors, by {}. Operations on all lanes count once. The coordinates that go together:\n",
+        "\n# Lanes\n\nAlike limbs, or joints of one path to the root, are evaluated side by side, as the lanes of vectors, by {}. Operations on all lanes count once.",
         names.join(", ")
     );
-    for gather in &first.gathers {
+    if !most.gathers.is_empty() {
+        text.push_str("The coordinates of limbs that go together:\n\n");
+    }
+    for gather in &most.gathers {
         let name = |s: &Symbol| match Quantity::of(*s) {
             Quantity::Configuration(k) => i.configuration.get(k).map(|name| format!("`{name}`")),
             _ => None,

@@ -30,7 +30,7 @@ pub fn write_methods(
     for f in functions.iter().filter(wanted) {
         let exact = match f.program.in_lanes {
             None => "bit for bit",
-            Some(_) => "up to rounding: for a single state the lanes are alike limbs",
+            Some(_) => "up to rounding: for a single state the lanes are limbs or joints",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let twin = Function {

@@ -77,21 +77,9 @@ impl Graph {
         if let (Some(a), Some(b)) = (self.expr(a).lane_values(n), self.expr(b).lane_values(n)) {
             return self.lane_constant([a, b].concat());
         }
-        if let (Some(a), Some(b)) = (self.lane_inputs(n, a), self.lane_inputs(n, b)) {
-            return self.lane_symbols(&[a, b].concat()).id();
-        }
         match (self.node(a), self.node(b)) {
             (Node::Neg(a), Node::Neg(b)) => self.neg(self.intern(Node::Join(n as u8, a, b))),
             _ => self.intern(Node::Join(n as u8, a, b)),
-        }
-    }
-
-    /// The inputs that a node has for its lanes, if it is made of them.
-    fn lane_inputs(&self, n: usize, id: Id) -> Option<Vec<Symbol>> {
-        match self.node(id) {
-            Node::Symbol(s) => Some(vec![s; n]),
-            Node::Gather(k) => Some(self.gather(k)),
-            _ => None,
         }
     }
 

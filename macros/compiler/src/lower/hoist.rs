@@ -29,6 +29,9 @@ pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> S
     for output in &mut program.outputs {
         *output = placed(*output);
     }
+    if let Some(program) = &mut program.in_lanes {
+        place_hoisted(program, place);
+    }
 }
 
 /// The name of a node as an operand.
@@ -63,7 +66,7 @@ pub(super) fn known_before(
     let mut before: Vec<bool> = Vec::with_capacity(nodes.len());
     for node in nodes {
         before.push(match node {
-            Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => false,
+            Node::Const(_) | Node::Tuple(_) | Node::Gather(_) | Node::Join(..) => false,
             Node::Symbol(s) => known(*s),
             _ => {
                 let mut all = true;

@@ -1,6 +1,7 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
-use super::kinematics::Joint;
+use super::kinematics::{Dof, Joint, map_spatial};
+use super::paths::{Carried, Paths, Walk};
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Vec3};
 use crate::model::{Inertia, Model};
@@ -10,42 +11,63 @@ pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
 /// `M(q)`, both triangles.
 pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
-    let g = model.graph;
-    let composites = composites(model, joints);
-    let mut m = vec![vec![g.zero(); model.nv()]; model.nv()];
-    for (k, joint) in joints.iter().enumerate() {
-        for (row, dof) in joint.dofs.iter().enumerate() {
-            let wrench = momentum(&composites[k], &dof.subspace);
-            add_column(model, joints, k, row, wrench, &mut m);
-        }
-    }
+    mass_matrix_in_lanes(model, joints, 1)
+}
+
+/// The same with up to `most` columns side by side in lanes.
+pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
+    let paths = Paths::of(joints, most);
+    let dofs =
+        joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
+    let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let mut columns = Columns { joints, dofs: dofs.collect(), composites: composites(model, joints), matrix };
+    paths.carry(&mut columns);
+    let mut m = columns.matrix;
     inertances::add_to_mass_matrix(model, &mut m);
     m
 }
 
-/// The entries of one degree of freedom with itself, the earlier ones of its joint, and all of its ancestors.
-fn add_column<'g>(
-    model: &Model<'g>,
-    joints: &[Joint<'g>],
-    link: usize,
-    row: usize,
-    mut wrench: Spatial<'g>,
-    m: &mut Matrix<'g>,
-) {
-    let own = &joints[link].dofs[row];
-    let mut at = link;
-    loop {
-        let dofs = if at == link { &joints[at].dofs[..=row] } else { &joints[at].dofs[..] };
-        for (k, other) in dofs.iter().enumerate() {
-            let entry = other.subspace.dot(&wrench) * model.graph.num(own.ratio * other.ratio);
-            m[own.index][other.index] += entry;
-            if !(at == link && k == row) {
-                m[other.index][own.index] += entry;
+/// The entries of each degree of freedom with itself, the earlier ones of its joint, and all of its ancestors.
+struct Columns<'a, 'g> {
+    joints: &'a [Joint<'g>],
+    /// Joint, and which of its degrees of freedom.
+    dofs: Vec<(usize, usize)>,
+    composites: Vec<Inertia<'g>>,
+    matrix: Matrix<'g>,
+}
+
+impl<'g> Columns<'_, 'g> {
+    fn add(&mut self, own: &Dof<'g>, other: &Dof<'g>, entry: Expr<'g>) {
+        let entry = entry * entry.num(own.ratio * other.ratio);
+        self.matrix[own.index][other.index] += entry;
+        if own.index != other.index || !std::ptr::eq(own, other) {
+            self.matrix[other.index][own.index] += entry;
+        }
+    }
+}
+
+impl<'g> Walk<'g> for Columns<'_, 'g> {
+    type Load = Spatial<'g>;
+
+    fn start(&mut self, dof: usize) -> Spatial<'g> {
+        let ((link, row), joints) = (self.dofs[dof], self.joints);
+        let own = &joints[link].dofs[row];
+        let wrench = momentum(&self.composites[link], &own.subspace);
+        for other in &joints[link].dofs[..=row] {
+            self.add(own, other, other.subspace.dot(&wrench));
+        }
+        wrench
+    }
+
+    fn meet(&mut self, carried: &Carried<Spatial<'g>>) {
+        let joints = self.joints;
+        for other in &joints[carried.link].dofs {
+            let subspace = map_spatial(&other.subspace, |c| carried.spread(c));
+            for (dof, entry) in carried.parts(subspace.dot(&carried.load)) {
+                let (link, row) = self.dofs[dof];
+                self.add(&joints[link].dofs[row], other, entry);
             }
         }
-        let Some(parent) = joints[at].parent else { return };
-        wrench = joints[at].wrench_to_parent(&wrench);
-        at = parent.0;
     }
 }
 

@@ -198,24 +198,26 @@ fn lanes(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
     }
 }
 
-/// Two wrenches or motions, component by component.
-pub fn with_spatial<'g>(
-    a: &Spatial<'g>,
-    b: &Spatial<'g>,
-    f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>,
-) -> Spatial<'g> {
-    Spatial { linear: with_vector(a.linear, b.linear, f), angular: with_vector(a.angular, b.angular, f) }
+impl<'g> Load<'g> for Spatial<'g> {
+    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        Spatial { linear: self.linear.with(&other.linear, f), angular: self.angular.with(&other.angular, f) }
+    }
+
+    fn moved(&self, joint: &Joint<'g>) -> Self {
+        joint.wrench_to_parent(self)
+    }
 }
 
-/// Two vectors, component by component.
-pub fn with_vector<'g>(
-    a: Vec3<'g>,
-    b: Vec3<'g>,
-    f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>,
-) -> Vec3<'g> {
-    let mut k = 0;
-    a.map(|x| {
-        k += 1;
-        f(x, b[k - 1])
-    })
+impl<'g> Load<'g> for Vec3<'g> {
+    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        let mut k = 0;
+        self.map(|x| {
+            k += 1;
+            f(x, other[k - 1])
+        })
+    }
+
+    fn moved(&self, joint: &Joint<'g>) -> Self {
+        joint.rotation.to_parent(*self)
+    }
 }

@@ -23,13 +23,25 @@ pub struct Passes {
     pub regroup: bool,
     /// What depends on parameters alone costs nothing: it is computed before.
     pub free_parameters: bool,
-    /// Alike limbs are evaluated as the lanes of one.
+    /// Alike limbs are evaluated as the lanes of one, and so are joints of one path to the root.
     pub lanes: bool,
 }
 
 impl Default for Passes {
     fn default() -> Passes {
         Passes { frames: true, regroup: true, free_parameters: false, lanes: true }
+    }
+}
+
+impl Passes {
+    /// In how many lanes joints of one path are tried, beside none, by the number of velocities.
+    pub fn wide(&self, nv: usize) -> &'static [usize] {
+        match nv {
+            _ if !self.lanes => &[],
+            0..4 => &[],
+            4..12 => &[4],
+            _ => &[4, 8],
+        }
     }
 }
 

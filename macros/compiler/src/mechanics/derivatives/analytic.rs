@@ -12,7 +12,7 @@
 
 use super::super::crba::{Matrix, momentum};
 use super::super::kinematics::{Joint, time_derivative, twists, velocity_gradient};
-use super::super::paths::{Carried, Load, Paths, Walk, with_spatial, with_vector};
+use super::super::paths::{Carried, Load, Paths, Walk};
 use super::super::{Spatial, rnea};
 use super::ForceDerivatives;
 use super::columns::{Column, columns, motions, rate_columns};
@@ -148,19 +148,19 @@ impl<'g> Changes<'g> {
 impl<'g> Load<'g> for Changes<'g> {
     fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Changes {
-            by_q: with_spatial(&self.by_q, &other.by_q, f),
-            by_v: with_spatial(&self.by_v, &other.by_v, f),
-            momentum: with_spatial(&self.momentum, &other.momentum, f),
-            moment: with_vector(self.moment, other.moment, f),
+            by_q: self.by_q.with(&other.by_q, f),
+            by_v: self.by_v.with(&other.by_v, f),
+            momentum: self.momentum.with(&other.momentum, f),
+            moment: self.moment.with(&other.moment, f),
         }
     }
 
     fn moved(&self, joint: &Joint<'g>) -> Self {
         Changes {
-            by_q: joint.wrench_to_parent(&self.by_q),
-            by_v: joint.wrench_to_parent(&self.by_v),
-            momentum: joint.wrench_to_parent(&self.momentum),
-            moment: joint.rotation.to_parent(self.moment),
+            by_q: self.by_q.moved(joint),
+            by_v: self.by_v.moved(joint),
+            momentum: self.momentum.moved(joint),
+            moment: self.moment.moved(joint),
         }
     }
 }
