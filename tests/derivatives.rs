@@ -30,13 +30,16 @@ const DERIVATION: f64 = 1e-10;
 
 macro_rules! robot {
     ($robot:ident, $test:ident, $name:literal, $($options:tt)*) => {
-        #[mechanism(urdf = $name, derivatives $($options)*)]
+        #[mechanism(urdf = $name, derivatives, packed $($options)*)]
         struct $robot;
 
         #[test]
         fn $test() {
             let name = $name.trim_start_matches("../models/urdf/").trim_end_matches(".urdf");
             let mut cases = 0;
+            type Square = SMatrix<f64, { $robot::NV }, { $robot::NV }>;
+            // Given again and again: what is always zero is not written.
+            let (mut forces, mut motion) = ([Square::zeros(); 2], [Square::zeros(); 3]);
             for (i, case) in Record::load(&format!("robots/{name}.json")).records("cases").iter().enumerate() {
                 if !case.has("Minv") {
                     continue;
@@ -47,12 +50,17 @@ macro_rules! robot {
                 let close = |what: &str, actual: &[f64], expected: &[f64]| {
                     assert_similar(&of(what), actual, expected, REFERENCE);
                 };
-                type Square = SMatrix<f64, { $robot::NV }, { $robot::NV }>;
                 let expected = |key: &str| -> Square { case.matrix(key) };
                 let (by_q, by_v) = $robot.inverse_dynamics_derivatives(q, v, a);
                 close("∂τ/∂q", by_q.as_slice(), expected("dtau_dq").as_slice());
                 close("∂τ/∂v", by_v.as_slice(), expected("dtau_dv").as_slice());
+                let [given_q, given_v] = &mut forces;
+                $robot.inverse_dynamics_derivatives_into(q, v, a, given_q, given_v);
+                assert!(forces == [by_q, by_v], "{}", of("∂τ into matrices"));
                 let (by_q, by_v, inverse) = $robot.forward_dynamics_derivatives(q, v, tau);
+                let [given_q, given_v, given] = &mut motion;
+                $robot.forward_dynamics_derivatives_into(q, v, tau, given_q, given_v, given);
+                assert!(motion == [by_q, by_v, inverse], "{}", of("∂v̇ into matrices"));
                 close("∂v̇/∂q", by_q.as_slice(), expected("dddq_dq").as_slice());
                 close("∂v̇/∂v", by_v.as_slice(), expected("dddq_dv").as_slice());
                 let expected: Square = case.symmetric("Minv");

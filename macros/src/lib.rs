@@ -20,7 +20,7 @@ use std::path::PathBuf;
 /// | `centroidal` | generates the centroidal momentum matrix and its bias too |
 /// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
 /// | `sensitivities` | generates the derivatives of the dynamics by the struct's parameters |
-/// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them |
+/// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them, as with `derivatives` those |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |

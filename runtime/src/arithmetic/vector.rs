@@ -51,9 +51,9 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         self.0
     }
 
-    /// One lane. Does not compile if there are fewer.
+    /// One lane. Does not compile if there are fewer. Takes a reference: without optimisation every copy needs stack.
     #[inline(always)]
-    pub fn lane<const K: usize>(self) -> T {
+    pub fn lane<const K: usize>(&self) -> T {
         const { assert!(K < N, "there are not so many lanes") };
         self.0.0[K]
     }
@@ -75,7 +75,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 
     /// The first `M` lanes. Does not compile if there are fewer.
     #[inline(always)]
-    pub fn first<const M: usize>(self) -> Vector<A, T, M> {
+    pub fn first<const M: usize>(&self) -> Vector<A, T, M> {
         Vector::from(self.0.first())
     }
 }
@@ -83,7 +83,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
     /// The sum of all lanes, in the order of [`Lanes::sum`].
     #[inline(always)]
-    pub fn sum(self) -> T {
+    pub fn sum(&self) -> T {
         self.0.sum()
     }
 }

@@ -23,8 +23,8 @@ const MEDIUM: usize = 24;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
-/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
-pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
+/// All of them, also with results going `into` given matrices if that is wanted, from the form of the model in which the derivatives of inverse dynamics cost least.
+pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage, into: bool) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
     if passes.frames && model.nv() <= SMALL {
         forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
@@ -74,6 +74,11 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
             f.structure.zeros.clone_from(&zeros);
         }
+    }
+    if into {
+        let variants: Vec<Function> =
+            functions.iter().filter_map(|f| signatures::into(f, model.nv())).collect();
+        functions.extend(variants);
     }
     if !model.constraints.is_empty() {
         let mut hidden = signatures::constrained_derivatives(&Sizes::of(model), model.constraints.len());

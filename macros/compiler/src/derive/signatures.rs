@@ -281,7 +281,7 @@ pub fn packed(sizes: &Sizes, entries: &[(usize, usize)]) -> Vec<Function> {
     );
     let mut into = sizes.function(
         "mass_matrix_into",
-        &[Q, Argument::Into(sizes.nv)],
+        &[Q, Argument::Into("m", sizes.nv)],
         Shape::Symmetric(sizes.nv),
         &["Puts the [`mass_matrix`](Self::mass_matrix) into `m`, `NV` by `NV`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too."],
     );
@@ -380,6 +380,36 @@ pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
             ],
         ),
     ]
+}
+
+/// The same function with its results going into matrices that are given; none if it has no such variant.
+pub fn into(f: &Function, nv: usize) -> Option<Function> {
+    const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
+    let (given, docs): (&[&'static str], &[&str]) = match f.name.as_str() {
+        "inverse_dynamics_derivatives" => (
+            &["by_q", "by_v"],
+            &[
+                "Puts [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) into `by_q` and `by_v`, `NV` by `NV` each.",
+                KEPT,
+            ],
+        ),
+        "forward_dynamics_derivatives" => (
+            &["by_q", "by_v", "inverse"],
+            &[
+                "Puts [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) into `by_q`, `by_v` and `inverse`, `NV` by `NV` each.",
+                KEPT,
+            ],
+        ),
+        "__accelerations_and_inverse" => (&["inverse"], &[]),
+        _ => return None,
+    };
+    let given = given.iter().map(|name| Argument::Into(name, nv));
+    Some(Function {
+        arguments: f.arguments.iter().copied().chain(given).collect(),
+        program: f.program.clone(),
+        structure: f.structure.clone(),
+        ..constant(&format!("{}_into", f.name), f.shape, docs)
+    })
 }
 
 /// What the derivatives of forward dynamics of a large mechanism need, hidden.

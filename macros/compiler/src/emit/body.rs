@@ -5,6 +5,7 @@ use super::angles::{Angles, Calls, WIDTH};
 use super::function::{Argument, Function, Shape, Signature};
 use super::matrices;
 use super::scalar::ScalarSpelling;
+use super::stores;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
 use crate::model::Quantity;
@@ -15,23 +16,25 @@ const BLOCK: usize = 200;
 /// Longest expression that is not bound.
 const LINE: usize = 72;
 
-/// A binding, or an output without a name.
-struct Statement {
+/// A binding, or statements without one.
+pub struct Statement {
     /// Values that the left side binds.
-    names: Vec<usize>,
-    /// Left side.
-    pattern: String,
+    pub names: Vec<usize>,
+    /// Left side; empty if nothing is bound.
+    pub pattern: String,
     /// Right side.
-    text: String,
+    pub text: String,
     /// Values that the right side names.
-    needs: Vec<usize>,
+    pub needs: Vec<usize>,
 }
 
 /// Text of a value that is not bound.
 #[derive(Clone, Default)]
-struct Piece {
-    text: String,
-    needs: Vec<usize>,
+pub struct Piece {
+    /// The expression.
+    pub text: String,
+    /// Values that it names.
+    pub needs: Vec<usize>,
     /// 1 for a sum, 2 for a product, 3 for what needs no parentheses.
     level: u8,
 }
@@ -82,9 +85,17 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     write_inputs(out, &early, s, &w);
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
     write_inputs(out, &late, s, &w);
-    write_statements(out, &w.statements[head..], &outputs);
+    let rest = w.statements.split_off(head);
     let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
-    write_result(out, f, &Outputs { pieces: &outputs, is_zero: &is_zero }, s);
+    let results = Outputs { pieces: &outputs, is_zero: &is_zero };
+    if !f.given().is_empty() {
+        let (statements, left) = stores::with_stores(f, rest, &results);
+        write_statements(out, &statements, &left);
+        out.push_str(&matrices::finish(f, s, &results));
+        return;
+    }
+    write_statements(out, &rest, &outputs);
+    write_result(out, f, &results, s);
 }
 
 impl Writer<'_> {
@@ -345,7 +356,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             Argument::U => (s.nu, false),
             Argument::Standard(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
-            Argument::Into(_) => continue,
+            Argument::Into(..) => continue,
         };
         if n == 0 {
             continue;
@@ -406,6 +417,10 @@ fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece
 }
 
 fn write_let(out: &mut String, statement: &Statement) {
+    if statement.pattern.is_empty() {
+        let _ = writeln!(out, "{}", statement.text);
+        return;
+    }
     let _ = writeln!(out, "let {} = {};", statement.pattern, statement.text);
 }
 
@@ -422,7 +437,7 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         Shape::Matrix(rows, columns) => {
             let _ = writeln!(out, "{}", outputs.matrix(0, rows, columns));
         }
-        Shape::Symmetric(n) => out.push_str(&matrices::symmetric(n, &f.structure.entries, outputs)),
+        Shape::Symmetric(_) => {}
         Shape::Inverse(_)
         | Shape::Pair(_)
         | Shape::Forward(_)
@@ -435,16 +450,12 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
 
 /// The outputs of a program as texts.
 pub struct Outputs<'a> {
-    pieces: &'a [Piece],
+    /// The expressions.
+    pub pieces: &'a [Piece],
     is_zero: &'a dyn Fn(usize) -> bool,
 }
 
 impl Outputs<'_> {
-    /// One of them.
-    pub fn text(&self, k: usize) -> &str {
-        self.pieces.get(k).map_or("", |p| p.text.as_str())
-    }
-
     /// An array of some of them.
     pub fn list(&self, range: std::ops::Range<usize>) -> String {
         let texts: Vec<&str> =

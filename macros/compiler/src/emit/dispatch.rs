@@ -58,13 +58,7 @@ impl Bodies {
         );
         let mut text = String::new();
         write_body(&mut text, f, s, true);
-        self.list.push(Body {
-            types,
-            names,
-            result: s.shape(f.shape),
-            in_lanes: s.scalar.is_in_lanes(),
-            text,
-        });
+        self.list.push(Body { types, names, result: f.result(s), in_lanes: s.scalar.is_in_lanes(), text });
     }
 
     /// Writes the bodies of the functions of a type of this name.

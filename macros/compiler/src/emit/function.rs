@@ -26,8 +26,8 @@ pub enum Argument {
     Given(&'static str, usize, usize),
     /// Parameters of mass properties, so many given numbers in a vector.
     Standard(usize),
-    /// The square matrix of so many rows that the result goes into.
-    Into(usize),
+    /// A square matrix of so many rows that a result goes into.
+    Into(&'static str, usize),
 }
 
 impl Argument {
@@ -40,9 +40,8 @@ impl Argument {
             Argument::A => "a",
             Argument::Tau => "tau",
             Argument::U => "u",
-            Argument::Given(name, ..) => name,
+            Argument::Given(name, ..) | Argument::Into(name, _) => name,
             Argument::Standard(_) => "standard",
-            Argument::Into(_) => "m",
         }
     }
 
@@ -93,7 +92,7 @@ pub enum Shape {
     CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
-    /// Nothing: the outputs go into a square matrix of so many rows, to both sides of the diagonal.
+    /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
     Symmetric(usize),
 }
 
@@ -132,6 +131,21 @@ pub struct Structure {
 }
 
 impl Function {
+    /// The names of the matrices that results go into.
+    pub fn given(&self) -> Vec<&'static str> {
+        let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+        self.arguments.iter().filter_map(given).collect()
+    }
+
+    /// The type of what is returned.
+    pub fn result(&self, s: &Signature<'_>) -> String {
+        match self.shape {
+            Shape::Accelerated(n) if !self.given().is_empty() => s.vector(n),
+            shape if self.given().is_empty() => s.shape(shape),
+            _ => "()".to_string(),
+        }
+    }
+
     /// A hidden function without arguments that does nothing yet.
     pub fn new(shape: Shape) -> Function {
         Function {
@@ -170,7 +184,7 @@ impl Signature<'_> {
             Argument::U => self.nu,
             Argument::Standard(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
-            Argument::Into(n) => return format!("&mut {}", self.shape(Shape::Square(n))),
+            Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
         };
         format!("&{}", self.vector(n))
     }
@@ -234,14 +248,14 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if !f.docs.is_empty() {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
-    let must_use = if matches!(f.shape, Shape::Symmetric(_)) { "" } else { "#[must_use]\n" };
+    let result = f.result(s);
+    let must_use = if result == "()" { "" } else { "#[must_use]\n" };
     let _ = writeln!(
         out,
-        "#[inline]\n{must_use}pub fn {}{}({}) -> {} {{",
+        "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",
         f.name,
         s.generics(),
         s.parameters(&f.arguments),
-        s.shape(f.shape)
     );
 }
 

@@ -2,7 +2,6 @@
 
 use super::body::Outputs;
 use super::function::{Function, Shape, Signature, Structure};
-use std::fmt::Write;
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -18,23 +17,27 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     }
 }
 
-/// Puts the outputs where they stand in the matrix `m` of so many rows, and to the other side of its diagonal; column by
-/// column, so that what stands together is stored together.
-pub fn symmetric(n: usize, entries: &[(usize, usize)], outputs: &Outputs<'_>) -> String {
-    let mut text = String::new();
-    let mut names = vec![None; n * n];
-    for (k, (i, j)) in entries.iter().enumerate() {
-        let _ = writeln!(text, "let entry{k} = {};", outputs.text(k));
-        for place in [j * n + i, i * n + j] {
-            names[place] = Some(k);
+/// What is left to do after the outputs are in their places.
+pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    match f.shape {
+        Shape::Forward(n) => format!(
+            "{}{}",
+            combined("*inverse", f, n, 2 * n * n, s, outputs),
+            solved(["*by_q", "*by_v"], "*inverse", n, s, &f.structure)
+        ),
+        Shape::CalledForward(n) => {
+            let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
+            format!(
+                "let a = self.__accelerations_and_inverse_into{lanes}({t}q, v, tau, &mut *inverse);
+                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut *by_q, &mut *by_v);\n{}",
+                solved(["*by_q", "*by_v"], "*inverse", n, s, &f.structure)
+            )
         }
-    }
-    for (place, name) in names.iter().enumerate() {
-        if let Some(k) = name {
-            let _ = writeln!(text, "m.data.0[{}][{}] = entry{k};", place / n, place % n);
+        Shape::Accelerated(n) => {
+            format!("{}{}\n", combined("*inverse", f, n, n, s, outputs), outputs.matrix(0, n, 1))
         }
+        _ => String::new(),
     }
-    text
 }
 
 /// The result from the outputs.

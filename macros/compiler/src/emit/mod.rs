@@ -16,6 +16,7 @@ mod matrices;
 mod prepared;
 mod reactions;
 mod scalar;
+mod stores;
 
 pub use constraints::Constraints;
 pub use function::{Argument, Function, Shape};
