@@ -49,19 +49,21 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
     }
 }
 
-/// The generated function that puts the mass matrix into one that keeps its zeros.
-pub struct Keeping<M, const NQ: usize, const NV: usize> {
+/// A generated function that puts its results into `K` matrices, which keep their zeros.
+pub struct Keeping<M, const NQ: usize, const NV: usize, const K: usize> {
     /// The mechanism.
     pub mechanism: M,
     /// What it is called on.
     pub states: Rc<Vec<State<NQ, NV>>>,
+    /// The function's name.
+    pub name: &'static str,
     /// The function.
-    pub call: fn(&M, &State<NQ, NV>, &mut SMatrix<f64, NV, NV>),
-    /// The matrix.
-    pub matrix: SMatrix<f64, NV, NV>,
+    pub call: fn(&M, &State<NQ, NV>, &mut [SMatrix<f64, NV, NV>; K]),
+    /// The matrices.
+    pub matrices: [SMatrix<f64, NV, NV>; K],
 }
 
-impl<M, const NQ: usize, const NV: usize> Contender for Keeping<M, NQ, NV> {
+impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for Keeping<M, NQ, NV, K> {
     fn owner(&self) -> Owner {
         Owner::Kept
     }
@@ -72,18 +74,18 @@ impl<M, const NQ: usize, const NV: usize> Contender for Keeping<M, NQ, NV> {
 
     fn pass(&mut self) {
         for state in self.states.iter() {
-            (self.call)(black_box(&self.mechanism), black_box(state), &mut self.matrix);
-            black_box(&self.matrix);
+            (self.call)(black_box(&self.mechanism), black_box(state), &mut self.matrices);
+            black_box(&self.matrices);
         }
     }
 
     fn result(&mut self, state: usize) -> Vec<f64> {
-        (self.call)(&self.mechanism, &self.states[state], &mut self.matrix);
-        self.matrix.flat()
+        (self.call)(&self.mechanism, &self.states[state], &mut self.matrices);
+        self.matrices.iter().flat_map(Flat::flat).collect()
     }
 
     fn bytes(&self) -> Option<u64> {
-        code::bytes::<M>(self.call as *const (), "mass_matrix_into")
+        code::bytes::<M>(self.call as *const (), self.name)
     }
 }
 

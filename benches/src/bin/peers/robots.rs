@@ -1,6 +1,6 @@
 //! The robots that are compared.
 
-use linkwork::nalgebra::SMatrix;
+use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::own::{Call, Flat, Keeping, Own};
@@ -72,18 +72,49 @@ macro_rules! derivatives {
     }};
 }
 
-/// The mass matrix into one that keeps its zeros, if they are a quarter of it.
+/// Functions whose results go into matrices that keep their zeros: the mass matrix if those are a quarter of it, and
+/// derivatives.
 macro_rules! kept {
     ($type:ty, $value:expr, Linkwork, $states:expr) => {{
         const N: usize = <$type>::NV;
-        let keeping = Keeping {
-            mechanism: $value,
-            states: $states.clone(),
-            call: |m: &$type, s, into| m.mass_matrix_into(&s.q, into),
-            matrix: SMatrix::<f64, N, N>::zeros(),
-        };
+        const ZERO: SMatrix<f64, N, N> = SMatrix::from_array_storage(ArrayStorage([[0.0; N]; N]));
+        macro_rules! keeping {
+            ($function:ident, $name:ident, $count:literal, $call:expr) => {
+                (
+                    Function::$function,
+                    Box::new(Keeping {
+                        mechanism: $value,
+                        states: $states.clone(),
+                        name: stringify!($name),
+                        call: $call,
+                        matrices: [ZERO; $count],
+                    }),
+                )
+            };
+        }
         let is_sparse = <$type>::MASS_MATRIX_ENTRIES.len() * 8 < 3 * N * (N + 1);
-        is_sparse.then(|| -> Generated { (Function::Mass, Box::new(keeping)) })
+        let mass = is_sparse.then(|| -> Generated {
+            keeping!(Mass, mass_matrix_into, 1, |m: &$type, s, [into]| m.mass_matrix_into(&s.q, into))
+        });
+        let derivatives: [Generated; 2] = [
+            keeping!(
+                InverseDerivatives,
+                inverse_dynamics_derivatives_into,
+                2,
+                |m: &$type, s, [by_q, by_v]| {
+                    m.inverse_dynamics_derivatives_into(&s.q, &s.v, &s.a, by_q, by_v)
+                }
+            ),
+            keeping!(
+                ForwardDerivatives,
+                forward_dynamics_derivatives_into,
+                3,
+                |m: &$type, s, [by_q, by_v, inverse]| {
+                    m.forward_dynamics_derivatives_into(&s.q, &s.v, &s.tau, by_q, by_v, inverse)
+                }
+            ),
+        ];
+        mass.into_iter().chain(derivatives)
     }};
 }
 

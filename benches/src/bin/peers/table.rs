@@ -75,8 +75,8 @@ fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) 
     let time =
         |m: Option<&Measured>| number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)));
     let ratio = |m: Option<&Measured>| number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
-    let title = if owner == Owner::Kept { "mass matrix, zeros kept" } else { function.title() };
-    let mut cells = vec![format!("{} ({})", robot.name, robot.nv), title.to_string()];
+    let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
+    let mut cells = vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.title())];
     cells.extend([own, best(Owner::Parameters), best(Owner::Prepared)].map(time));
     cells.extend(others.map(time));
     cells.extend(others.map(ratio));
