@@ -6,19 +6,19 @@
 use linkwork::prelude::*;
 
 /// The Panda of Franka Emika without its fingers: seven axes, all in a row.
-#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives)]
+#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives, packed)]
 pub struct Panda;
 
 /// Solo 12: a free body with four alike legs.
-#[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives)]
+#[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives, packed)]
 pub struct Solo12;
 
 /// A humanoid with 35 velocities.
-#[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, derivatives)]
+#[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, derivatives, packed)]
 pub struct Humanoid;
 
 /// A cart with a pole, with parameters: its functions are too small to choose their instructions.
-#[mechanism(gravity = -9.81 * y, derivatives)]
+#[mechanism(gravity = -9.81 * y, derivatives, packed)]
 pub struct CartPole {
     /// Mass of the cart.
     pub cart_mass: f64,
@@ -74,6 +74,21 @@ macro_rules! call {
     };
 }
 
+/// The same for a function whose results go into matrices.
+macro_rules! call_into {
+    ($type:ident, $function:ident($($argument:ident),+; $($matrix:ident),+)) => {
+        #[doc = concat!("`", stringify!($type), "::", stringify!($function), "`.")]
+        #[inline(never)]
+        pub fn $function(
+            mechanism: &$type,
+            $($argument: &vector!($type, $argument)),+,
+            $($matrix: &mut SMatrix<f64, { $type::NV }, { $type::NV }>),+
+        ) {
+            mechanism.$function($($argument),+, $($matrix),+);
+        }
+    };
+}
+
 /// The type of an argument.
 macro_rules! vector {
     ($type:ident, q) => {
@@ -101,6 +116,9 @@ macro_rules! functions {
             call!($type, kinetic_energy(q, v) -> f64);
             call!($type, inverse_dynamics_derivatives(q, v, a) -> (Matrix, Matrix));
             call!($type, forward_dynamics_derivatives(q, v, tau) -> (Matrix, Matrix, Matrix));
+            call_into!($type, mass_matrix_into(q; m));
+            call_into!($type, inverse_dynamics_derivatives_into(q, v, a; by_q, by_v));
+            call_into!($type, forward_dynamics_derivatives_into(q, v, tau; by_q, by_v, inverse));
         }
     };
 }
