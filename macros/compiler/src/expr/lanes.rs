@@ -218,6 +218,27 @@ mod tests {
     }
 
     #[test]
+    fn lanes_of_two_stand_side_by_side() {
+        let g = Graph::new();
+        let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_symbols(&s.map(Symbol)));
+        let s = g.symbol(Symbol(0));
+        assert_eq!(s.joined(1, s), s, "what has no lanes is the same in all");
+        assert_eq!(
+            g.lane_constants(&[1.0, 2.0]).joined(2, g.num(3.0)),
+            g.lane_constants(&[1.0, 2.0, 3.0, 3.0])
+        );
+        let both = x.square().joined(2, y.square());
+        assert_eq!((-x.square()).joined(2, -y.square()), -both);
+        assert_eq!(x.joined(2, y).lane(2), g.symbol(Symbol(2)));
+        let all = both * g.lane_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
+        let lanes: Vec<Expr<'_>> = (0..4).map(|k| all.lane(k)).chain([all.lane_sum(4)]).collect();
+        let value = |s: Symbol| f64::from(s.0) + 1.0;
+        let expected = [2.0, 9.0, 28.0, 65.0, 104.0];
+        assert_eq!(eval(&lanes, &value), expected);
+        assert_eq!(crate::lower::lower(&lanes).run(&value), expected);
+    }
+
+    #[test]
     fn evaluation_goes_lane_by_lane() {
         let g = Graph::new();
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
