@@ -1,7 +1,7 @@
 //! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
 
 use super::dispatch::Bodies;
-use super::function::{Argument, Function, Signature, write_function};
+use super::function::{Argument, Function, Shape, Signature, write_function};
 use super::item::{Interface, TRAIT_FUNCTIONS, needed, result_of};
 use super::manifold::write_manifold;
 use crate::model::Chart;
@@ -22,9 +22,10 @@ pub fn write_methods(
     }
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
-    let wanted = |f: &&Function| match f.name.as_str() {
-        "__constrained_dynamics" => !i.constraints.overdetermined,
-        "__accelerations_and_inverse" => true,
+    let wanted = |f: &&Function| match (f.name.as_str(), f.shape) {
+        ("__constrained_dynamics", _) => !i.constraints.overdetermined,
+        // What the derivatives of forward dynamics call.
+        (_, Shape::Accelerated(_)) => true,
         _ => !f.docs.is_empty() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
