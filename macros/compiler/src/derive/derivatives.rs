@@ -23,7 +23,8 @@ const MEDIUM: usize = 24;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
-/// All of them, also with results going `into` given matrices if that is wanted, from the form of the model in which the derivatives of inverse dynamics cost least.
+/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least; also those whose results
+/// go `into` given matrices, if that is wanted.
 pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage, into: bool) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
     if passes.frames && model.nv() <= SMALL {
@@ -197,20 +198,16 @@ impl<'a, 'g> Parts<'a, 'g> {
             [force_columns(forces), columns(&inverse), factors.concat()].concat()
         };
         let program = self.stage.program(&outputs(&forces, [inverse.columns(), inverse.factors()]));
-        program.or_in_lanes(
-            self.limbs
-                .iter()
-                .filter_map(|lanes| {
-                    let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-                    let a = in_lanes::accelerations(&lanes.limbs, &inverse);
-                    let parts = in_lanes::inverse(&lanes.limbs, &inverse);
-                    Some([1].iter().chain(self.wide).map(move |most| {
-                        let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                        done(&outputs(&forces, parts.clone()))
-                    }))
-                })
-                .flatten(),
-        )
+        let in_lanes = self.limbs.as_ref().and_then(|lanes| {
+            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+            let a = in_lanes::accelerations(&lanes.limbs, &inverse);
+            let parts = in_lanes::inverse(&lanes.limbs, &inverse);
+            Some([1].iter().chain(self.wide).map(move |most| {
+                let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
+                done(&outputs(&forces, parts.clone()))
+            }))
+        });
+        program.or_in_lanes(in_lanes.into_iter().flatten())
     }
 
     /// `M⁻¹`, in parts where there are some; on request after the accelerations.

@@ -19,22 +19,23 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
 
 /// What is left to do after the outputs are in their places.
 pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    match f.shape {
-        Shape::Forward(n) => format!(
+    let given: Vec<String> = f.given().iter().map(|name| format!("*{name}")).collect();
+    match (f.shape, given.as_slice()) {
+        (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}",
-            combined("*inverse", f, n, 2 * n * n, s, outputs),
-            solved(["*by_q", "*by_v"], "*inverse", n, s, &f.structure)
+            combined(inverse, f, n, 2 * n * n, s, outputs),
+            solved([by_q, by_v], inverse, n, s, &f.structure)
         ),
-        Shape::CalledForward(n) => {
+        (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
             format!(
-                "let a = self.__accelerations_and_inverse_into{lanes}({t}q, v, tau, &mut *inverse);
-                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut *by_q, &mut *by_v);\n{}",
-                solved(["*by_q", "*by_v"], "*inverse", n, s, &f.structure)
+                "let a = self.__accelerations_and_inverse_into{lanes}({t}q, v, tau, &mut {inverse});
+                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}",
+                solved([by_q, by_v], inverse, n, s, &f.structure)
             )
         }
-        Shape::Accelerated(n) => {
-            format!("{}{}\n", combined("*inverse", f, n, n, s, outputs), outputs.matrix(0, n, 1))
+        (Shape::Accelerated(n), [inverse]) => {
+            format!("{}{}\n", combined(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1))
         }
         _ => String::new(),
     }

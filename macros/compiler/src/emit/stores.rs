@@ -29,11 +29,7 @@ pub fn with_stores(
     statements: Vec<Statement>,
     outputs: &Outputs<'_>,
 ) -> (Vec<Statement>, Vec<Piece>) {
-    let mut places = places(f);
-    for (k, places) in places.iter_mut().enumerate() {
-        // To what there is of an inverse in parts the rest is added: zeros count.
-        places.retain(|place| place.matrix == "inverse" || !outputs.is_zero(k));
-    }
+    let places = places(f, outputs);
     let in_limbs = f.program.in_lanes.as_ref().is_some_and(|program| !program.gathers.is_empty());
     let all = match in_limbs && statements.len() <= TURNED {
         true => at_the_end(statements, &places, outputs),
@@ -45,11 +41,11 @@ pub fn with_stores(
     (all, left.map(|(_, (piece, _))| piece.clone()).collect())
 }
 
-/// Where each output goes.
-fn places(f: &Function) -> Vec<Vec<Place>> {
+/// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added.
+fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
     let given = f.given();
     let Some(&matrix) = given.first() else { return Vec::new() };
-    let (before, n) = match f.shape {
+    let (before, forces, n) = match f.shape {
         Shape::Symmetric(_) => {
             let both = |&(row, column): &(usize, usize)| {
                 let mut places =
@@ -59,15 +55,14 @@ fn places(f: &Function) -> Vec<Vec<Place>> {
             };
             return f.structure.entries.iter().map(both).collect();
         }
-        Shape::Accelerated(n) => (n, n),
-        Shape::Pair(n) | Shape::Forward(n) => (0, n),
+        Shape::Accelerated(n) => (n, 0, n),
+        Shape::Pair(n) | Shape::Forward(n) => (0, 2 * n * n, n),
         _ => return Vec::new(),
     };
-    let square = |matrix: &&'static str| {
-        let matrix = *matrix;
-        (0..n * n).map(move |k| vec![Place { matrix, column: k / n, row: k % n }])
-    };
-    (0..before).map(|_| Vec::new()).chain(given.iter().flat_map(square)).collect()
+    let square = |matrix: &'static str| (0..n * n).map(move |k| Place { matrix, column: k / n, row: k % n });
+    let all = given.into_iter().flat_map(square).enumerate();
+    let kept = all.map(|(k, place)| if k < forces && outputs.is_zero(k) { vec![] } else { vec![place] });
+    (0..before).map(|_| Vec::new()).chain(kept).collect()
 }
 
 /// Every result right after the last statement that it needs.

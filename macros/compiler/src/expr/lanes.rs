@@ -1,6 +1,6 @@
 //! Lanes: expressions with a value for each of several alike parts of a mechanism. All operations act lane by lane; what
-//! has no lanes has the same value in each. Lanes begin with constants and inputs that differ from lane to lane and end
-//! with a sum over the lanes or with one of them.
+//! has no lanes has the same value in each. Lanes begin with constants and inputs that differ from lane to lane, or with
+//! expressions that are put side by side, and end with a sum over the lanes or with one of them.
 
 use super::graph::ZERO;
 use super::node::{Id, Node, Symbol};

@@ -133,6 +133,15 @@ impl<'g> Rotation<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.apply_mat(x))
     }
 
+    /// It with a function applied to all expressions.
+    pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Rotation<'g> {
+        let step = |step: &Step<'g>| match *step {
+            Step::Matrix(m) => Step::Matrix(Mat3::from_fn(|i, j| f(m.0[i][j]))),
+            Step::Axis { axis, sin, cos } => Step::Axis { axis, sin: f(sin), cos: f(cos) },
+        };
+        Rotation { steps: self.steps.iter().map(step).collect(), graph: self.graph }
+    }
+
     /// Rotations as the lanes of one, given what makes one expression of those of the lanes. `None` if it cannot.
     pub fn side_by_side(
         lanes: &[&Rotation<'g>],

@@ -40,7 +40,7 @@ impl<'g> Columns<'_, 'g> {
     fn add(&mut self, own: &Dof<'g>, other: &Dof<'g>, entry: Expr<'g>) {
         let entry = entry * entry.num(own.ratio * other.ratio);
         self.matrix[own.index][other.index] += entry;
-        if own.index != other.index || !std::ptr::eq(own, other) {
+        if !std::ptr::eq(own, other) {
             self.matrix[other.index][own.index] += entry;
         }
     }

@@ -2,12 +2,12 @@
 //! the same joints once the last of them is passed: several at once, as the lanes of one.
 
 use super::kinematics::{Joint, Spatial};
-use crate::expr::{Expr, Rotation, Vec3};
+use crate::expr::{Expr, Vec3};
 
 /// What a degree of freedom carries to the root.
 pub trait Load<'g>: Sized {
     /// It with all expressions replaced by what is made of them and of those of another.
-    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
+    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
     /// About the parent's origin, in its axes.
     fn moved(&self, joint: &Joint<'g>) -> Self;
 }
@@ -30,8 +30,9 @@ pub struct Carried<L> {
     pub load: L,
     /// Whose they are; none where lanes are filled up.
     members: Vec<Option<usize>>,
-    /// How many limbs are side by side in each, and in the expressions of the link.
+    /// How many limbs are side by side in each.
     width: usize,
+    /// How many are in the expressions of the link.
     here: usize,
 }
 
@@ -164,10 +165,8 @@ impl<L> Carried<L> {
         if self.members.len() == 1 || self.here == 1 {
             return joint.clone();
         }
-        let mut each = |lanes: &[Expr<'g>]| lanes.first().map(|e| self.spread(*e));
-        let rotation = Rotation::side_by_side(&[&joint.rotation], &mut each);
         Joint {
-            rotation: rotation.unwrap_or_else(|| joint.rotation.clone()),
+            rotation: joint.rotation.map(&|e| self.spread(e)),
             translation: joint.translation.map(|c| self.spread(c)),
             ..joint.clone()
         }
@@ -179,7 +178,7 @@ impl<L> Carried<L> {
         L: Load<'g>,
     {
         let lanes = self.members.len() * self.width;
-        self.load.with(&other.load, &mut |a, b| a.joined(lanes, b))
+        self.load.with(&other.load, &|a, b| a.joined(lanes, b))
     }
 
     /// The members, each with what of an expression is its own.
@@ -199,7 +198,7 @@ fn lanes(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
 }
 
 impl<'g> Load<'g> for Spatial<'g> {
-    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Spatial { linear: self.linear.with(&other.linear, f), angular: self.angular.with(&other.angular, f) }
     }
 
@@ -209,12 +208,8 @@ impl<'g> Load<'g> for Spatial<'g> {
 }
 
 impl<'g> Load<'g> for Vec3<'g> {
-    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        let mut k = 0;
-        self.map(|x| {
-            k += 1;
-            f(x, other[k - 1])
-        })
+    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        Vec3(std::array::from_fn(|k| f(self[k], other[k])))
     }
 
     fn moved(&self, joint: &Joint<'g>) -> Self {

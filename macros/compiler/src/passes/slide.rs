@@ -11,6 +11,7 @@ use crate::model::{Inertia, Link, Model, Motion, Pose};
 /// Moves the frames, parents before their children.
 pub fn slide_frames(model: &mut Model<'_>) {
     let g = model.graph;
+    let mut all = vec![Pose::identity(g); model.links.len()];
     for k in 0..model.links.len() {
         let Some(shift) = best(model, k) else { continue };
         let step = Pose { translation: shift, ..Pose::identity(g) };
@@ -21,10 +22,9 @@ pub fn slide_frames(model: &mut Model<'_>) {
         for child in model.links.iter_mut().filter(|c| c.parent.is_some_and(|p| p.0 == k)) {
             child.placement = back.then(&child.placement);
         }
-        let mut all = vec![Pose::identity(g); model.links.len()];
         all[k] = back;
-        move_contents(model, &all);
     }
+    move_contents(model, &all);
 }
 
 /// The shift of link `k` that saves most, if one saves anything.

@@ -146,7 +146,7 @@ impl<'g> Changes<'g> {
 }
 
 impl<'g> Load<'g> for Changes<'g> {
-    fn with(&self, other: &Self, f: &mut dyn FnMut(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Changes {
             by_q: self.by_q.with(&other.by_q, f),
             by_v: self.by_v.with(&other.by_v, f),
