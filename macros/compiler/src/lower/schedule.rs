@@ -31,25 +31,43 @@ impl Program {
         self
     }
 
-    /// The instructions by their numbers, operands before operations. `None` where the order does not matter.
-    fn order(&self) -> Option<Vec<usize>> {
-        let n = self.instructions.len();
-        let mut users = vec![Vec::new(); n];
-        let mut missing = vec![0; n];
+    /// How long a call takes, roughly, in half cycles: instructions, and the cycles of the longest chain of them. Of the calls
+    /// of a loop only parts are computed side by side.
+    pub fn time(&self) -> usize {
+        let longest = self.rest(&self.users()).into_iter().max().unwrap_or(0) / CYCLE;
+        self.instructions.len() + longest as usize
+    }
+
+    /// By instruction: those that need its value, as often as they name it.
+    fn users(&self) -> Vec<Vec<usize>> {
+        let mut users = vec![Vec::new(); self.instructions.len()];
         for (k, op) in self.instructions.iter().enumerate() {
             op.operands(|o| {
                 if let Operand::Value(a) = o {
                     users[a].push(k);
-                    missing[k] += 1;
                 }
             });
         }
-        // From the beginning of an operation until the last of what hangs on it.
-        let mut rest = vec![0; n];
-        for k in (0..n).rev() {
+        users
+    }
+
+    /// From the beginning of every instruction until the last of what hangs on it, in thirds of a cycle.
+    fn rest(&self, users: &[Vec<usize>]) -> Vec<u32> {
+        let mut rest = vec![0; users.len()];
+        for k in (0..users.len()).rev() {
             let after = users[k].iter().map(|u| rest[*u]).max().unwrap_or(0);
             rest[k] = after + latency(&self.instructions[k]);
         }
+        rest
+    }
+
+    /// The instructions by their numbers, operands before operations. `None` where the order does not matter.
+    fn order(&self) -> Option<Vec<usize>> {
+        let n = self.instructions.len();
+        let users = self.users();
+        let mut missing = vec![0; n];
+        users.iter().flatten().for_each(|k| missing[*k] += 1);
+        let rest = self.rest(&users);
         let cycles = f64::from(*rest.iter().max()?) / f64::from(CYCLE);
         if n as f64 > BROADEST * cycles {
             return None;

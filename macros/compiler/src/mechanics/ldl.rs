@@ -25,15 +25,20 @@ pub struct Solution<'g> {
 pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
     let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
     let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
-    let mut second = None;
+    // By index: the rows that it is taken from, each with the multiple.
+    let mut factors: Vec<Vec<(usize, Expr<'g>)>> = vec![Vec::new(); r.len()];
+    let mut known = Vec::new().into_iter();
     for (step, &k) in order.iter().enumerate() {
         pivots[k] = m[k][k];
-        // Where pivots are asked for they are there to be divided by.
-        let first_of_two = first == 0 && second.is_none();
-        inverse[k] = second.take().unwrap_or_else(|| m[k][k].num(1.0) / m[k][k]);
-        if let Some(&i) = order.get(step + 1).filter(|_| first_of_two) {
-            second = second_inverse(m[k][k], m[k][i], m[i][i]);
-        }
+        inverse[k] = match known.next() {
+            Some(inverse) => inverse,
+            // Where pivots are asked for they are there to be divided by.
+            None if first > 0 => m[k][k].num(1.0) / m[k][k],
+            None => {
+                known = inverses(&m, &order[step..]).into_iter();
+                known.next().unwrap_or(m[k][k])
+            }
+        };
         let rest: Vec<usize> = order[step + 1..].iter().copied().filter(|&i| !m[k][i].is_zero()).collect();
         for &i in &rest {
             let factor = m[k][i] * inverse[k];
@@ -46,20 +51,44 @@ pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], fi
                 m[j][i] = reduced;
             }
             r[i] = r[i] - factor * r[k];
+            factors[k].push((i, factor));
         }
     }
-    for (step, &k) in order.iter().enumerate().rev() {
-        let mut sum = r[k];
-        for &i in order[step + 1..].iter().filter(|&&i| !m[k][i].is_zero()) {
-            sum -= m[k][i] * x[i];
-        }
-        x[k] = sum * inverse[k];
+    for &k in order.iter().rev() {
+        x[k] = factors[k].iter().rev().fold(r[k] * inverse[k], |sum, (i, factor)| sum - *factor * x[*i]);
     }
     Solution { x, pivots, taken }
 }
 
+/// The inverses of up to three pivots of a symmetric matrix, in the order in which they are eliminated.
+///
+/// A pivot is the ratio of two leading minors. With `d₁ = a`, `d₂ = a c − b²` and `d₃` the determinant of three rows,
+/// `1 / a`, `a / d₂` and `d₂ / d₃` do not wait for each other: of three divisions one after another the time of two is
+/// saved. That is done as long as each row meets those before it.
+pub fn inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
+    let entry = |i: usize, j: usize| m[order[i]][order[j]];
+    let Some(a) = order.first().map(|_| entry(0, 0)) else { return Vec::new() };
+    let mut found = vec![a.num(1.0) / a];
+    if order.len() < 2 {
+        return found;
+    }
+    let (b, c) = (entry(0, 1), entry(1, 1));
+    let Some(second) = second_inverse(a, b, c) else { return found };
+    found.push(second);
+    if order.len() < 3 {
+        return found;
+    }
+    let (d, e, f) = (entry(0, 2), entry(1, 2), entry(2, 2));
+    if !(d.is_zero() && e.is_zero()) {
+        let minor = a * c - b * b;
+        let determinant = f * minor - e * (a * e - b * d) - d * (c * d - b * e);
+        found.push(minor / determinant);
+    }
+    found
+}
+
 /// The inverse of the second pivot of a symmetric matrix `[a b; b c]`, `1 / (c − b² / a) = a / (a c − b²)`, which does not
-/// wait for the inverse of the first: of two divisions one after another the time of one is saved. `None` for `b = 0`.
+/// wait for the inverse of the first. `None` for `b = 0`.
 pub fn second_inverse<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<'g>> {
     (!b.is_zero()).then(|| a / (a * c - b * b))
 }

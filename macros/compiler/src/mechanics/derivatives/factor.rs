@@ -3,6 +3,7 @@
 
 use super::super::crba::Matrix;
 use super::super::kinematics::Joint;
+use super::super::ldl::inverses;
 use crate::expr::Expr;
 
 /// `M = Lᵀ D L`, `L` with a unit diagonal.
@@ -25,12 +26,13 @@ impl<'g> Factor<'g> {
     pub fn in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
         let mut rows = vec![Vec::new(); m.len()];
-        let mut inverse = Vec::new();
-        for k in 0..m.len() {
-            inverse.push(m[k][k].num(1.0));
-        }
+        let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
+        let mut known = Vec::new().into_iter();
         for (step, &k) in order.iter().enumerate() {
-            inverse[k] = inverse[k] / m[k][k];
+            inverse[k] = known.next().unwrap_or_else(|| {
+                known = inverses(&m, &order[step..]).into_iter();
+                known.next().unwrap_or(m[k][k])
+            });
             let rest: Vec<usize> =
                 order[step + 1..].iter().copied().filter(|&i| !m[k][i].is_zero()).collect();
             for &i in &rest {
