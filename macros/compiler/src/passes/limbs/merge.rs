@@ -65,12 +65,7 @@ impl<'g> Merge<'g> {
             }
         }
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
-            let column =
-                |k: usize| -> Vec<f64> { parts.iter().map(|p| if k == 0 { p.0 } else { p.1 }).collect() };
-            let (offsets, factors) =
-                (self.graph.lane_constants(&column(0)), self.graph.lane_constants(&column(1)));
-            let rests: Vec<Expr<'g>> = parts.iter().map(|(.., rest)| *rest).collect();
-            return Some(offsets + factors * self.lanes(&rests)?);
+            return self.affine(&parts);
         }
         let at = |id: Id| self.graph.expr(id);
         match lanes.first()?.node() {
@@ -91,50 +86,115 @@ impl<'g> Merge<'g> {
                 Some(self.lanes(&arguments?)?.call(f))
             }
             Node::Add(..) | Node::Sub(..) => {
-                let terms = |e: &Expr<'g>| match e.node() {
-                    Node::Add(a, b) => Some((at(a), at(b))),
-                    Node::Sub(a, b) => Some((at(a), -at(b))),
-                    _ => None,
-                };
-                let (a, b) = self.pair(lanes.iter().map(terms).collect::<Option<Vec<_>>>()?, true)?;
-                Some(a + b)
+                let (a, b) = paired(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?, true)?;
+                Some(self.lanes(&a)? + self.lanes(&b)?)
             }
             Node::Mul(..) => {
-                let factors = |e: &Expr<'g>| match e.node() {
-                    Node::Mul(a, b) => Some((at(a), at(b))),
-                    _ => None,
-                };
-                let (a, b) = self.pair(lanes.iter().map(factors).collect::<Option<Vec<_>>>()?, true)?;
-                Some(a * b)
+                let (a, b) = paired(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?, true)?;
+                Some(self.lanes(&a)? * self.lanes(&b)?)
             }
             Node::Div(..) => {
                 let parts = |e: &Expr<'g>| match e.node() {
                     Node::Div(a, b) => Some((at(a), at(b))),
                     _ => None,
                 };
-                let (a, b) = self.pair(lanes.iter().map(parts).collect::<Option<Vec<_>>>()?, false)?;
-                Some(a / b)
+                let (a, b) = paired(lanes.iter().map(parts).collect::<Option<Vec<_>>>()?, false)?;
+                Some(self.lanes(&a)? / self.lanes(&b)?)
             }
             _ => None,
         }
     }
 
-    /// First and second operands of all lanes, those of a commutative operation exchanged where that brings like to
-    /// like.
-    fn pair(
-        &mut self,
-        mut operands: Vec<(Expr<'g>, Expr<'g>)>,
-        commutative: bool,
-    ) -> Option<(Expr<'g>, Expr<'g>)> {
-        let (a, b) = *operands.first()?;
-        for (x, y) in operands.iter_mut().filter(|_| commutative) {
-            let straight = alike(a, *x, DEPTH) && alike(b, *y, DEPTH);
-            if !straight && alike(a, *y, DEPTH) && alike(b, *x, DEPTH) {
-                std::mem::swap(x, y);
+    /// Offsets, factors and rests as lanes.
+    fn affine(&mut self, parts: &[(f64, f64, Expr<'g>)]) -> Option<Expr<'g>> {
+        let offsets: Vec<f64> = parts.iter().map(|part| part.0).collect();
+        let factors: Vec<f64> = parts.iter().map(|part| part.1).collect();
+        let rests: Vec<Expr<'g>> = parts.iter().map(|part| part.2).collect();
+        let scaled = match factors.iter().all(|c| c.abs() == 1.0) {
+            true => self.signed(&rests, &factors)?,
+            false => self.graph.lane_constants(&factors) * self.lanes(&rests)?,
+        };
+        Some(self.graph.lane_constants(&offsets) + scaled)
+    }
+
+    /// Expressions with signs. Where these differ the constants of the expressions take them, if there are enough.
+    fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+        let (first, sign) = (*lanes.first()?, *signs.first()?);
+        if signs.iter().all(|s| *s == sign) {
+            let all = self.lanes(lanes)?;
+            return Some(if sign < 0.0 { -all } else { all });
+        }
+        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
+        if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
+            for (part, sign) in parts.iter_mut().zip(signs) {
+                (part.0, part.1) = (part.0 * sign, part.1 * sign);
+            }
+            return self.affine(&parts);
+        }
+        if absorbs(first, DEPTH) {
+            let all = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
+                lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>().and_then(|all| paired(all, true))
+            };
+            if let Some((a, b)) = all(terms) {
+                return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
+            }
+            if let Some((a, b)) = all(factors) {
+                return match absorbs(*a.first()?, DEPTH) {
+                    true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
+                    false => Some(self.lanes(&a)? * self.signed(&b, signs)?),
+                };
             }
         }
-        let (first, second): (Vec<_>, Vec<_>) = operands.into_iter().unzip();
-        Some((self.lanes(&first)?, self.lanes(&second)?))
+        Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
+    }
+}
+
+/// First and second operands of all lanes, those of a commutative operation exchanged where that brings like to like.
+#[expect(clippy::type_complexity, reason = "two lists")]
+fn paired<'g>(
+    mut operands: Vec<(Expr<'g>, Expr<'g>)>,
+    commutative: bool,
+) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+    let (a, b) = *operands.first()?;
+    for (x, y) in operands.iter_mut().filter(|_| commutative) {
+        let straight = alike(a, *x, DEPTH) && alike(b, *y, DEPTH);
+        if !straight && alike(a, *y, DEPTH) && alike(b, *x, DEPTH) {
+            std::mem::swap(x, y);
+        }
+    }
+    Some(operands.into_iter().unzip())
+}
+
+/// The terms of a sum or difference.
+fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+    let at = |id: Id| e.graph().expr(id);
+    match e.node() {
+        Node::Add(a, b) => Some((at(a), at(b))),
+        Node::Sub(a, b) => Some((at(a), -at(b))),
+        _ => None,
+    }
+}
+
+/// The factors of a product.
+fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+    let at = |id: Id| e.graph().expr(id);
+    match e.node() {
+        Node::Mul(a, b) => Some((at(a), at(b))),
+        _ => None,
+    }
+}
+
+/// True if another sign costs nothing: constants take it. Looks so deep.
+fn absorbs(e: Expr<'_>, depth: u8) -> bool {
+    let (offset, factor, rest) = affine(e);
+    if offset != 0.0 || factor.abs() != 1.0 || e.value().is_some() {
+        return true;
+    }
+    let Some(depth) = depth.checked_sub(1) else { return false };
+    match (terms(rest), factors(rest)) {
+        (Some((a, b)), _) => absorbs(a, depth) && absorbs(b, depth),
+        (_, Some((a, b))) => absorbs(a, depth) || absorbs(b, depth),
+        _ => false,
     }
 }
 
