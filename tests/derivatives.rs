@@ -206,7 +206,7 @@ fn operation_counts_in_lanes() {
         })
     };
     // Derivatives of inverse dynamics, and the inverse of the mass matrix.
-    let expected = [[(1377, 900), (789, 493)], [(6107, 4095), (6297, 3672)]];
+    let expected = [[(1303, 844), (814, 511)], [(6108, 4116), (6349, 3716)]];
     assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
 }
 
@@ -216,11 +216,11 @@ fn operation_counts() {
     let free = "base = free";
     for (robot, options, most) in [
         ("cartpole", "base = fixed", [24, 20]),
-        ("ur5", "base = fixed", [1200, 330]),
+        ("ur5", "base = fixed", [800, 260]),
         ("panda", fingers, [2800, 700]),
         ("panda", "mimic = independent", [3600, 970]),
-        ("kinova", "base = fixed", [3200, 730]),
-        ("solo12", free, [5100, 2450]),
+        ("kinova", "base = fixed", [3000, 730]),
+        ("solo12", free, [4800, 2460]),
         ("simple_humanoid", free, [17_500, 11_700]),
     ] {
         let found = operations(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, derivatives"));

@@ -12,7 +12,7 @@ use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::model::{Model, Quantity};
 use linkwork_compiler::passes::limbs::{Limbs, find};
-use linkwork_compiler::passes::{Passes, forms};
+use linkwork_compiler::passes::{Form, Passes, forms, in_common_axes};
 use linkwork_compiler::syntax::Requests;
 use linkwork_compiler::{compile_with, derive_with, in_lanes, read};
 use proptest::prelude::*;
@@ -26,10 +26,10 @@ use support::random::config;
 const TOLERANCE: f64 = 1e-10;
 
 const CHOICES: [Passes; 4] = [
-    Passes { frames: true, regroup: false, lanes: true, free_parameters: false },
-    Passes { frames: false, regroup: true, lanes: true, free_parameters: false },
-    Passes { frames: true, regroup: true, lanes: true, free_parameters: false },
-    Passes { frames: true, regroup: true, lanes: true, free_parameters: true },
+    Passes { frames: true, regroup: false, parallel: false, lanes: true, free_parameters: false },
+    Passes { frames: false, regroup: true, parallel: true, lanes: true, free_parameters: false },
+    Passes { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: false },
+    Passes { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: true },
 ];
 
 fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) {
@@ -40,9 +40,8 @@ fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) 
     }
 }
 
-/// All functions of a model as expressions.
-fn functions<'g>(model: &Model<'g>) -> Vec<(&'static str, Vec<Expr<'g>>)> {
-    let joints = &mechanics::joints(model);
+/// All functions of a model as expressions; those last that depend on the axes of links.
+fn functions<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, Vec<Expr<'g>>)> {
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let (mass, moment) = energy::mass_and_moment(model, joints);
     vec![
@@ -50,13 +49,13 @@ fn functions<'g>(model: &Model<'g>) -> Vec<(&'static str, Vec<Expr<'g>>)> {
         ("mass matrix in lanes", crba::mass_matrix_in_lanes(model, joints, 4).concat()),
         ("bias", rnea::inverse_dynamics(model, joints, &v, None)),
         ("inverse dynamics", rnea::inverse_dynamics(model, joints, &v, Some(&a))),
-        ("inputs", forces::generalized_forces(model, joints)),
         ("kinetic energy", vec![energy::kinetic_energy(model, joints, &v)]),
         ("potential energy", vec![energy::potential_energy(model, joints)]),
         ("mass and moment", [vec![mass], moment.0.to_vec()].concat()),
         ("generalized momentum", momentum::generalized_momentum(model, joints, &v)),
         ("momentum rate", momentum::momentum_rate(model, joints, &v)),
         ("momentum", frames::flat(&momentum::centroidal_momentum(model, joints, &v))),
+        ("inputs", forces::generalized_forces(model, joints)),
         ("frames", placements(model, joints)),
     ]
 }
@@ -78,34 +77,39 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     all
 }
 
-/// Every form of a model has its functions, and forward dynamics inverts inverse dynamics.
+/// Every form of a model has its functions, and forward dynamics inverts inverse dynamics. With common axes everything is so
+/// that does not name the axes of links.
 fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
-    let old: Vec<_> = functions(model).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
-    for passes in CHOICES {
-        for form in forms(model, passes) {
-            for ((name, new), (_, old)) in functions(&form.model).iter().zip(&old) {
-                assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
-            }
-            check_forward(&form.model, seed);
+    let joints = mechanics::joints(model);
+    let old: Vec<_> = functions(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
+    let check = |form: &Form<'_>, count: usize| {
+        for ((name, new), (_, old)) in functions(&form.model, &form.joints).iter().zip(&old[..count]) {
+            assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
+        check_forward(form, seed);
+    };
+    for passes in CHOICES {
+        let forms = forms(model, passes);
+        forms.iter().for_each(|form| check(form, old.len()));
+        in_common_axes(&forms).iter().for_each(|form| check(form, old.len() - 2));
     }
 }
 
-fn check_forward(model: &Model<'_>, seed: u64) {
+fn check_forward(form: &Form<'_>, seed: u64) {
+    let (model, joints) = (&form.model, &form.joints);
     let at = symbols(model, seed);
-    let joints = mechanics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
-    let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    let h = rnea::inverse_dynamics(model, &joints, &v, None);
+    let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
+    let h = rnea::inverse_dynamics(model, joints, &v, None);
     let r: Vec<Expr<'_>> = tau.iter().zip(&h).map(|(t, h)| *t - *h).collect();
     let expected = eval(&a, &at);
-    let mass = crba::mass_matrix(model, &joints);
-    let solved = eval(&ldl::solve(mass, r.clone(), &joints), &at);
+    let mass = crba::mass_matrix(model, joints);
+    let solved = eval(&ldl::solve(mass, r.clone(), joints), &at);
     assert_near("factorisation", seed, 10.0 * TOLERANCE, &solved, &expected);
-    let wrenches = rnea::wrenches(model, &joints, &v, None);
+    let wrenches = rnea::wrenches(model, joints, &v, None);
     for articulated in
-        [aba::accelerations(model, &joints, &r), aba::forward_dynamics(model, &joints, wrenches, &tau)]
+        [aba::accelerations(model, joints, &r), aba::forward_dynamics(model, joints, wrenches, &tau)]
     {
         let found = eval(&articulated.expect("no coordinate is coupled"), &at);
         assert_near("articulated bodies", seed, 10.0 * TOLERANCE, &found, &expected);
@@ -135,7 +139,8 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
     }
 }
 
-const OFF: Passes = Passes { frames: false, regroup: false, lanes: false, free_parameters: false };
+const OFF: Passes =
+    Passes { frames: false, regroup: false, parallel: false, lanes: false, free_parameters: false };
 
 /// Functions of numbers that were computed from the parameters before compute the same.
 fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
@@ -197,16 +202,16 @@ fn check_limbs(model: &Model<'_>, seed: u64) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
-    for form in CHOICES.into_iter().flat_map(|passes| forms(model, passes)) {
-        let joints = mechanics::joints(&form.model);
-        let groups = find(&form.model, &joints);
+    let all = CHOICES.into_iter().flat_map(|passes| forms(model, passes)).collect::<Vec<_>>();
+    for form in all.iter().chain(&in_common_axes(&all)) {
+        let groups = find(&form.model, &form.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
-        let Some(limbs) = Limbs::of(&form.model, &joints, &groups) else {
+        let Some(limbs) = Limbs::of(&form.model, &form.joints, &groups) else {
             // Of numbers lanes can be made always; expressions of parameters may be built differently.
             assert!(!model.parameters.is_empty(), "limbs become lanes");
             continue;
         };
-        assert!(limbs.joints.len() < joints.len());
+        assert!(limbs.joints.len() < form.joints.len());
         assert_near(
             "inverse dynamics",
             seed,
@@ -243,6 +248,33 @@ proptest! {
         with_model(&tree.source(), |_, model| check_forms(model, seed));
     }
 
+    /// Pins and sleeves, most of them parallel to the one before.
+    #[test]
+    fn parallel_joints_are_the_same_in_common_axes(
+        joints in prop::collection::vec((0..3_usize, 0..4_usize, any::<bool>(), -1.0..1.0_f64), 2..6),
+        seed in 0_u64..1000,
+    ) {
+        let mut fields = String::new();
+        let mut axis = "z";
+        for (k, (kind, turn, backwards, length)) in joints.iter().enumerate() {
+            axis = ["x", "y", axis, axis][*turn];
+            let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };
+            let sign = if *backwards { "-" } else { "" };
+            let (motion, joint) = match kind {
+                0 => ("along", "Sleeve"),
+                _ => ("about", "Pin"),
+            };
+            fields += &format!(
+                "#[body(mass = 1.5, com = [0.1, {length}, 0.2], inertia = cuboid(1.5, 0.3, 0.2, 0.1).rotated(x(0.4)))]
+                 b{k}: Body,
+                 #[joint({parent}.at([{length}, 0.3, 0.2]).rotated({axis}({length})) -> b{k}, {motion} = {sign}{axis})]
+                 j{k}: {joint},"
+            );
+        }
+        let item = format!("pub struct Arm {{ {fields} }}");
+        with_model(&("gravity = [1, 2, -9]".to_string(), item), |_, model| check_forms(model, seed));
+    }
+
     #[test]
     fn programs_are_the_same_functions(tree in trees(6), seed in 0_u64..1000) {
         let _ = seed;
@@ -254,6 +286,35 @@ proptest! {
             check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
         });
     }
+}
+
+/// Where the axes of pins are parallel nothing is turned between links; what is turned are constants. Axes that are not
+/// parallel are left alone.
+#[test]
+fn parallel_joints_share_their_axes() {
+    let arm = |axes: [&str; 3]| {
+        let [a, b, c] = axes;
+        let body = "#[body(mass = 1.5, com = [0.1, 0.2, 0.3], inertia = cuboid(1.5, 0.3, 0.2, 0.1))]";
+        format!(
+            "pub struct Arm {{ {body} a: Body, #[joint(ground -> a, about = {a})] first: Pin,
+             {body} b: Body, #[joint(a.at(0.4 * x) -> b, about = {b})] second: Pin,
+             {body} c: Body, #[joint(b.at(0.4 * x) -> c, about = {c})] third: Pin }}"
+        )
+    };
+    let shared = |axes| {
+        let mut turning = Vec::new();
+        with_model(&(String::new(), arm(axes)), |_, model| {
+            let form = in_common_axes(&forms(model, Passes::default())).into_iter().next();
+            let Some(form) = form else { return };
+            turning = form.joints.iter().map(|joint| joint.rotation.matrix().values().is_none()).collect();
+        });
+        turning
+    };
+    assert_eq!(shared(["z", "z", "z"]), [false, false, false]);
+    assert_eq!(shared(["z", "y", "-y"]), [true, false, false]);
+    // The third turns from the axes that the first two have in common.
+    assert_eq!(shared(["z", "z", "x"]), [false, false, true]);
+    assert_eq!(shared(["z", "y", "z"]), [false; 0]);
 }
 
 /// Arms of next to no length between axes, as exporters leave them, must not take large masses and lose digits; nor may

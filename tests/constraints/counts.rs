@@ -101,7 +101,7 @@ fn linkages_and_rolling_bodies() {
         ("slider_crank", 149),
         ("andrews_squeezer", 488),
         ("windows", 344),
-        ("bricard_linkage", 1329),
+        ("bricard_linkage", 1335),
         ("five_bar", 269),
         ("rolling_disk", 541),
         ("ball_in_bowl", 899),

@@ -131,8 +131,13 @@ impl Stage {
     }
 
     /// The program of the outputs that take the fewest operations of some that compute the same, and of equally many
-    /// the fewest instructions; with their number.
-    fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
+    /// the fewest instructions.
+    fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
+        self.cheapest_of(lists).1
+    }
+
+    /// The same with their number.
+    fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
         let all = promising(lists);
         let mut programs: Vec<(usize, Program)> =
             all.iter().map(|(k, list)| (*k, self.lowered(list))).collect();
@@ -145,7 +150,7 @@ impl Stage {
     /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
     /// numbers.
     fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
-        promising(lists).into_iter().map(|(k, list)| (k, self.program(&list))).collect()
+        promising(lists).iter().map(|(k, list)| (*k, self.program(list))).collect()
     }
 
     fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {

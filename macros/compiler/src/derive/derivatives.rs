@@ -11,7 +11,7 @@ use crate::mechanics::derivatives::{
 use crate::mechanics::{self, Joint, constraints, crba, forces, massless, rnea};
 use crate::model::{Chart, Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
-use crate::passes::{self, Passes};
+use crate::passes::{self, Form, Passes};
 
 /// Up to how many velocities all forms of the model are tried, and every function is written out.
 const SMALL: usize = 10;
@@ -34,14 +34,16 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage, into: b
     if model.nv() > SMALL {
         forms.truncate(1);
     }
-    let parts = forms.iter().map(|form| Parts::new(&form.model, stage));
-    let Some(mut parts) = parts.min_by_key(Parts::cost) else { return Vec::new() };
-    if model.nv() <= DIFFERENTIATE {
-        let other = Parts { method: Method::Differentiation, ..Parts::new(parts.model, stage) };
-        if other.cost() < parts.cost() {
-            parts = other;
-        }
+    if passes.parallel {
+        forms.extend(passes::in_common_axes(&forms));
     }
+    let mut parts: Vec<Parts<'_, '_>> = forms.iter().map(|form| Parts::new(form, stage)).collect();
+    if model.nv() <= DIFFERENTIATE {
+        parts.extend(
+            forms.iter().map(|form| Parts { method: Method::Differentiation, ..Parts::new(form, stage) }),
+        );
+    }
+    let Some(mut parts) = parts.into_iter().min_by_key(Parts::cost) else { return Vec::new() };
     if derivatives::is_analytic(parts.model) {
         parts.wide = passes.wide(model.nv());
         parts.take_apart(passes.lanes && stage == Stage::Whole);
@@ -117,12 +119,11 @@ struct InLanes<'g> {
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
-    fn new(model: &'a Model<'g>, stage: Stage) -> Parts<'a, 'g> {
-        let joints = mechanics::joints(model);
-        let mass = crba::mass_matrix(model, &joints);
+    fn new(form: &'a Form<'g>, stage: Stage) -> Parts<'a, 'g> {
+        let mass = crba::mass_matrix(&form.model, &form.joints);
         Parts {
-            model,
-            joints,
+            model: &form.model,
+            joints: form.joints.clone(),
             mass,
             method: Method::Recursion(1),
             stage,

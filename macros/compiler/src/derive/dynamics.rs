@@ -14,51 +14,61 @@ use crate::passes::{self, Form, Passes};
 /// Up to how many velocities both frames, and both algorithms of forward dynamics, are derived and compared.
 const COMPARE: usize = 18;
 
+/// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
+const SIMILAR: usize = 8;
+
 /// What dynamics is derived from.
 pub(super) struct Dynamics<'g> {
-    forms: Forms<'g>,
+    /// The model's forms with frames of each kind that may be good, the best first.
+    kinds: Vec<Forms<'g>>,
+    stage: Stage,
     mass_matrix: Program,
     inverse_dynamics: Program,
-    bias: Choice,
-}
-
-/// A program, and the forms it was derived from: one of all, and one of those with alike limbs as lanes if there are
-/// any.
-struct Choice {
-    program: Program,
-    form: usize,
-    limbs: Option<usize>,
+    bias: Program,
 }
 
 impl<'g> Dynamics<'g> {
-    /// The forms that the passes give; of a small mechanism, in the frames as they are or in the moved ones, whichever
-    /// cost less.
+    /// The forms that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
+    /// axes.
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
-        let mut all = vec![Forms::new(model, passes, stage)];
-        if passes.frames && model.nv() <= COMPARE {
-            all.push(Forms::new(model, Passes { frames: false, ..passes }, stage));
+        let sized = Sized::all(model, passes, stage);
+        let most = sized.iter().map(|kind| kind.size + kind.size / SIMILAR).min().unwrap_or(0);
+        let (mut masses, mut recursions, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
+        for kind in sized {
+            masses.extend(kind.masses);
+            recursions.extend(kind.recursions);
+            if kind.size <= most {
+                kinds.push((kind.size, kind.forms));
+            }
         }
-        let mass = Compared::of(&all, |forms| forms.mass_matrices().collect());
-        let inverse = Compared::of(&all, |forms| forms.recursions(true).collect());
-        let mass_matrix = mass.program.or_in_lanes(all[mass.best].mass_matrices_in_lanes());
-        let in_lanes = stage.programs(all[inverse.best].recursions_in_lanes(true));
-        let inverse_dynamics = inverse.program.or_in_lanes(in_lanes.into_iter().map(|(_, program)| program));
-        let best = (0..all.len()).min_by_key(|k| mass.sizes[*k] + inverse.sizes[*k]).unwrap_or(0);
-        let forms = all.swap_remove(best);
-        let bias = forms.bias();
-        Dynamics { forms, mass_matrix, inverse_dynamics, bias }
+        kinds.sort_by_key(|(size, _)| *size);
+        let mut kinds: Vec<Forms<'g>> = kinds.into_iter().map(|(_, forms)| forms).collect();
+        kinds.iter_mut().for_each(Forms::find_bias);
+        let wide = mass_matrices_in_lanes(&kinds, stage, passes.wide(model.nv()));
+        let side_by_side = in_lanes_of(stage, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
+        let biases = kinds.iter().map(|forms| &forms.bias.program);
+        let bias = biases.min_by_key(|p| (p.counts.total(), p.instructions.len())).cloned();
+        let biases_in_lanes = kinds.iter().filter_map(|forms| Some(forms.bias.in_lanes.as_ref()?.1.clone()));
+        Dynamics {
+            mass_matrix: stage.cheapest(masses.into_iter()).or_in_lanes(wide),
+            inverse_dynamics: stage.cheapest(recursions.into_iter()).or_in_lanes(side_by_side),
+            bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
+            kinds,
+            stage,
+        }
     }
 
     /// The program of a function; `None` if it is none of dynamics.
     pub(super) fn program(&self, name: &str) -> Option<Program> {
+        let forms = self.kinds.first()?;
         let expressions: fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>> = match name {
             "mass_matrix" => return Some(self.mass_matrix.clone()),
             "inverse_dynamics" => return Some(self.inverse_dynamics.clone()),
-            "bias_forces" => return Some(self.bias.program.clone()),
-            "forward_dynamics" => return Some(self.forms.forward_dynamics(&self.bias)),
-            "__constrained_dynamics" => return Some(self.forms.constrained_dynamics(&self.bias)),
-            "__constraint_correction" => return Some(self.forms.constraint_correction()),
-            "__slipping_response" => return Some(self.forms.slipping_response()),
+            "bias_forces" => return Some(self.bias.clone()),
+            "forward_dynamics" => return Some(self.forward_dynamics()),
+            "__constrained_dynamics" => return Some(forms.constrained_dynamics()),
+            "__constraint_correction" => return Some(forms.constraint_correction()),
+            "__slipping_response" => return Some(forms.slipping_response()),
             "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
             "potential_energy" => |m, j, _| vec![energy::potential_energy(m, j)],
             "generalized_momentum" => |m, j, v| momentum::generalized_momentum(m, j, v),
@@ -69,33 +79,89 @@ impl<'g> Dynamics<'g> {
             "centroidal_momentum_bias" => |m, j, v| frames::flat(&momentum::centroidal_bias(m, j, v)),
             _ => return None,
         };
-        let joints = &self.forms.joints;
-        Some(self.forms.smallest(|model| expressions(model, joints, &mechanics::velocities(model))))
+        Some(forms.smallest(|model| expressions(model, &forms.joints, &mechanics::velocities(model))))
+    }
+
+    /// Articulated bodies or factorisation, whichever takes less time: the chains of the first are longer.
+    fn forward_dynamics(&self) -> Program {
+        let articulated: Vec<Candidate<'g>> = self.kinds.iter().flat_map(Forms::articulated).collect();
+        let is_large = self.kinds.first().is_some_and(|forms| forms.nv() > COMPARE);
+        let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
+            true => Vec::new(),
+            false => self.kinds.iter().flat_map(Forms::factorised).collect(),
+        };
+        let is_larger = smallest(&factorised).is_none_or(|f| smallest(&articulated).is_some_and(|a| f > a));
+        let others = articulated.into_iter().filter(|_| is_larger);
+        let both = [self.stage.cheapest(factorised.into_iter()), self.stage.cheapest(others)];
+        let found = both.into_iter().filter(|program| !program.outputs.is_empty()).min_by_key(Program::time);
+        let in_lanes = in_lanes_of(self.stage, self.kinds.iter().flat_map(Forms::articulated_in_lanes));
+        found.unwrap_or_default().or_in_lanes(in_lanes)
     }
 }
 
-/// A function derived with frames of several kinds.
-struct Compared {
-    /// Of the smallest outputs with frames of each kind.
-    sizes: Vec<usize>,
-    /// The kind that the program is of.
-    best: usize,
-    program: Program,
+/// Forms with their mass matrices and inverse dynamics.
+struct Sized<'g> {
+    forms: Forms<'g>,
+    masses: Vec<Candidate<'g>>,
+    recursions: Vec<Candidate<'g>>,
+    /// Of the smallest of both together.
+    size: usize,
 }
 
-impl Compared {
-    fn of<'g>(all: &[Forms<'g>], outputs: impl Fn(&Forms<'g>) -> Vec<Candidate<'g>>) -> Compared {
-        let (mut sizes, mut kinds, mut lists) = (Vec::new(), Vec::new(), Vec::new());
-        for (kind, forms) in all.iter().enumerate() {
-            let own = outputs(forms);
-            sizes.push(own.iter().map(|list| list.size).min().unwrap_or(0));
-            kinds.extend(own.iter().map(|_| kind));
-            lists.extend(own);
+impl<'g> Sized<'g> {
+    /// Those with frames of every kind.
+    fn all(model: &Model<'g>, passes: Passes, stage: Stage) -> Vec<Sized<'g>> {
+        let mut kinds = vec![passes::forms(model, passes)];
+        if passes.frames && model.nv() <= COMPARE {
+            kinds.push(passes::forms(model, Passes { frames: false, ..passes }));
         }
-        let (k, program) =
-            all.first().map(|forms| forms.stage.cheapest(lists.into_iter())).unwrap_or_default();
-        Compared { sizes, best: kinds.get(k).copied().unwrap_or(0), program }
+        if passes.parallel {
+            let common: Vec<Vec<Form<'g>>> =
+                kinds.iter().map(|forms| passes::in_common_axes(forms)).collect();
+            kinds.extend(common.into_iter().filter(|forms| !forms.is_empty()));
+        }
+        kinds.into_iter().map(|forms| Sized::new(Forms::new(forms, passes, stage))).collect()
     }
+
+    fn new(forms: Forms<'g>) -> Sized<'g> {
+        let masses: Vec<Candidate<'g>> = forms.mass_matrices().collect();
+        let recursions: Vec<Candidate<'g>> = forms.recursions(true).collect();
+        let size = smallest(&masses).unwrap_or(0) + smallest(&recursions).unwrap_or(0);
+        Sized { forms, masses, recursions, size }
+    }
+}
+
+/// The size of the smallest outputs.
+fn smallest(all: &[Candidate<'_>]) -> Option<usize> {
+    all.iter().map(|list| list.size).min()
+}
+
+/// Mass matrices in which alike limbs, or columns, are lanes.
+fn mass_matrices_in_lanes<'g>(kinds: &[Forms<'g>], stage: Stage, wide: &[usize]) -> Vec<Program> {
+    let limbs = |most| {
+        let of = move |forms: &Forms<'g>| {
+            forms.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
+        };
+        in_lanes_of(stage, kinds.iter().flat_map(of))
+    };
+    let columns = |most| {
+        let of = move |forms: &Forms<'g>| {
+            let all = forms.plain();
+            all.map(|m| crba::mass_matrix_in_lanes(m, &forms.joints, most).concat()).collect::<Vec<_>>()
+        };
+        in_lanes_of(stage, kinds.iter().flat_map(of))
+    };
+    [1].iter()
+        .chain(wide)
+        .flat_map(|most| limbs(*most))
+        .chain(wide.iter().flat_map(|most| columns(*most)))
+        .collect()
+}
+
+/// The programs of outputs in lanes that may be the cheapest.
+fn in_lanes_of<'g>(stage: Stage, lists: impl Iterator<Item = Vec<Expr<'g>>>) -> Vec<Program> {
+    let programs = stage.programs(lists.map(|list| stage.sized(list)));
+    programs.into_iter().map(|(_, program)| program).collect()
 }
 
 /// Forms of a model with the same frames.
@@ -105,26 +171,40 @@ struct Forms<'g> {
     stage: Stage,
     /// The forms with alike limbs as lanes, and whether they are anchored; none if there are no such limbs.
     limbs: Vec<(Limbs<'g>, bool)>,
-    /// In how many lanes columns are tried, beside none.
-    wide: &'static [usize],
+    bias: Bias,
+}
+
+/// `h`, and the form in which it is cheapest: all forms need the same forces, so that each part of a function can be taken
+/// from the form where it is.
+#[derive(Default)]
+struct Bias {
+    program: Program,
+    form: usize,
+    /// The same with alike limbs as lanes.
+    in_lanes: Option<(usize, Program)>,
 }
 
 impl<'g> Forms<'g> {
-    fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Forms<'g> {
-        let all = passes::forms(model, passes);
-        let joints = all.first().map_or(Vec::new(), |form| mechanics::joints(&form.model));
+    fn new(all: Vec<Form<'g>>, passes: Passes, stage: Stage) -> Forms<'g> {
+        let joints = all.first().map_or(Vec::new(), |form| form.joints.clone());
         let groups = match all.first() {
             Some(form) if passes.lanes && stage == Stage::Whole => limbs::find(&form.model, &joints),
             _ => Vec::new(),
         };
         let in_lanes = |form: &Form<'g>| Some((Limbs::of(&form.model, &joints, &groups)?, form.anchored));
-        Forms {
-            wide: passes.wide(model.nv()),
-            limbs: all.iter().filter_map(in_lanes).collect(),
-            all,
-            joints,
-            stage,
-        }
+        let limbs = all.iter().filter_map(in_lanes).collect();
+        Forms { all, joints, stage, limbs, bias: Bias::default() }
+    }
+
+    fn find_bias(&mut self) {
+        let (form, program) = self.stage.cheapest_of(self.recursions(false));
+        let in_lanes = self.recursions_in_lanes(false).map(|list| self.stage.sized(list));
+        let in_lanes = self.stage.programs(in_lanes).into_iter().min_by_key(|(_, program)| program.cost());
+        self.bias = Bias { program, form, in_lanes };
+    }
+
+    fn nv(&self) -> usize {
+        self.all.first().map_or(0, |form| form.model.nv())
     }
 
     /// Forms that serve all functions.
@@ -147,7 +227,7 @@ impl<'g> Forms<'g> {
 
     /// The program of the form in which a function of any kind takes the fewest operations.
     fn cheapest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        self.stage.cheapest(self.candidates(outputs)).1
+        self.stage.cheapest(self.candidates(outputs))
     }
 
     /// The program of the form in which its outputs are the smallest, which is found quicker.
@@ -160,17 +240,6 @@ impl<'g> Forms<'g> {
         self.candidates(|model| crba::mass_matrix(model, &self.joints).concat())
     }
 
-    /// Those in which alike limbs, or columns, are lanes.
-    fn mass_matrices_in_lanes(&self) -> Vec<Program> {
-        let mut all = self.programs(self.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, 1)));
-        for most in self.wide {
-            all.extend(self.programs(self.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, *most))));
-            let columns = |model: &Model<'g>| crba::mass_matrix_in_lanes(model, &self.joints, *most).concat();
-            all.extend(self.programs(self.plain().map(columns)));
-        }
-        all
-    }
-
     /// Inverse dynamics, or the bias alone.
     fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         self.all.iter().map(move |form| {
@@ -180,72 +249,60 @@ impl<'g> Forms<'g> {
         })
     }
 
-    fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
-        let all = self.limbs.iter().map(move |(limbs, _)| in_lanes::inverse_dynamics(limbs, accelerations));
-        all.map(|list| self.stage.sized(list))
+    fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Vec<Expr<'g>>> {
+        self.limbs.iter().map(move |(limbs, _)| in_lanes::inverse_dynamics(limbs, accelerations))
     }
 
-    fn programs(&self, lists: impl Iterator<Item = Vec<Expr<'g>>>) -> Vec<Program> {
-        let programs = self.stage.programs(lists.map(|list| self.stage.sized(list)));
-        programs.into_iter().map(|(_, program)| program).collect()
-    }
-
-    fn bias(&self) -> Choice {
-        let (form, program) = self.stage.cheapest(self.recursions(false));
-        let in_lanes = self.stage.programs(self.recursions_in_lanes(false));
-        let in_lanes = in_lanes.into_iter().min_by_key(|(_, program)| program.cost());
-        let limbs = in_lanes.as_ref().map(|(k, _)| *k);
-        Choice { program: program.or_in_lanes(in_lanes.map(|(_, program)| program)), form, limbs }
-    }
-
-    /// Forward dynamics, also with alike limbs as lanes.
-    fn forward_dynamics(&self, bias: &Choice) -> Program {
-        let program = self.forward_dynamics_alone(bias);
-        let Some((bias, _)) = bias.limbs.and_then(|k| self.limbs.get(k)) else { return program };
-        let all = self.plain_limbs().filter_map(|limbs| in_lanes::forward_dynamics(limbs, bias));
-        program.or_in_lanes(self.programs(all))
-    }
-
-    /// The cheaper of articulated bodies and factorisation. Of two that are about equal the factorisation is taken: its
-    /// divisions wait less for each other.
-    fn forward_dynamics_alone(&self, bias: &Choice) -> Program {
-        // All forms need the same forces, so that each part can be taken from the form where it is cheapest.
-        let Some(bias) = self.all.get(bias.form).map(|form| &form.model) else { return Program::default() };
+    /// Forward dynamics by articulated bodies.
+    fn articulated(&self) -> Vec<Candidate<'g>> {
+        let Some(bias) = self.all.get(self.bias.form).map(|form| &form.model) else { return Vec::new() };
         let v = mechanics::velocities(bias);
-        let tau: Vec<Expr<'g>> = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph)).collect();
         let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
-        let articulated = self
-            .plain()
-            .filter_map(|model| aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau));
-        let articulated: Vec<Candidate<'g>> = articulated.map(|list| self.stage.sized(list)).collect();
-        if !articulated.is_empty() && bias.nv() > COMPARE {
-            return self.stage.cheapest(articulated.into_iter()).1;
-        }
-        let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
-        let r: Vec<Expr<'g>> = tau.iter().zip(h).map(|(tau, h)| *tau - h).collect();
-        let factorised = self
-            .candidates(|model| ldl::solve(crba::mass_matrix(model, &self.joints), r.clone(), &self.joints));
-        let factorised: Vec<Candidate<'g>> = factorised.collect();
-        let size = |all: &[Candidate<'g>]| all.iter().map(|list| list.size).min();
-        let is_shorter =
-            size(&articulated).is_some_and(|a| size(&factorised).is_none_or(|f| f * 20 > a * 21));
-        self.stage.cheapest(if is_shorter { articulated } else { factorised }.into_iter()).1
+        let tau = efforts(bias);
+        let all = self.plain().filter_map(|model| {
+            let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
+            Some(self.stage.sized(list))
+        });
+        all.collect()
     }
+
+    /// The same with alike limbs as lanes.
+    fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
+        let bias = self.bias.in_lanes.as_ref().and_then(|(k, _)| self.limbs.get(*k));
+        let Some((bias, _)) = bias else { return Vec::new() };
+        self.plain_limbs().filter_map(|limbs| in_lanes::forward_dynamics(limbs, bias)).collect()
+    }
+
+    /// Forward dynamics by factorisation of the mass matrix.
+    fn factorised(&self) -> Vec<Candidate<'g>> {
+        let r = self.unbalanced();
+        let solve =
+            |model: &Model<'g>| ldl::solve(crba::mass_matrix(model, &self.joints), r.clone(), &self.joints);
+        self.candidates(solve).collect()
+    }
+
+    /// `τ − h`.
+    fn unbalanced(&self) -> Vec<Expr<'g>> {
+        let Some(bias) = self.all.get(self.bias.form).map(|form| &form.model) else { return Vec::new() };
+        let h = rnea::inverse_dynamics(bias, &self.joints, &mechanics::velocities(bias), None);
+        efforts(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
+    }
+}
+
+/// `τ`.
+fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
 }
 
 impl<'g> Forms<'g> {
     /// Accelerations and multipliers under the forces `tau`.
-    fn constrained_dynamics(&self, bias: &Choice) -> Program {
-        let Some(bias) = self.all.get(bias.form).map(|form| &form.model) else { return Program::default() };
-        let v = mechanics::velocities(bias);
-        let h = rnea::inverse_dynamics(bias, &self.joints, &v, None);
-        let tau = (0..bias.nv()).map(|k| Quantity::Force(k).expr(bias.graph));
-        let force: Vec<Expr<'g>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
-        let biases = constraints::biases(bias);
-        if !friction::slipping(bias).is_empty() {
+    fn constrained_dynamics(&self) -> Program {
+        let Some(form) = self.all.first() else { return Program::default() };
+        let (force, biases) = (self.unbalanced(), constraints::biases(&form.model));
+        if !friction::slipping(&form.model).is_empty() {
             return self.slipping(&force, &biases);
         }
-        let Some(pivots) = &bias.dependent else { return self.multipliers(&force, &biases) };
+        let Some(pivots) = &form.model.dependent else { return self.multipliers(&force, &biases) };
         self.cheapest(|model| {
             let mass = crba::mass_matrix(model, &self.joints);
             constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)

@@ -2,16 +2,19 @@
 //! Every pass is exact up to rounding and can be switched off.
 
 use crate::model::Model;
+use crate::model::kinematics::{Joint, joints};
 
 mod candidates;
 mod cost;
 mod frames;
 pub mod limbs;
 mod number;
+mod parallel;
 mod regroup;
 mod slide;
 
 pub use frames::place_frames;
+pub use parallel::in_common_axes;
 pub use regroup::{Gauge, Regroup, regroup};
 
 /// Which passes are run.
@@ -23,13 +26,15 @@ pub struct Passes {
     pub regroup: bool,
     /// What depends on parameters alone costs nothing: it is computed before.
     pub free_parameters: bool,
+    /// Links that turn about parallel axes are described in common axes, where that costs less.
+    pub parallel: bool,
     /// Alike limbs are evaluated as the lanes of one, and so are joints of one path to the root.
     pub lanes: bool,
 }
 
 impl Default for Passes {
     fn default() -> Passes {
-        Passes { frames: true, regroup: true, free_parameters: false, lanes: true }
+        Passes { frames: true, regroup: true, free_parameters: false, parallel: true, lanes: true }
     }
 }
 
@@ -48,8 +53,10 @@ impl Passes {
 /// A model that has the same functions as another.
 #[derive(Clone)]
 pub struct Form<'g> {
-    /// The model.
+    /// The model. Its mass properties are seen from the axes of its joints.
     pub model: Model<'g>,
+    /// The model's joints.
+    pub joints: Vec<Joint<'g>>,
     /// Masses were moved to children too: that is good for inverse dynamics alone.
     pub anchored: bool,
 }
@@ -65,8 +72,9 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
         slide::slide_frames(&mut start);
         place_frames(&mut start, passes.free_parameters);
     }
+    let joints = joints(&start);
     if !passes.regroup {
-        return vec![Form { model: start, anchored: false }];
+        return vec![Form { model: start, joints, anchored: false }];
     }
     let mut forms: Vec<Form<'g>> = Vec::new();
     let small = model.nv() <= SMALL;
@@ -76,10 +84,10 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
         }
         let mut model = start.clone();
         regroup(&mut model, Regroup { gauge, anchors, symbolic });
-        add(&mut forms, Form { model, anchored: anchors });
+        add(&mut forms, Form { model, joints: joints.clone(), anchored: anchors });
     }
     if !passes.frames {
-        add(&mut forms, Form { model: model.clone(), anchored: false });
+        add(&mut forms, Form { model: model.clone(), joints, anchored: false });
     }
     forms
 }
