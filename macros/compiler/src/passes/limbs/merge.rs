@@ -150,7 +150,6 @@ impl<'g> Merge<'g> {
 }
 
 /// First and second operands of all lanes, those of a commutative operation exchanged where that brings like to like.
-#[expect(clippy::type_complexity, reason = "two lists")]
 fn paired<'g>(
     mut operands: Vec<(Expr<'g>, Expr<'g>)>,
     commutative: bool,
