@@ -227,7 +227,7 @@ fn functions<'g>(
         }
     }
     for f in &mut functions {
-        f.program = std::mem::take(&mut f.program).with_shared_sums().scheduled();
+        f.program = std::mem::take(&mut f.program).with_shared_sums().with_late_terms_last().scheduled();
     }
     functions
 }

@@ -6,16 +6,20 @@ impl Program {
     /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
     /// and as product and sum elsewhere.
     pub fn fused(self) -> Program {
+        self.chained().with_fused_products()
+    }
+
+    /// The same without another order of sums.
+    pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
-        let mut program = self.chained();
-        for k in 0..program.instructions.len() {
-            if let Some(op) = program.fuse(k) {
-                program.instructions[k] = op;
+        for k in 0..self.instructions.len() {
+            if let Some(op) = self.fuse(k) {
+                self.instructions[k] = op;
             }
         }
-        program.sweep();
-        program.counts = counts;
-        program
+        self.sweep();
+        self.counts = counts;
+        self
     }
 
     fn fuse(&self, k: usize) -> Option<Op> {

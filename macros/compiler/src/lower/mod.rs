@@ -10,6 +10,7 @@ mod factor;
 mod fuse;
 mod hoist;
 mod lanes;
+mod late;
 mod schedule;
 mod signs;
 mod sums;

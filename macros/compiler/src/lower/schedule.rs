@@ -7,11 +7,11 @@ use super::{Op, Operand, Program};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How many operations are begun in a cycle.
-const CYCLE: u32 = 3;
+/// How many operations are begun in a cycle, and in how many parts cycles are counted.
+pub(super) const CYCLE: u32 = 3;
 /// Most instructions for each cycle of the longest chain: where there are more, the processor never lacks something to
 /// do, and another order only keeps more values waiting.
-const BROADEST: f64 = 3.5;
+const BROADEST: f64 = 5.0;
 
 impl Program {
     /// The same program, and what it has in lanes, in an order that keeps the processor busy.
@@ -102,7 +102,7 @@ impl Program {
 
 /// How long the result of an operation takes, in thirds of a cycle: usual figures of processors with fused operations.
 /// Sines and cosines are evaluated before all else.
-fn latency(op: &Op) -> u32 {
+pub(super) fn latency(op: &Op) -> u32 {
     CYCLE
         * match op {
             Op::Call(..) => 0,

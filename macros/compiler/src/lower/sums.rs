@@ -118,7 +118,7 @@ impl Program {
     }
 
     /// The same program with products and sums apart.
-    fn unfused(&self) -> Program {
+    pub(super) fn unfused(&self) -> Program {
         let mut program = Program {
             outputs: Vec::new(),
             tuples: self.tuples.clone(),
