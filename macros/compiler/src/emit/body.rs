@@ -1,7 +1,7 @@
 //! The straight-line body of a generated function. Values with one use are written where they are used; the others are
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
-use super::angles::{Angles, Calls, WIDTH};
+use super::angles::{Angle, Angles, Calls, WIDTH};
 use super::function::{Argument, Function, Shape, Signature};
 use super::matrices;
 use super::scalar::ScalarSpelling;
@@ -156,7 +156,21 @@ impl Writer<'_> {
 
     /// The sines and cosines of all angles.
     fn write_angles(&mut self, angles: &Angles) {
-        let mut calls = Calls::new(!self.program.gathers.is_empty(), !self.scalar.is_in_lanes());
+        // Sums of angles become vectors by name: in an array they would go through memory, one by one.
+        let is_sum = |angle: &Angle| {
+            let (mut inputs, mut todo) = (0, vec![angle.angle]);
+            while let Some(o) = todo.pop().filter(|_| inputs < 2) {
+                match o {
+                    Operand::Value(k) => self.program.instructions[k].operands(|o| todo.push(o)),
+                    Operand::Symbol(_) | Operand::Gather(_) => inputs += 1,
+                    Operand::Const(_) | Operand::Tuple(_) => {}
+                }
+            }
+            inputs > 1
+        };
+        let of_state = !self.scalar.is_in_lanes();
+        let in_vectors = !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_sum));
+        let mut calls = Calls::new(in_vectors, of_state);
         let mut needs = Vec::new();
         for angle in angles.widest_first(self.program, |o| self.width(o)) {
             let texts = self.angle(angle.angle, &mut needs);
