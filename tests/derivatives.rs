@@ -206,7 +206,7 @@ fn operation_counts_in_lanes() {
         })
     };
     // Derivatives of inverse dynamics, and the inverse of the mass matrix.
-    let expected = [[(1303, 844), (814, 511)], [(6108, 4115), (6349, 3716)]];
+    let expected = [[(1303, 844), (814, 511)], [(6108, 4119), (6349, 3716)]];
     assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
 }
 

@@ -11,7 +11,8 @@ use crate::model::{Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
 
-/// Up to how many velocities both frames, and both algorithms of forward dynamics, are derived and compared.
+/// Up to how many velocities functions are derived from frames of several kinds, and both algorithms of forward dynamics,
+/// and compared.
 const COMPARE: usize = 18;
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
@@ -31,18 +32,20 @@ impl<'g> Dynamics<'g> {
     /// The forms that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
     /// axes.
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
-        let sized = Sized::all(model, passes, stage);
-        let most = sized.iter().map(|kind| kind.size + kind.size / SIMILAR).min().unwrap_or(0);
+        let mut sized = Sized::all(model, passes, stage);
+        sized.sort_by_key(|kind| kind.size);
+        if model.nv() > COMPARE {
+            sized.truncate(1);
+        }
+        let most = sized.first().map_or(0, |kind| kind.size + kind.size / SIMILAR);
         let (mut masses, mut recursions, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         for kind in sized {
             masses.extend(kind.masses);
             recursions.extend(kind.recursions);
             if kind.size <= most {
-                kinds.push((kind.size, kind.forms));
+                kinds.push(kind.forms);
             }
         }
-        kinds.sort_by_key(|(size, _)| *size);
-        let mut kinds: Vec<Forms<'g>> = kinds.into_iter().map(|(_, forms)| forms).collect();
         kinds.iter_mut().for_each(Forms::find_bias);
         let wide = mass_matrices_in_lanes(&kinds, stage, passes.wide(model.nv()));
         let side_by_side = in_lanes_of(stage, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
