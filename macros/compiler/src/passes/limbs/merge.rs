@@ -13,6 +13,8 @@ const DEPTH: u8 = 8;
 pub struct Merge<'g> {
     graph: &'g Graph,
     known: BTreeMap<Vec<Id>, Option<Id>>,
+    /// With signs, true for minus.
+    signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
     /// Symbols that are the lanes of one.
     partners: Vec<Vec<Symbol>>,
 }
@@ -20,7 +22,7 @@ pub struct Merge<'g> {
 impl<'g> Merge<'g> {
     /// For the expressions of a graph.
     pub fn new(graph: &'g Graph) -> Merge<'g> {
-        Merge { graph, known: BTreeMap::new(), partners: Vec::new() }
+        Merge { graph, known: BTreeMap::new(), signed: BTreeMap::new(), partners: Vec::new() }
     }
 
     /// Says which symbols are the lanes of one.
@@ -119,11 +121,22 @@ impl<'g> Merge<'g> {
 
     /// Expressions with signs. Where these differ the constants of the expressions take them, if there are enough.
     fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
-        let (first, sign) = (*lanes.first()?, *signs.first()?);
+        let sign = *signs.first()?;
         if signs.iter().all(|s| *s == sign) {
             let all = self.lanes(lanes)?;
             return Some(if sign < 0.0 { -all } else { all });
         }
+        let key: Vec<(Id, bool)> = lanes.iter().zip(signs).map(|(e, sign)| (e.id(), *sign < 0.0)).collect();
+        if let Some(known) = self.signed.get(&key) {
+            return known.map(|id| self.graph.expr(id));
+        }
+        let found = self.build_signed(lanes, signs);
+        self.signed.insert(key, found.map(Expr::id));
+        found
+    }
+
+    fn build_signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+        let first = *lanes.first()?;
         let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
             for (part, sign) in parts.iter_mut().zip(signs) {
