@@ -3,17 +3,11 @@
 //! `(a + b c) + d e`. The numbers of multiplications and additions stay the same. Where `a` is known too late, the sum
 //! would have to wait for it: then it stays as it is.
 
-use super::terms::{LONGEST, Term};
+use super::terms::{LONGEST, Sum, Term};
 use super::{Op, Operand, Program};
 
 /// Cycles of an addition or a multiplication, or of both fused.
 const LATENCY: u32 = 4;
-
-/// A sum that can be rewritten: the additions that are its own, innermost first, and its terms in a new order.
-struct Sum {
-    additions: Vec<usize>,
-    terms: Vec<Term>,
-}
 
 impl Program {
     /// The same program with its sums in order.
@@ -135,49 +129,28 @@ impl Program {
     }
 
     /// The same instructions with operands before operations, those that are `late` not before they are needed.
-    fn sorted(mut self, late: &[bool]) -> Program {
+    fn sorted(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
-        let mut places: Vec<Option<usize>> = vec![None; n];
-        let mut instructions = Vec::with_capacity(n);
+        let mut is_placed = vec![false; n];
+        let mut order = Vec::with_capacity(n);
         let mut todo = Vec::new();
         for k in (0..n).filter(|k| !late[*k]) {
             todo.push(k);
             while let Some(&top) = todo.last() {
                 let before = todo.len();
                 self.instructions[top].operands(|o| match o {
-                    Operand::Value(a) if places[a].is_none() => todo.push(a),
+                    Operand::Value(a) if !is_placed[a] => todo.push(a),
                     _ => {}
                 });
                 if todo.len() == before {
                     todo.pop();
-                    if places[top].is_none() {
-                        places[top] = Some(instructions.len());
-                        instructions.push(top);
+                    if !std::mem::replace(&mut is_placed[top], true) {
+                        order.push(top);
                     }
                 }
             }
         }
-        let number: Vec<usize> = places.into_iter().map(Option::unwrap_or_default).collect();
-        let ops: Vec<Op> = instructions.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
-        self.uses = instructions.iter().map(|k| self.uses[*k]).collect();
-        self.outputs.iter_mut().for_each(|o| *o = super::renumber(*o, &number));
-        self.instructions = ops;
-        self
-    }
-}
-
-impl Sum {
-    /// An addition for each of its places: terms are added one after another, the first one last if both of the first
-    /// two are negative. `None` if all are.
-    fn chain(&self) -> Option<Vec<Op>> {
-        let mut ops = Vec::with_capacity(self.additions.len());
-        let mut sum = *self.terms.first()?;
-        for (term, at) in self.terms[1..].iter().zip(&self.additions) {
-            let (op, negative) = Term::sum(sum, *term);
-            ops.push(op);
-            sum = Term { operand: Operand::Value(*at), negative };
-        }
-        (!sum.negative).then_some(ops)
+        self.reordered(&order)
     }
 }
 

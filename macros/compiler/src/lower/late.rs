@@ -5,7 +5,7 @@
 //! Sums that nothing waits for stay as they are: what is added early waits in a register until the last term comes.
 
 use super::schedule::{CYCLE, latency};
-use super::terms::{LONGEST, Term};
+use super::terms::{LONGEST, Sum, Term};
 use super::{Op, Operand, Program};
 
 /// How long sines and cosines take: all of them are evaluated at the beginning.
@@ -13,12 +13,6 @@ const WAVE: u32 = 60 * CYCLE;
 /// How long an addition takes, and one with a product that fuses.
 const ADDED: u32 = 3 * CYCLE;
 const FUSED: u32 = 4 * CYCLE;
-
-/// A sum: the additions that are its own, innermost first, and its terms.
-struct Sum {
-    additions: Vec<usize>,
-    terms: Vec<Term>,
-}
 
 /// When the values of instructions are known at the earliest, in thirds of a cycle, if products fuse.
 struct Times<'a> {
@@ -109,7 +103,7 @@ impl Program {
     }
 
     /// The same instructions with operands before operations, those that are `late` as soon as their operands are there.
-    fn placed(mut self, late: &[bool]) -> Program {
+    fn placed(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut users = vec![Vec::new(); n];
         let mut missing = vec![0; n];
@@ -122,12 +116,10 @@ impl Program {
             });
         }
         let at_once: Vec<usize> = (0..n).filter(|k| late[*k] && missing[*k] == 0).collect();
-        let mut number = vec![0; n];
         let mut order = Vec::with_capacity(n);
         for k in at_once.into_iter().chain((0..n).filter(|k| !late[*k])) {
             let mut todo = vec![k];
             while let Some(top) = todo.pop() {
-                number[top] = order.len();
                 order.push(top);
                 for &user in &users[top] {
                     missing[user] -= 1;
@@ -137,10 +129,7 @@ impl Program {
                 }
             }
         }
-        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
-        self.uses = order.iter().map(|k| self.uses[*k]).collect();
-        self.outputs.iter_mut().for_each(|o| *o = super::renumber(*o, &number));
-        self
+        self.reordered(&order)
     }
 }
 
@@ -240,20 +229,6 @@ impl Times<'_> {
             }
         }
         rest
-    }
-}
-
-impl Sum {
-    /// An addition for each of its places: terms are added one after another. `None` if all of them are negative.
-    fn chain(&self) -> Option<Vec<Op>> {
-        let mut ops = Vec::with_capacity(self.additions.len());
-        let mut sum = *self.terms.first()?;
-        for (term, at) in self.terms[1..].iter().zip(&self.additions) {
-            let (op, negative) = Term::sum(sum, *term);
-            ops.push(op);
-            sum = Term { operand: Operand::Value(*at), negative };
-        }
-        (!sum.negative).then_some(ops)
     }
 }
 

@@ -291,6 +291,18 @@ impl Program {
         self
     }
 
+    /// The same instructions in another order, given by their numbers: operands come before operations.
+    fn reordered(mut self, order: &[usize]) -> Program {
+        let mut number = vec![0; self.instructions.len()];
+        for (place, k) in order.iter().enumerate() {
+            number[*k] = place;
+        }
+        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
+        self.uses = order.iter().map(|k| self.uses[*k]).collect();
+        self.outputs.iter_mut().for_each(|o| *o = renumber(*o, &number));
+        self
+    }
+
     /// Drops instructions without use, renumbers the others and counts the uses.
     fn sweep(&mut self) {
         let n = self.instructions.len();

@@ -18,17 +18,10 @@ impl Program {
     #[must_use]
     pub fn scheduled(mut self) -> Program {
         self.in_lanes = self.in_lanes.map(|program| Box::new(program.scheduled()));
-        let Some(order) = self.order() else { return self };
-        let mut number = vec![0; order.len()];
-        for (place, k) in order.iter().enumerate() {
-            number[*k] = place;
+        match self.order() {
+            Some(order) => self.reordered(&order),
+            None => self,
         }
-        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
-        self.uses = order.iter().map(|k| self.uses[*k]).collect();
-        for output in &mut self.outputs {
-            *output = super::renumber(*output, &number);
-        }
-        self
     }
 
     /// How long a call takes, roughly, in half cycles: instructions, and the cycles of the longest chain of them. Of the calls

@@ -33,6 +33,28 @@ impl Term {
     }
 }
 
+/// A sum of several terms: the additions that are its own, innermost first, and the terms in the order in which they are
+/// added.
+pub(super) struct Sum {
+    pub additions: Vec<usize>,
+    pub terms: Vec<Term>,
+}
+
+impl Sum {
+    /// An addition for each of its places: terms are added one after another, the first one last if both of the first
+    /// two are negative. `None` if all are.
+    pub fn chain(&self) -> Option<Vec<Op>> {
+        let mut ops = Vec::with_capacity(self.additions.len());
+        let mut sum = *self.terms.first()?;
+        for (term, at) in self.terms[1..].iter().zip(&self.additions) {
+            let (op, negative) = Term::sum(sum, *term);
+            ops.push(op);
+            sum = Term { operand: Operand::Value(*at), negative };
+        }
+        (!sum.negative).then_some(ops)
+    }
+}
+
 impl Op {
     /// The two terms of an addition or a subtraction.
     pub(super) fn terms(&self) -> Option<[Term; 2]> {
