@@ -32,14 +32,14 @@ impl<'g> Dynamics<'g> {
     /// The forms that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
     /// axes.
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
-        let mut sized = Sized::all(model, passes, stage);
-        sized.sort_by_key(|kind| kind.size);
+        let mut all = Kind::all(model, passes, stage);
+        all.sort_by_key(|kind| kind.size);
         if model.nv() > COMPARE {
-            sized.truncate(1);
+            all.truncate(1);
         }
-        let most = sized.first().map_or(0, |kind| kind.size + kind.size / SIMILAR);
+        let most = all.first().map_or(0, |kind| kind.size + kind.size / SIMILAR);
         let (mut masses, mut recursions, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
-        for kind in sized {
+        for kind in all {
             masses.extend(kind.masses);
             recursions.extend(kind.recursions);
             if kind.size <= most {
@@ -102,8 +102,8 @@ impl<'g> Dynamics<'g> {
     }
 }
 
-/// Forms with their mass matrices and inverse dynamics.
-struct Sized<'g> {
+/// The forms with frames of one kind, with their mass matrices and inverse dynamics.
+struct Kind<'g> {
     forms: Forms<'g>,
     masses: Vec<Candidate<'g>>,
     recursions: Vec<Candidate<'g>>,
@@ -111,9 +111,9 @@ struct Sized<'g> {
     size: usize,
 }
 
-impl<'g> Sized<'g> {
+impl<'g> Kind<'g> {
     /// Those with frames of every kind.
-    fn all(model: &Model<'g>, passes: Passes, stage: Stage) -> Vec<Sized<'g>> {
+    fn all(model: &Model<'g>, passes: Passes, stage: Stage) -> Vec<Kind<'g>> {
         let mut kinds = vec![passes::forms(model, passes)];
         if passes.frames && model.nv() <= COMPARE {
             kinds.push(passes::forms(model, Passes { frames: false, ..passes }));
@@ -123,14 +123,14 @@ impl<'g> Sized<'g> {
                 kinds.iter().map(|forms| passes::in_common_axes(forms)).collect();
             kinds.extend(common.into_iter().filter(|forms| !forms.is_empty()));
         }
-        kinds.into_iter().map(|forms| Sized::new(Forms::new(forms, passes, stage))).collect()
+        kinds.into_iter().map(|forms| Kind::new(Forms::new(forms, passes, stage))).collect()
     }
 
-    fn new(forms: Forms<'g>) -> Sized<'g> {
+    fn new(forms: Forms<'g>) -> Kind<'g> {
         let masses: Vec<Candidate<'g>> = forms.mass_matrices().collect();
         let recursions: Vec<Candidate<'g>> = forms.recursions(true).collect();
         let size = smallest(&masses).unwrap_or(0) + smallest(&recursions).unwrap_or(0);
-        Sized { forms, masses, recursions, size }
+        Kind { forms, masses, recursions, size }
     }
 }
 

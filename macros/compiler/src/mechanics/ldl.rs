@@ -94,7 +94,7 @@ pub fn second_inverse<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<
 }
 
 /// Entries of `v` from the leaves to the root.
-fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
+pub fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
     let mut seen = vec![false; nv];
     let mut order = Vec::new();
     for joint in joints.iter().rev() {

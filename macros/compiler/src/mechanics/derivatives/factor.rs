@@ -3,7 +3,7 @@
 
 use super::super::crba::Matrix;
 use super::super::kinematics::Joint;
-use super::super::ldl::inverses;
+use super::super::ldl::{elimination_order, inverses};
 use crate::expr::Expr;
 
 /// `M = Lᵀ D L`, `L` with a unit diagonal.
@@ -76,16 +76,4 @@ impl<'g> Factor<'g> {
         }
         out
     }
-}
-
-/// Entries of `v` from the leaves to the root.
-pub(super) fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
-    let mut seen = vec![false; nv];
-    let mut order = Vec::new();
-    for dof in joints.iter().rev().flat_map(|joint| joint.dofs.iter().rev()) {
-        if !std::mem::replace(&mut seen[dof.index], true) {
-            order.push(dof.index);
-        }
-    }
-    order
 }

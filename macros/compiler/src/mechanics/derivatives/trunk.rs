@@ -8,7 +8,8 @@
 
 use super::super::crba::Matrix;
 use super::super::kinematics::Joint;
-use super::factor::{Factor, elimination_order};
+use super::super::ldl::elimination_order;
+use super::factor::Factor;
 use crate::expr::Expr;
 
 /// Which velocities belong to the trunk, and which to each limb.
