@@ -3,47 +3,60 @@
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
-use crate::lanes::{Lanes, Work};
+use crate::lanes::Work;
 use nalgebra::SMatrix;
 
-/// How many numbers of a column of so many are calculated together: a register of them, a smaller one for columns that do
-/// not fill the target's.
+/// How many registers of eight numbers hold most of a column of so many.
 #[must_use]
-pub const fn width(numbers: usize) -> usize {
-    if cfg!(target_feature = "avx512f") && numbers >= 8 { 8 } else { 4 }
+pub const fn eights(numbers: usize) -> usize {
+    if !cfg!(target_feature = "avx512f") || numbers < 8 {
+        0
+    } else {
+        numbers / 8 + (numbers % 8 > 4) as usize
+    }
+}
+
+/// How many registers of four numbers hold the rest.
+#[must_use]
+pub const fn fours(numbers: usize) -> usize {
+    numbers.saturating_sub(8 * eights(numbers)).div_ceil(4)
+}
+
+/// How many of so many rows of a matrix are calculated together: all if they leave registers for several columns.
+#[must_use]
+pub const fn rows(numbers: usize) -> usize {
+    let most = if cfg!(target_feature = "avx512f") { 48 } else { 24 };
+    if numbers <= most {
+        return numbers;
+    }
+    let blocks = numbers.div_ceil(most / 2);
+    numbers.div_ceil(blocks).next_multiple_of(4)
 }
 
 /// How many registers hold sums at a time. The others are for what is added.
 const SUMS: usize = if cfg!(target_feature = "avx512f") { 24 } else { 12 };
 
-/// How many registers the numbers of a column fill.
-#[must_use]
-pub const fn registers(numbers: usize) -> usize {
-    numbers.div_ceil(width(numbers))
+/// A column in `E` registers of eight numbers, then `F` of four. The last begins as much earlier as it would be too long.
+#[derive(Clone, Copy)]
+struct Column<A, T, const E: usize, const F: usize> {
+    eights: [Vector<A, T, 8>; E],
+    fours: [Vector<A, T, 4>; F],
 }
 
-/// A column in `B` registers of `W` numbers. The last begins as much earlier as it would be too long.
-type Column<T, const W: usize, const B: usize> = [Lanes<T, W>; B];
-
-/// Sums in `B` registers.
-type Sums<A, T, const W: usize, const B: usize> = [Vector<A, T, W>; B];
-
-/// Columns of a matrix, beginning where lines of the cache do.
-#[repr(align(64))]
-struct Columns<T, const W: usize, const B: usize, const K: usize>([Column<T, W, B>; K]);
-
-/// A matrix with which another is multiplied: the columns from one number up to another, outside whose given rows there are
-/// zeros. All other columns are zero.
+/// A matrix with which another is multiplied; column and row of what has to be made zero in it; and its columns, from one up to
+/// another, outside whose given rows there are zeros. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
-    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize, &'a [usize])]);
+    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [((usize, usize), &'a [usize])]);
 
-/// Puts minus the products of a matrix with others in the place of these. Columns are read in `B` registers of `W` numbers.
+/// Puts minus the products of a matrix with others in the place of these, `R` rows of them at a time. So many numbers of a column
+/// are read in `E` registers of eight numbers and `F` of four.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
     T: Real,
-    const W: usize,
-    const B: usize,
+    const R: usize,
+    const E: usize,
+    const F: usize,
     const N: usize,
     const M: usize,
     const COUNT: usize,
@@ -51,179 +64,318 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::within(Products::<T, W, B, N, M, COUNT> { matrix, factors });
+    A::within(Products::<T, R, E, F, N, M, COUNT> { matrix, factors });
 }
 
-struct Products<'a, T, const W: usize, const B: usize, const N: usize, const M: usize, const COUNT: usize> {
+struct Products<
+    'a,
+    T,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const M: usize,
+    const COUNT: usize,
+> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
 }
 
-impl<T: Real, const W: usize, const B: usize, const N: usize, const M: usize, const COUNT: usize> Work
-    for Products<'_, T, W, B, N, M, COUNT>
+impl<
+    T: Real,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const M: usize,
+    const COUNT: usize,
+> Work for Products<'_, T, R, E, F, N, M, COUNT>
 {
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let mut columns = Columns::<T, W, B, N>::zero();
-        for (column, from) in columns.0.iter_mut().zip(&self.matrix.data.0) {
-            pack(from, column);
-        }
-        for (b, groups) in self.factors {
-            for (first, end, rows) in groups {
+        for (b, zeros, groups) in self.factors {
+            clear(b, zeros);
+            for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                let some = columns.multiply::<A, 4>(some, rows);
-                let some = columns.multiply::<A, 3>(some, rows);
-                let some = columns.multiply::<A, 2>(some, rows);
-                columns.multiply::<A, 1>(some, rows);
+                let some = multiply::<A, T, R, E, F, N, 4>(self.matrix, some, rows);
+                let some = multiply::<A, T, R, E, F, N, 3>(self.matrix, some, rows);
+                let some = multiply::<A, T, R, E, F, N, 2>(self.matrix, some, rows);
+                multiply::<A, T, R, E, F, N, 1>(self.matrix, some, rows);
             }
         }
     }
 }
 
-impl<T: Real, const W: usize, const B: usize, const K: usize> Columns<T, W, B, K> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self([[Lanes([T::zero(); W]); B]; K])
+/// Makes entries zero.
+#[inline(always)]
+fn clear<T: Real, const N: usize, const M: usize>(matrix: &mut SMatrix<T, N, M>, zeros: &[(usize, usize)]) {
+    for (column, row) in zeros {
+        if let Some(entry) = matrix.data.0.get_mut(*column).and_then(|column| column.get_mut(*row)) {
+            *entry = T::zero();
+        }
     }
 }
 
-impl<T: Real, const W: usize, const B: usize, const N: usize> Columns<T, W, B, N> {
-    /// Puts minus their products in the place of columns, `K` at a time if there are registers enough; returns those that
-    /// are left. A single sum has to wait for every addition.
-    #[inline(always)]
-    fn multiply<'a, A: Arithmetic, const K: usize>(
-        &self,
-        columns: &'a mut [[T; N]],
-        rows: &[usize],
-    ) -> &'a mut [[T; N]] {
-        if K > 1 && K * B > SUMS {
-            return columns;
-        }
-        let (some, rest) = columns.as_chunks_mut::<K>();
-        for some in some {
-            let mut sums = [[A::splat(T::zero()); B]; K];
-            for &k in rows {
-                let Some(from) = self.0.get(k) else { continue };
-                for (sums, column) in sums.iter_mut().zip(&*some) {
-                    let Some(factor) = column.get(k) else { continue };
-                    add_multiple::<A, T, W, B>(sums, *factor, from);
-                }
-            }
-            for (sums, column) in sums.iter_mut().zip(some) {
-                for sum in sums.iter_mut() {
-                    *sum = -*sum;
-                }
-                unpack::<A, T, W, B, N>(sums, column);
-            }
-        }
-        rest
-    }
-}
-
-/// Adds linear combinations of the columns `of` of a matrix to others, each given with its factors. Columns are read in `B`
-/// registers of `W` numbers.
-#[inline]
-pub fn combine<
+/// Puts minus the products of a matrix with columns in the place of these, `C` at a time if there are registers enough; returns
+/// those that are left. A single sum has to wait for every addition.
+#[inline(always)]
+fn multiply<
+    'a,
     A: Arithmetic,
     T: Real,
-    const W: usize,
-    const B: usize,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+>(
+    matrix: &SMatrix<T, N, N>,
+    columns: &'a mut [[T; N]],
+    rows: &[usize],
+) -> &'a mut [[T; N]] {
+    if C > 1 && C * (E + F) > SUMS {
+        return columns;
+    }
+    let (some, rest) = columns.as_chunks_mut::<C>();
+    for some in some {
+        if R >= N {
+            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, some, rows, 0);
+            write::<A, T, E, F, N, C, R>(&sums, some, 0);
+            continue;
+        }
+        let given = *some;
+        for block in 0..N.div_ceil(R) {
+            let first = (block * R).min(N - R);
+            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, &given, rows, first);
+            write::<A, T, E, F, N, C, R>(&sums, some, first);
+        }
+    }
+    rest
+}
+
+/// Minus the rows from one on of the products with columns.
+#[inline(always)]
+fn minus_sums<
+    A: Arithmetic,
+    T: Real,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+>(
+    matrix: &SMatrix<T, N, N>,
+    columns: &[[T; N]; C],
+    rows: &[usize],
+    first: usize,
+) -> [Column<A, T, E, F>; C] {
+    let mut sums = [Column::<A, T, E, F>::zero(); C];
+    for &k in rows {
+        let Some(from) = matrix.data.0.get(k) else { continue };
+        let Some(from) = from.get(first..).and_then(<[T]>::first_chunk::<R>) else { continue };
+        let from = Column::read(from);
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let Some(factor) = column.get(k) else { continue };
+            sums.subtract_multiple(*factor, &from);
+        }
+    }
+    sums
+}
+
+/// Writes sums to the rows of columns from one on.
+#[inline(always)]
+fn write<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+    const R: usize,
+>(
+    sums: &[Column<A, T, E, F>; C],
+    columns: &mut [[T; N]; C],
+    first: usize,
+) {
+    for (sums, column) in sums.iter().zip(columns) {
+        if let Some(rows) = column.get_mut(first..).and_then(<[T]>::first_chunk_mut::<R>) {
+            sums.write(rows);
+        }
+    }
+}
+
+/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ` (`mechanics/derivatives/trunk.rs` of the compiler): the matrix has `H` in the columns
+/// of the trunk and `C⁻¹` in the others. Each run names neighbouring ones of these, from one up to another, and in the same way
+/// where in the trunk their `factors` are not zero, columns of `Gᵀ`. Columns are read in `E` registers of eight numbers and `F`
+/// of four.
+#[inline]
+pub fn complete<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
     const N: usize,
     const K: usize,
     const M: usize,
 >(
     matrix: &mut SMatrix<T, N, N>,
-    of: [usize; K],
-    others: &[(usize, [T; K]); M],
+    trunk: [usize; K],
+    factors: &[[T; K]; M],
+    runs: &[((usize, usize), (usize, usize))],
 ) {
-    A::within(Combinations::<T, W, B, N, K, M> { matrix, of, others });
+    A::within(Completion::<T, E, F, N, K, M> { matrix, trunk, factors, runs });
 }
 
-struct Combinations<'a, T, const W: usize, const B: usize, const N: usize, const K: usize, const M: usize> {
+struct Completion<'a, T, const E: usize, const F: usize, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
-    of: [usize; K],
-    others: &'a [(usize, [T; K]); M],
+    trunk: [usize; K],
+    factors: &'a [[T; K]; M],
+    runs: &'a [((usize, usize), (usize, usize))],
 }
 
-impl<T: Real, const W: usize, const B: usize, const N: usize, const K: usize, const M: usize> Work
-    for Combinations<'_, T, W, B, N, K, M>
+impl<T: Real, const E: usize, const F: usize, const N: usize, const K: usize, const M: usize> Work
+    for Completion<'_, T, E, F, N, K, M>
 {
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let mut from = Columns::<T, W, B, K>::zero();
-        for (column, k) in from.0.iter_mut().zip(self.of) {
-            if let Some(given) = self.matrix.data.0.get(k) {
-                pack(given, column);
+        let mut trunk = Columns::<A, T, E, F, K>::zero();
+        for (t, k) in self.trunk.into_iter().enumerate() {
+            if let Some(column) = self.matrix.data.0.get(k) {
+                trunk.set(t, column);
             }
         }
-        for (at, factors) in self.others {
-            let Some(column) = self.matrix.data.0.get_mut(*at) else { continue };
-            let mut start = [Lanes([T::zero(); W]); B];
-            pack(column, &mut start);
-            let mut sums = [A::splat(T::zero()); B];
-            for (sum, start) in sums.iter_mut().zip(start) {
-                *sum = Vector::from(start);
+        let mut factors = self.factors.iter();
+        for ((first, end), (from, to)) in self.runs {
+            let columns = self.matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
+            for (column, factors) in columns.iter_mut().zip(&mut factors) {
+                let mut sums = Column::<A, T, E, F>::read(column);
+                for t in *from..K.min(*to) {
+                    if let Some(factor) = factors.get(t) {
+                        sums.add_multiple(*factor, &trunk.get(t));
+                    }
+                }
+                sums.write(column);
             }
-            for (from, factor) in from.0.iter().zip(factors) {
-                add_multiple::<A, T, W, B>(&mut sums, *factor, from);
-            }
-            unpack::<A, T, W, B, N>(&sums, column);
         }
     }
 }
 
-/// Adds a multiple of a column to sums.
-#[inline(always)]
-fn add_multiple<A: Arithmetic, T: Real, const W: usize, const B: usize>(
-    sums: &mut Sums<A, T, W, B>,
-    factor: T,
-    column: &Column<T, W, B>,
-) {
-    let factor = A::splat(factor);
-    for (sum, x) in sums.iter_mut().zip(column) {
-        *sum = A::mul_add(Vector::from(*x), factor, *sum);
-    }
+/// Columns of a matrix, beginning where lines of the cache do.
+#[repr(align(64))]
+struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
+    eights: [[Vector<A, T, 8>; E]; K],
+    fours: [[Vector<A, T, 4>; F]; K],
 }
 
-/// Where a register begins that belongs to a column of `n` numbers.
-#[inline(always)]
-fn start<const W: usize>(register: usize, n: usize) -> usize {
-    (register * W).min(n.saturating_sub(W))
+impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Columns<A, T, E, F, K> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, k: usize, column: &[T]) {
+        let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) else { return };
+        for (k, register) in eights.iter_mut().enumerate() {
+            *register = part(column, 8 * k);
+        }
+        for (k, register) in fours.iter_mut().enumerate() {
+            *register = part(column, 8 * E + 4 * k);
+        }
+    }
+
+    /// A column; zeros if there is none.
+    #[inline(always)]
+    fn get(&self, k: usize) -> Column<A, T, E, F> {
+        match (self.eights.get(k), self.fours.get(k)) {
+            (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
+            _ => Column::zero(),
+        }
+    }
 }
 
 // No function of the standard library that takes closures: those are not always inlined.
 
-#[inline(always)]
-fn pack<T: Real, const N: usize, const W: usize, const B: usize>(
-    column: &[T; N],
-    into: &mut Column<T, W, B>,
-) {
-    for (register, numbers) in into.iter_mut().enumerate() {
-        let rest = column.get(start::<W>(register, N)..).unwrap_or(&[]);
-        if let Some(all) = rest.first_chunk() {
-            numbers.0 = *all;
-        } else {
-            for (number, x) in numbers.0.iter_mut().zip(rest) {
-                *number = *x;
-            }
+impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
+    }
+
+    /// Adds a multiple of another.
+    #[inline(always)]
+    fn add_multiple(&mut self, factor: T, other: &Self) {
+        let by = A::splat(factor);
+        for (sum, x) in self.eights.iter_mut().zip(&other.eights) {
+            *sum = A::mul_add(*x, by, *sum);
+        }
+        let by = A::splat(factor);
+        for (sum, x) in self.fours.iter_mut().zip(&other.fours) {
+            *sum = A::mul_add(*x, by, *sum);
+        }
+    }
+
+    /// Subtracts a multiple of another.
+    #[inline(always)]
+    fn subtract_multiple(&mut self, factor: T, other: &Self) {
+        let by = A::splat(factor);
+        for (sum, x) in self.eights.iter_mut().zip(&other.eights) {
+            *sum = A::neg_mul_add(*x, by, *sum);
+        }
+        let by = A::splat(factor);
+        for (sum, x) in self.fours.iter_mut().zip(&other.fours) {
+            *sum = A::neg_mul_add(*x, by, *sum);
+        }
+    }
+
+    #[inline(always)]
+    fn read(column: &[T]) -> Self {
+        let mut all = Self::zero();
+        for (k, register) in all.eights.iter_mut().enumerate() {
+            *register = part(column, 8 * k);
+        }
+        for (k, register) in all.fours.iter_mut().enumerate() {
+            *register = part(column, 8 * E + 4 * k);
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn write(&self, column: &mut [T]) {
+        for (k, register) in self.eights.iter().enumerate() {
+            put(register, column, 8 * k);
+        }
+        for (k, register) in self.fours.iter().enumerate() {
+            put(register, column, 8 * E + 4 * k);
         }
     }
 }
 
+/// So many numbers from one on, or as many earlier as there are too few.
 #[inline(always)]
-fn unpack<A: Arithmetic, T: Real, const W: usize, const B: usize, const N: usize>(
-    sums: &Sums<A, T, W, B>,
-    column: &mut [T; N],
-) {
-    for (register, sum) in sums.iter().enumerate() {
-        let rest = column.get_mut(start::<W>(register, N)..).unwrap_or(&mut []);
-        let numbers = sum.numbers();
-        if let Some(all) = rest.first_chunk_mut() {
-            *all = *numbers;
-        } else {
-            for (place, x) in rest.iter_mut().zip(numbers) {
-                *place = *x;
-            }
+fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
+    let rest = column.get(from.min(column.len().saturating_sub(W))..).unwrap_or(&[]);
+    let mut numbers = [T::zero(); W];
+    if let Some(all) = rest.first_chunk() {
+        numbers = *all;
+    } else {
+        for (number, x) in numbers.iter_mut().zip(rest) {
+            *number = *x;
+        }
+    }
+    A::lanes(numbers)
+}
+
+/// The same for writing.
+#[inline(always)]
+fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, column: &mut [T], from: usize) {
+    let rest = column.get_mut(from.min(column.len().saturating_sub(W))..).unwrap_or(&mut []);
+    let numbers = register.numbers();
+    if let Some(all) = rest.first_chunk_mut() {
+        *all = *numbers;
+    } else {
+        for (place, x) in rest.iter_mut().zip(numbers) {
+            *place = *x;
         }
     }
 }
@@ -238,13 +390,16 @@ mod tests {
     }
 
     /// The product for the compilation's target, and that for the processor where there is one.
-    fn product<const W: usize, const B: usize, const N: usize, const M: usize>(
+    fn product<const R: usize, const E: usize, const F: usize, const N: usize, const M: usize>(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
-        groups: &[(usize, usize, &[usize])],
+        groups: &[((usize, usize), &[usize])],
     ) -> SMatrix<f64, N, M> {
         let (mut found, mut other) = (*b, *b);
-        minus_products::<Compiled, _, W, B, N, M, 2>(a, [(&mut found, groups), (&mut other, groups)]);
+        minus_products::<Compiled, _, R, E, F, N, M, 2>(
+            a,
+            [(&mut found, &[], groups), (&mut other, &[], groups)],
+        );
         assert_eq!(found, other);
         #[cfg(all(
             feature = "std",
@@ -253,7 +408,7 @@ mod tests {
         ))]
         if crate::lanes::avx2::is_available() {
             other = *b;
-            minus_products::<crate::lanes::avx2::Avx2, _, W, B, N, M, 1>(a, [(&mut other, groups)]);
+            minus_products::<crate::lanes::avx2::Avx2, _, R, E, F, N, M, 1>(a, [(&mut other, &[], groups)]);
             assert!((found - other).amax() < 1e-13);
         }
         found
@@ -265,14 +420,26 @@ mod tests {
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
         let found =
-            product::<{ width(N) }, { registers(N) }, N, 10>(&a, &b, &[(0, 3, &rows), (3, 10, &rows)]);
+            product::<N, { eights(N) }, { fours(N) }, N, 10>(&a, &b, &[((0, 3), &rows), ((3, 10), &rows)]);
         assert!((found + a * b).amax() < 1e-13);
+    }
+
+    #[test]
+    fn rows_are_taken_in_parts() {
+        const N: usize = 29;
+        let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 7>(1.0));
+        let rows: [usize; N] = core::array::from_fn(|k| k);
+        let found = product::<12, { eights(12) }, { fours(12) }, N, 7>(&a, &b, &[((0, 7), &rows)]);
+        assert!((found + a * b).amax() < 1e-13);
+        for n in 1..300 {
+            assert!(super::rows(n) <= n && (super::rows(n) == n || super::rows(n) % 4 == 0), "{n}");
+        }
     }
 
     #[test]
     fn small_matrices_do_not_fill_a_register() {
         let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
-        let found = product::<{ width(3) }, { registers(3) }, 3, 7>(&a, &b, &[(0, 7, &[0, 1, 2])]);
+        let found = product::<3, { eights(3) }, { fours(3) }, 3, 7>(&a, &b, &[((0, 7), &[0, 1, 2])]);
         assert!((found + a * b).amax() < 1e-13);
     }
 
@@ -281,10 +448,10 @@ mod tests {
         let (a, mut b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let mut given = b;
         given.column_mut(1).fill(0.0);
-        let found = product::<{ width(7) }, { registers(7) }, 7, 3>(
+        let found = product::<7, { eights(7) }, { fours(7) }, 7, 3>(
             &a,
             &given,
-            &[(0, 1, &[0, 1, 4, 5, 6]), (2, 3, &[6])],
+            &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])],
         );
         b.view_mut((2, 0), (2, 1)).fill(0.0);
         b.column_mut(1).fill(0.0);
@@ -293,14 +460,35 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_combined() {
-        let start = numbers::<9, 9>(4.0);
+    fn columns_are_completed() {
+        const N: usize = 14;
+        let start = numbers::<N, N>(4.0);
+        let all: SMatrix<f64, 3, N> = numbers(5.0);
         let mut found = start;
-        let others = [(3, [0.5, -2.0]), (8, [1.0, 0.0])];
-        combine::<Compiled, _, { width(9) }, { registers(9) }, 9, 2, 2>(&mut found, [1, 7], &others);
+        let (trunk, runs) = ([9, 1, 7], [((2, 7), (0, 3)), ((10, 13), (1, 3))]);
+        let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
+        let factors: [[f64; 3]; 8] =
+            core::array::from_fn(|k| all.data.0[first.iter().chain(&last).nth(k).copied().unwrap_or(0)]);
+        complete::<Compiled, _, { eights(N) }, { fours(N) }, N, 3, 8>(&mut found, trunk, &factors, &runs);
         let mut expected = start;
-        expected.set_column(3, &(start.column(3) + start.column(1) * 0.5 - start.column(7) * 2.0));
-        expected.set_column(8, &(start.column(8) + start.column(1)));
+        for ((first, end), (from, to)) in runs {
+            for (j, t) in (first..end).flat_map(|j| (from..to).map(move |t| (j, t))) {
+                expected.set_column(j, &(expected.column(j) + start.column(trunk[t]) * all[(t, j)]));
+            }
+        }
         assert!((found - expected).amax() < 1e-13);
+    }
+
+    #[test]
+    fn entries_are_made_zero() {
+        let (a, b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
+        let (mut found, mut given) = (b, b);
+        let groups: [((usize, usize), &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
+        minus_products::<Compiled, _, 7, { eights(7) }, { fours(7) }, 7, 3, 1>(
+            &a,
+            [(&mut found, &[(1, 4), (2, 0)], &groups)],
+        );
+        (given[(4, 1)], given[(0, 2)]) = (0.0, 0.0);
+        assert!((found + a * given).amax() < 1e-13);
     }
 }

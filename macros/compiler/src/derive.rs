@@ -211,7 +211,7 @@ fn functions<'g>(
     }
     functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output, stage)));
     if requests.derivatives {
-        functions.extend(derivatives::functions(model, passes, stage, requests.packed));
+        functions.extend(derivatives::functions(model, passes, stage));
     }
     if let Some(identification) = &extras.identification {
         functions.extend(identification.functions(joints, stage));

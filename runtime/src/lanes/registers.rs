@@ -99,7 +99,7 @@ macro_rules! operations {
 impl Registers for Compiled {
     const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
 
-    #[inline]
+    #[inline(always)]
     fn within<W: Work>(work: W) {
         work.run::<Self>();
     }

@@ -23,9 +23,8 @@ const MEDIUM: usize = 24;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
-/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least; also those whose results
-/// go `into` given matrices, if that is wanted.
-pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage, into: bool) -> Vec<Function> {
+/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
+pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
     let mut forms = passes::forms(model, passes);
     if passes.frames && model.nv() <= SMALL {
         forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
@@ -78,11 +77,8 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage, into: b
             f.structure.zeros.clone_from(&zeros);
         }
     }
-    if into {
-        let variants: Vec<Function> =
-            functions.iter().filter_map(|f| signatures::into(f, model.nv())).collect();
-        functions.extend(variants);
-    }
+    let into: Vec<Function> = functions.iter().filter_map(|f| signatures::into(f, model.nv())).collect();
+    functions.extend(into);
     if !model.constraints.is_empty() {
         let mut hidden = signatures::constrained_derivatives(&Sizes::of(model), model.constraints.len());
         for f in &mut hidden {

@@ -400,7 +400,6 @@ pub fn into(f: &Function, nv: usize) -> Option<Function> {
                 KEPT,
             ],
         ),
-        "__accelerations_and_inverse" => (&["inverse"], &[]),
         _ => return None,
     };
     let given = given.iter().map(|name| Argument::Into(name, nv));
@@ -414,7 +413,8 @@ pub fn into(f: &Function, nv: usize) -> Option<Function> {
 
 /// What the derivatives of forward dynamics of a large mechanism need, hidden.
 pub fn accelerated(sizes: &Sizes) -> Function {
-    sizes.function("__accelerations_and_inverse", &[Q, V, Tau], Shape::Accelerated(sizes.nv), &[])
+    let arguments = [Q, V, Tau, Argument::Into("inverse", sizes.nv)];
+    sizes.function("__accelerations_and_inverse", &arguments, Shape::Accelerated(sizes.nv), &[])
 }
 
 /// The function of an output, and its Jacobian unless it depends on accelerations.

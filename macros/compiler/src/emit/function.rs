@@ -83,7 +83,7 @@ pub enum Shape {
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
-    /// Accelerations and `M⁻¹`; the outputs are the accelerations and those of `Inverse`.
+    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations and those of `Inverse`.
     Accelerated(usize),
     /// The same as `Forward`, by calls of other functions; no outputs.
     CalledForward(usize),
@@ -140,7 +140,7 @@ impl Function {
     /// The type of what is returned.
     pub fn result(&self, s: &Signature<'_>) -> String {
         match self.shape {
-            Shape::Accelerated(n) if !self.given().is_empty() => s.vector(n),
+            Shape::Accelerated(n) => s.vector(n),
             shape if self.given().is_empty() => s.shape(shape),
             _ => "()".to_string(),
         }

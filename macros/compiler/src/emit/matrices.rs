@@ -2,6 +2,7 @@
 
 use super::body::Outputs;
 use super::function::{Function, Shape, Signature, Structure};
+use std::fmt::Display;
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -9,7 +10,7 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square(n)),
         Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
-        Shape::Accelerated(n) => format!("({}, {})", s.vector(n), square(n)),
+        Shape::Accelerated(n) => s.vector(n),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
             format!("({}, {})", square(2 * n), s.shape(Shape::Matrix(2 * n, m)))
         }
@@ -23,19 +24,19 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}",
-            combined(inverse, f, n, 2 * n * n, s, outputs),
+            completed(inverse, f, n, 2 * n * n, s, outputs),
             solved([by_q, by_v], inverse, n, s, &f.structure)
         ),
         (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
             format!(
-                "let a = self.__accelerations_and_inverse_into{lanes}({t}q, v, tau, &mut {inverse});
+                "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}",
                 solved([by_q, by_v], inverse, n, s, &f.structure)
             )
         }
         (Shape::Accelerated(n), [inverse]) => {
-            format!("{}{}\n", combined(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1))
+            format!("{}{}\n", completed(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1))
         }
         _ => String::new(),
     }
@@ -48,18 +49,12 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
         // Composed in what is returned, so that every matrix is moved once at most.
         Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
-        Shape::Accelerated(n) => format!(
-            "let mut all = ({}, {});\n{}all\n",
-            outputs.matrix(0, n, 1),
-            outputs.matrix(n, n, n),
-            combined("all.1", f, n, n, s, outputs)
-        ),
         Shape::Forward(n) => format!(
             "let mut all = ({}, {}, {});\n{}{}all\n",
             square(0, n),
             square(1, n),
             square(2, n),
-            combined("all.2", f, n, 2 * n * n, s, outputs),
+            completed("all.2", f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
         Shape::CalledForward(n) => called(f, n, s),
@@ -96,12 +91,12 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
 
 /// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let combined = combined("inverse", f, n, first, s, outputs);
-    format!("let mut inverse = {};\n{combined}", outputs.matrix(first, n, n))
+    let completed = completed("inverse", f, n, first, s, outputs);
+    format!("let mut inverse = {};\n{completed}", outputs.matrix(first, n, n))
 }
 
 /// Adds what `M⁻¹` has of the trunk to the rest of it, which stands at `place`; nothing if it is whole.
-fn combined(
+fn completed(
     place: &str,
     f: &Function,
     n: usize,
@@ -111,18 +106,29 @@ fn combined(
 ) -> String {
     let trunk = &f.structure.trunk;
     let width = trunk.len();
-    let row = |j: usize| first + n * n + j * width..first + n * n + (j + 1) * width;
-    let combined = (0..n).filter(|j| !row(*j).all(|k| outputs.is_zero(k)));
-    let combined: Vec<String> = combined.map(|j| format!("({j}, {})", outputs.list(row(j)))).collect();
-    if combined.is_empty() {
+    let factors = |k: usize| first + n * n + k * width..first + n * n + (k + 1) * width;
+    let used = |k: usize| {
+        let range = factors(k);
+        let is_used = |t: &usize| !outputs.is_zero(range.start + t);
+        Some(((0..width).find(is_used)?, (0..width).rfind(is_used)? + 1))
+    };
+    let mut runs: Vec<((usize, usize), (usize, usize))> = Vec::new();
+    let mut all = Vec::new();
+    for (k, used) in (0..n).filter_map(|k| Some((k, used(k)?))) {
+        all.push(outputs.list(factors(k)));
+        match runs.last_mut() {
+            Some(((_, end), known)) if *end == k && *known == used => *end = k + 1,
+            _ => runs.push(((k, k + 1), used)),
+        }
+    }
+    if runs.is_empty() {
         return String::new();
     }
     format!(
-        "::linkwork::__private::combine::<Ops, {}, {}, {n}, {width}, {}>(&mut {place}, {trunk:?}, &[{}]);\n",
+        "::linkwork::__private::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
         s.scalar.name(),
         registers(n),
-        combined.len(),
-        combined.join(", ")
+        all.join(", "),
     )
 }
 
@@ -135,44 +141,85 @@ fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structu
 
 /// Minus the products of the inverse with factors of so many columns, in the place of these.
 fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
+    let rows = format!("::linkwork::__private::rows({n})");
     format!(
-        "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
+        "::linkwork::__private::minus_products::<Ops, {}, {{ {rows} }}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
         s.scalar.name(),
-        registers(n),
+        registers(&rows),
         factors.len(),
         factors.join(", ")
     )
 }
 
-/// How many numbers of a column a register holds, and how many registers it fills: what the compilation's target has decides.
-fn registers(n: usize) -> String {
-    format!("{{ ::linkwork::__private::width({n}) }}, {{ ::linkwork::__private::registers({n}) }}")
+/// How many registers of eight and of four numbers a column fills: what the compilation's target has decides.
+fn registers(n: impl Display) -> String {
+    format!("{{ ::linkwork::__private::eights({n}) }}, {{ ::linkwork::__private::fours({n}) }}")
 }
 
-/// The columns of the matrix after the first so many entries, those together whose entries are zero in the same rows:
-/// first, last but one, and the rows that are not zero.
-fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
-    let rows = |j: usize| (0..n).filter(|i| !is_zero(first + j * n + i)).collect::<Vec<usize>>();
-    let mut groups: Vec<(usize, usize, Vec<usize>)> = Vec::new();
-    for (j, rows) in (0..columns).map(|j| (j, rows(j))).filter(|(_, rows)| !rows.is_empty()) {
-        match groups.last_mut() {
-            Some((_, end, known)) if *end == j && *known == rows => *end = j + 1,
-            _ => groups.push((j, j + 1, rows)),
+/// How many zeros a column may have in the rows of its neighbours to be taken together with them.
+const FILLED: usize = 2;
+
+/// Neighbouring columns of a matrix.
+struct Run {
+    /// From one up to another.
+    columns: (usize, usize),
+    /// The rows that are not zero in all of them.
+    rows: Vec<usize>,
+}
+
+/// The columns of the matrix after the first so many entries, those together that have zeros in about the same rows; and
+/// column and row of what is zero in rows where others of a run are not.
+fn runs(
+    n: usize,
+    columns: usize,
+    first: usize,
+    is_zero: &dyn Fn(usize) -> bool,
+) -> (Vec<(usize, usize)>, Vec<Run>) {
+    let is_zero = |j: usize, i: usize| is_zero(first + j * n + i);
+    let mut runs: Vec<Run> = Vec::new();
+    for j in 0..columns {
+        let rows: Vec<usize> = (0..n).filter(|i| !is_zero(j, *i)).collect();
+        if rows.is_empty() {
+            continue;
         }
+        let columns = (j, j + 1);
+        if let Some(run) = runs.last_mut().filter(|run| run.columns.1 == j) {
+            let all: Vec<usize> =
+                (0..n).filter(|i| rows.binary_search(i).is_ok() || run.rows.contains(i)).collect();
+            let filled = |j: usize| all.iter().filter(|i| is_zero(j, **i)).count();
+            if (run.columns.0..=j).all(|j| filled(j) <= FILLED) {
+                *run = Run { columns: (run.columns.0, j + 1), rows: all };
+                continue;
+            }
+        }
+        runs.push(Run { columns, rows });
     }
-    let texts: Vec<String> = groups.iter().map(|(j, end, rows)| format!("({j}, {end}, &{rows:?})")).collect();
-    format!("&[{}]", texts.join(", "))
+    let filled = |run: &Run| {
+        let (from, to) = run.columns;
+        let entries = (from..to).flat_map(|j| run.rows.iter().map(move |i| (j, *i)));
+        entries.filter(|(j, i)| is_zero(*j, *i)).collect::<Vec<_>>()
+    };
+    (runs.iter().flat_map(filled).collect(), runs)
 }
 
-/// The derivatives by calls of other functions. Large results are not moved before they are returned.
+/// Both as texts.
+fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
+    let (filled, runs) = runs(n, columns, first, is_zero);
+    let texts: Vec<String> = runs.iter().map(|run| format!("({:?}, &{:?})", run.columns, run.rows)).collect();
+    format!("&{filled:?}, &[{}]", texts.join(", "))
+}
+
+/// The derivatives by a call of the function that puts them into given matrices: nothing large is moved.
 fn called(f: &Function, n: usize, s: &Signature<'_>) -> String {
-    let t = if s.time { "t, " } else { "" };
-    let lanes = s.suffix();
+    let arguments: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+    let zeros = format!("<{}>::zeros()", s.shape(Shape::Square(n)));
     format!(
-        "let found = self.__accelerations_and_inverse{lanes}({t}q, v, tau);
-        let mut forces = self.inverse_dynamics_derivatives{lanes}({t}q, v, &found.0);
-        {}(forces.0, forces.1, found.1)\n",
-        solved(["forces.0", "forces.1"], "found.1", n, s, &f.structure)
+        "let mut all = ({zeros}, {zeros}, {zeros});
+        self.{}_into{}({}, &mut all.0, &mut all.1, &mut all.2);
+        all\n",
+        f.name,
+        s.suffix(),
+        arguments.join(", ")
     )
 }
 
