@@ -16,11 +16,11 @@ use std::path::PathBuf;
 /// | `gravity = -9.81 * y` | uniform gravity, a vector in ground axes, m/s²; none if not given, −9.81 z with a file |
 /// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
 /// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
-/// | `derivatives` | generates the first derivatives of the dynamics too |
+/// | `derivatives` | generates the first derivatives of the dynamics too, also into given matrices |
 /// | `centroidal` | generates the centroidal momentum matrix and its bias too |
 /// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
 /// | `sensitivities` | generates the derivatives of the dynamics by the struct's parameters |
-/// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them, as with `derivatives` those |
+/// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |

@@ -6,7 +6,7 @@ use crate::emit::{Function, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::{Operand, Program};
 use crate::mechanics::derivatives::{
-    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, symbolic,
+    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, invariance, symbolic,
 };
 use crate::mechanics::{self, Joint, constraints, crba, forces, massless, rnea};
 use crate::model::{Chart, Model, Quantity};
@@ -43,6 +43,7 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         );
     }
     let Some(mut parts) = parts.into_iter().min_by_key(Parts::cost) else { return Vec::new() };
+    parts.known = invariance::known(parts.model, &parts.joints);
     if derivatives::is_analytic(parts.model) {
         parts.wide = passes.wide(model.nv());
         parts.take_apart(passes.lanes && stage == Stage::Whole);
@@ -75,6 +76,7 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
         };
         if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
             f.structure.zeros.clone_from(&zeros);
+            f.structure.known = parts.known.indices();
         }
     }
     let into: Vec<Function> = functions.iter().filter_map(|f| signatures::into(f, model.nv())).collect();
@@ -105,6 +107,8 @@ struct Parts<'a, 'g> {
     limbs: Option<InLanes<'g>>,
     /// In how many lanes changes are carried to the root, beside none.
     wide: &'static [usize],
+    /// Derivatives of forward dynamics that are known.
+    known: invariance::Known<'g>,
 }
 
 /// A mechanism with alike limbs as lanes.
@@ -126,6 +130,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             trunk: None,
             limbs: None,
             wide: &[],
+            known: invariance::Known::default(),
         }
     }
 
@@ -175,7 +180,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         let g = self.model.graph;
         let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
         let program = |mass: &crba::Matrix<'g>, method: Method| {
-            let found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
+            let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
+            self.known.replace(&mut found.forces);
             self.stage.program(&all_columns(&found))
         };
         let wide = self.wide.iter().map(|most| {
@@ -191,17 +197,18 @@ impl<'a, 'g> Parts<'a, 'g> {
         let inverse = Inverse::of(&self.mass, trunk);
         let a = inverse.solve(&self.unbalanced());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
-        let outputs = |forces: &ForceDerivatives<'g>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
-            [force_columns(forces), columns(&inverse), factors.concat()].concat()
+        let outputs = |mut forces: ForceDerivatives<'g>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+            self.known.replace(&mut forces);
+            [force_columns(&forces), columns(&inverse), factors.concat()].concat()
         };
-        let program = self.stage.program(&outputs(&forces, [inverse.columns(), inverse.factors()]));
+        let program = self.stage.program(&outputs(forces, [inverse.columns(), inverse.factors()]));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
             let a = in_lanes::accelerations(&lanes.limbs, &inverse);
             let parts = in_lanes::inverse(&lanes.limbs, &inverse);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                done(&outputs(&forces, parts.clone()))
+                done(&outputs(forces, parts.clone()))
             }))
         });
         program.or_in_lanes(in_lanes.into_iter().flatten())
@@ -284,7 +291,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     /// The program of a function, with `tau` the forces of the inputs.
     fn program(&self, f: &Function, tau: &[Expr<'g>]) -> Program {
         match f.shape {
-            Shape::CalledForward(_) => return Program::default(),
+            Shape::CalledForward(_) => return self.stage.program(&self.known.all()),
             Shape::CalledLinear(..) => return self.inputs(tau),
             _ => {}
         }

@@ -55,6 +55,12 @@ struct Writer<'a> {
 
 /// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool) {
+    if let Shape::CalledForward(n) = f.shape
+        && f.given().is_empty()
+    {
+        out.push_str(&matrices::called(f, n, s));
+        return;
+    }
     // Several states fill the lanes by themselves.
     let in_lanes = f.program.in_lanes.as_deref().filter(|_| !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);

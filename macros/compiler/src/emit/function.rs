@@ -78,14 +78,15 @@ pub enum Shape {
     /// `M⁻¹`. The outputs are its columns, or what is left of them beside the product of the trunk's with the factors
     /// that follow, a row of these for each velocity.
     Inverse(usize),
-    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, and those of `Inverse`.
+    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
+    /// themselves, and those of `Inverse`.
     Forward(usize),
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
     /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations and those of `Inverse`.
     Accelerated(usize),
-    /// The same as `Forward`, by calls of other functions; no outputs.
+    /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
     CalledForward(usize),
     /// The same as `Linear`, from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
     /// derivatives by `q`, `v` and the inputs, and what turns displacements.
@@ -128,6 +129,8 @@ pub struct Structure {
     pub entries: Vec<(usize, usize)>,
     /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
     pub zeros: Vec<bool>,
+    /// The columns of `∂v̇/∂q` and of `∂v̇/∂v` that are outputs themselves, not those of forces.
+    pub known: [Vec<usize>; 2],
 }
 
 impl Function {

@@ -31,8 +31,9 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
             format!(
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
-                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}",
-                solved([by_q, by_v], inverse, n, s, &f.structure)
+                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}",
+                solved([by_q, by_v], inverse, n, s, &f.structure),
+                known(f, outputs, n)
             )
         }
         (Shape::Accelerated(n), [inverse]) => {
@@ -57,7 +58,6 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             completed("all.2", f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
-        Shape::CalledForward(n) => called(f, n, s),
         Shape::Linear(n, m) => {
             format!(
                 "{}let (mut by_q, mut by_v) = ({}, {});\n{}{}",
@@ -132,9 +132,20 @@ fn completed(
     )
 }
 
+/// The columns that are known, put into the matrices.
+fn known(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
+    let columns = f.given().into_iter().zip(&f.structure.known);
+    let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
+    let texts = columns.enumerate().map(|(k, (matrix, column))| {
+        format!("{matrix}.data.0[{column}] = {};\n", outputs.list(k * n..(k + 1) * n))
+    });
+    texts.collect()
+}
+
 /// Derivatives of the accelerations in the place of those of the forces: `−M⁻¹ ∂τ/∂x`.
 fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
-    let is_zero = |k: usize| structure.zeros.get(k).is_some_and(|zero| *zero);
+    let is_known = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
+    let is_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
     let factor = |k: usize| format!("(&mut {}, {})", forces[k], groups(n, n, k * n * n, &is_zero));
     products(inverse, n, n, &[factor(0), factor(1)], s)
 }
@@ -210,7 +221,7 @@ fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> boo
 }
 
 /// The derivatives by a call of the function that puts them into given matrices: nothing large is moved.
-fn called(f: &Function, n: usize, s: &Signature<'_>) -> String {
+pub fn called(f: &Function, n: usize, s: &Signature<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     let zeros = format!("<{}>::zeros()", s.shape(Shape::Square(n)));
     format!(

@@ -13,6 +13,7 @@ use crate::model::{Model, Motion, Quantity};
 pub mod analytic;
 mod columns;
 mod factor;
+pub mod invariance;
 pub mod parameters;
 mod subtree;
 pub mod symbolic;

@@ -12,12 +12,15 @@ pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g
     ForceDerivatives { by_q: by_configuration(model, e), by_v: by_velocity(model, e) }
 }
 
-/// Adds the derivatives of springs, dashpots, friction, potentials and loads.
+/// Derivatives of springs, dashpots, friction, potentials and loads.
+pub fn of_resistance<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
+    derivatives(model, &resistance(model, true))
+}
+
+/// Adds the same.
 pub fn add_resistance<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
-    let forces = resistance(model, true);
-    for (to, from) in
-        [(&mut out.by_q, by_configuration(model, &forces)), (&mut out.by_v, by_velocity(model, &forces))]
-    {
+    let found = of_resistance(model);
+    for (to, from) in [(&mut out.by_q, found.by_q), (&mut out.by_v, found.by_v)] {
         for (entry, change) in to.iter_mut().flatten().zip(from.into_iter().flatten()) {
             *entry += change;
         }
