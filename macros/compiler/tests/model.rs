@@ -471,3 +471,19 @@ fn mistakes_are_reported_together_and_once() {
         "unknown name `l`\n= help: expected `m`, `x`, `y`, `z` or `pi`",
     );
 }
+
+#[test]
+fn elements_between_points_need_no_others() {
+    let plain = "#[body(mass = 1, inertia = 1)] hull: Body, #[joint(ground -> hull)] pose: Free,";
+    let links = facts(plain, None);
+    let links = links.lines().next().expect("there is a link");
+    for element in [
+        "stiffness = 3)] e: Spring",
+        "damping = 3)] e: Dashpot",
+        "inertance = 3)] e: Inerter",
+        "mu = 3)] e: Gravity",
+    ] {
+        let found = facts(&format!("{plain} #[acts(between = (ground.at(x), hull), {element},"), None);
+        assert!(found.starts_with(links), "{element}: {found}");
+    }
+}

@@ -530,11 +530,11 @@ fn check_parameter_names(parameters: &[Name], cx: &mut Diagnostics) {
 
 /// True for force elements that are not on a coordinate, or have a law or a value.
 fn needs_motion(action: &Action) -> bool {
-    let value = |v: &Option<crate::syntax::Expr>| v.is_some();
-    match &action.kind {
-        ActionKind::Force { value: v, .. } | ActionKind::Torque { value: v, .. } => value(v),
+    let own = match &action.kind {
+        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
         ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
         ActionKind::Dashpot { law } => !matches!(law, crate::syntax::Law::Linear(_)),
-        _ => matches!(action.on, Target::Between(..)),
-    }
+        _ => false,
+    };
+    own || matches!(action.on, Target::Between(..))
 }
