@@ -9,7 +9,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::lower::{Op, Program, lower};
-use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, symbolic};
+use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, invariance, symbolic};
 use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
 use linkwork_compiler::model::Model;
 use linkwork_compiler::{compile, read};
@@ -155,6 +155,49 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     assert_same("inverse in parts", model, seed, &whole.concat(), &factor.inverse().concat());
 }
 
+/// What is known of the motion of a free base solves the equations, differentiated.
+fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
+    let joints = mechanics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let a = mechanics::accelerations(model);
+    let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), Some(&a));
+    let forces = symbolic::derivatives(model, &tau);
+    let known = invariance::known(model, &joints);
+    for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
+        for (k, column) in columns {
+            let inertia = mass
+                .iter()
+                .map(|row| row.iter().zip(column).fold(model.graph.zero(), |sum, (m, x)| sum - *m * *x));
+            let found: Vec<Expr<'_>> = inertia.collect();
+            let expected: Vec<Expr<'_>> = forces.iter().map(|row| row[*k]).collect();
+            assert_same("forces on a free base", model, seed, &found, &expected);
+        }
+    }
+    known.indices()
+}
+
+#[test]
+fn forces_from_the_ground_are_not_forgotten() {
+    let of = |element: &str| {
+        let mut found = None;
+        let fields = format!(
+            "#[body(mass = 2, inertia = diagonal(1, 2, 3))] hull: Body, #[joint(ground -> hull)] pose: Free,
+             #[body(mass = 1, com = x)] arm: Body, #[joint(hull.at(y) -> arm, about = z)] elbow: Pin, {element}"
+        );
+        let source = ("gravity = -9.81 * z".to_string(), format!("struct Boat {{ {fields} }}"));
+        with_model(&source, |_, model| found = Some(check_what_is_known(model, 3)));
+        found.expect("it compiles")
+    };
+    let (all, none) = (|| [vec![3, 4, 5], vec![0, 1, 2]], Vec::new);
+    assert_eq!(of(""), all());
+    assert_eq!(of("#[acts(on = elbow, stiffness = 3, free_angle = 1)] spring: Spring,"), all());
+    assert_eq!(of("#[acts(between = (hull, arm.at(z)), damping = 3)] inside: Dashpot,"), all());
+    let spring = "#[acts(between = (ground.at(3 * x), arm.at(z)), stiffness = 3)] mooring: Spring,";
+    assert_eq!(of(spring), [none(), vec![0, 1, 2]]);
+    let dashpot = "#[acts(between = (ground.at(3 * x), arm.at(z)), damping = 3)] mooring: Dashpot,";
+    assert_eq!(of(dashpot), [none(), none()]);
+}
+
 proptest! {
     #![proptest_config(config(80))]
 
@@ -164,6 +207,7 @@ proptest! {
             check_recursion(model, seed);
             check_coriolis_matrix(model, seed);
             check_inverse(model, seed);
+            check_what_is_known(model, seed);
         });
     }
 }
