@@ -43,10 +43,13 @@ struct Column<A, T, const E: usize, const F: usize> {
     fours: [Vector<A, T, 4>; F],
 }
 
+/// Neighbouring rows or columns, from one up to another.
+type Range = (usize, usize);
+
 /// A matrix with which another is multiplied; column and row of what has to be made zero in it; and its columns, from one up to
 /// another, outside whose given rows there are zeros. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
-    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [((usize, usize), &'a [usize])]);
+    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
 
 /// Puts minus the products of a matrix with others in the place of these, `R` rows of them at a time. So many numbers of a column
 /// are read in `E` registers of eight numbers and `F` of four.
@@ -221,7 +224,7 @@ pub fn complete<
     matrix: &mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &[[T; K]; M],
-    runs: &[((usize, usize), (usize, usize))],
+    runs: &[(Range, Range)],
 ) {
     A::within(Completion::<T, E, F, N, K, M> { matrix, trunk, factors, runs });
 }
@@ -230,7 +233,7 @@ struct Completion<'a, T, const E: usize, const F: usize, const N: usize, const K
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &'a [[T; K]; M],
-    runs: &'a [((usize, usize), (usize, usize))],
+    runs: &'a [(Range, Range)],
 }
 
 impl<T: Real, const E: usize, const F: usize, const N: usize, const K: usize, const M: usize> Work
@@ -273,6 +276,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Col
         Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
     }
 
+    /// Reads a column, register by register: a whole one would be moved once more.
     #[inline(always)]
     fn set(&mut self, k: usize, column: &[T]) {
         let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) else { return };
@@ -393,7 +397,7 @@ mod tests {
     fn product<const R: usize, const E: usize, const F: usize, const N: usize, const M: usize>(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
-        groups: &[((usize, usize), &[usize])],
+        groups: &[(Range, &[usize])],
     ) -> SMatrix<f64, N, M> {
         let (mut found, mut other) = (*b, *b);
         minus_products::<Compiled, _, R, E, F, N, M, 2>(
@@ -432,7 +436,7 @@ mod tests {
         let found = product::<12, { eights(12) }, { fours(12) }, N, 7>(&a, &b, &[((0, 7), &rows)]);
         assert!((found + a * b).amax() < 1e-13);
         for n in 1..300 {
-            assert!(super::rows(n) <= n && (super::rows(n) == n || super::rows(n) % 4 == 0), "{n}");
+            assert!(super::rows(n) <= n && (super::rows(n) == n || super::rows(n).is_multiple_of(4)), "{n}");
         }
     }
 
@@ -483,7 +487,7 @@ mod tests {
     fn entries_are_made_zero() {
         let (a, b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let (mut found, mut given) = (b, b);
-        let groups: [((usize, usize), &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
+        let groups: [(Range, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
         minus_products::<Compiled, _, 7, { eights(7) }, { fours(7) }, 7, 3, 1>(
             &a,
             [(&mut found, &[(1, 4), (2, 0)], &groups)],
