@@ -367,6 +367,7 @@ pub fn derivatives(sizes: &Sizes) -> Vec<Function> {
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
                 TANGENT,
                 "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a large mechanism it calls other functions. The operations counted are those without calls and products.",
+                "How a mechanism with a free base moves in the axes of the base does not depend on its linear velocity, and on its orientation only by the components of uniform gravity: where no other force comes from the ground, these six columns are exact.",
             ],
         ),
         sizes.function(

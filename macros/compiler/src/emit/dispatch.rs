@@ -2,7 +2,7 @@
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
 use super::body::write_body;
-use super::function::{Function, Signature, write_function, write_head};
+use super::function::{Function, Shape, Signature, write_function, write_head};
 use super::item::{ALLOW, Head};
 use std::fmt::Write;
 
@@ -30,7 +30,11 @@ struct Body {
 
 /// True for a function that chooses. What calls others multiplies their matrices.
 fn is_large(f: &Function) -> bool {
-    f.shape.calls() || f.program.instructions.len() >= LARGE
+    match f.shape {
+        // Calls the one that is given matrices, no more.
+        Shape::CalledForward(_) => !f.given().is_empty(),
+        shape => shape.calls() || f.program.instructions.len() >= LARGE,
+    }
 }
 
 impl Bodies {
