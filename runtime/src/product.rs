@@ -179,7 +179,7 @@ fn minus_sums<
         let from = Column::read(from);
         for (sums, column) in sums.iter_mut().zip(columns) {
             let Some(factor) = column.get(k) else { continue };
-            sums.subtract_multiple(*factor, &from);
+            sums.add_multiple::<true>(*factor, &from);
         }
     }
     sums
@@ -254,7 +254,7 @@ impl<T: Real, const E: usize, const F: usize, const N: usize, const K: usize, co
                 let mut sums = Column::<A, T, E, F>::read(column);
                 for t in *from..K.min(*to) {
                     if let Some(factor) = factors.get(t) {
-                        sums.add_multiple(*factor, &trunk.get(t));
+                        sums.add_multiple::<false>(*factor, &trunk.get(t));
                     }
                 }
                 sums.write(column);
@@ -276,15 +276,11 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Col
         Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
     }
 
-    /// Reads a column, register by register: a whole one would be moved once more.
+    /// Reads a column where it is to be: a whole one would be moved once more.
     #[inline(always)]
     fn set(&mut self, k: usize, column: &[T]) {
-        let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) else { return };
-        for (k, register) in eights.iter_mut().enumerate() {
-            *register = part(column, 8 * k);
-        }
-        for (k, register) in fours.iter_mut().enumerate() {
-            *register = part(column, 8 * E + 4 * k);
+        if let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) {
+            read(column, eights, fours);
         }
     }
 
@@ -306,41 +302,17 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
     }
 
-    /// Adds a multiple of another.
+    /// Adds a multiple of another, or subtracts it.
     #[inline(always)]
-    fn add_multiple(&mut self, factor: T, other: &Self) {
-        let by = A::splat(factor);
-        for (sum, x) in self.eights.iter_mut().zip(&other.eights) {
-            *sum = A::mul_add(*x, by, *sum);
-        }
-        let by = A::splat(factor);
-        for (sum, x) in self.fours.iter_mut().zip(&other.fours) {
-            *sum = A::mul_add(*x, by, *sum);
-        }
-    }
-
-    /// Subtracts a multiple of another.
-    #[inline(always)]
-    fn subtract_multiple(&mut self, factor: T, other: &Self) {
-        let by = A::splat(factor);
-        for (sum, x) in self.eights.iter_mut().zip(&other.eights) {
-            *sum = A::neg_mul_add(*x, by, *sum);
-        }
-        let by = A::splat(factor);
-        for (sum, x) in self.fours.iter_mut().zip(&other.fours) {
-            *sum = A::neg_mul_add(*x, by, *sum);
-        }
+    fn add_multiple<const MINUS: bool>(&mut self, factor: T, other: &Self) {
+        add_multiples::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
+        add_multiples::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
     }
 
     #[inline(always)]
     fn read(column: &[T]) -> Self {
         let mut all = Self::zero();
-        for (k, register) in all.eights.iter_mut().enumerate() {
-            *register = part(column, 8 * k);
-        }
-        for (k, register) in all.fours.iter_mut().enumerate() {
-            *register = part(column, 8 * E + 4 * k);
-        }
+        read(column, &mut all.eights, &mut all.fours);
         all
     }
 
@@ -352,6 +324,34 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         for (k, register) in self.fours.iter().enumerate() {
             put(register, column, 8 * E + 4 * k);
         }
+    }
+}
+
+/// Adds multiples of others, or subtracts them.
+#[inline(always)]
+fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
+    sums: &mut [Vector<A, T, W>],
+    factor: T,
+    others: &[Vector<A, T, W>],
+) {
+    let by = A::splat(factor);
+    for (sum, x) in sums.iter_mut().zip(others) {
+        *sum = if MINUS { A::neg_mul_add(*x, by, *sum) } else { A::mul_add(*x, by, *sum) };
+    }
+}
+
+/// Reads a column.
+#[inline(always)]
+fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
+    column: &[T],
+    eights: &mut [Vector<A, T, 8>; E],
+    fours: &mut [Vector<A, T, 4>; F],
+) {
+    for (k, register) in eights.iter_mut().enumerate() {
+        *register = part(column, 8 * k);
+    }
+    for (k, register) in fours.iter_mut().enumerate() {
+        *register = part(column, 8 * E + 4 * k);
     }
 }
 
