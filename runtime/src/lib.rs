@@ -13,7 +13,8 @@
 //! `std`.
 //!
 //! With `std`, release builds for x86-64 compile large generated functions twice and run them with AVX2 and FMA where the
-//! processor has these: results are the same up to rounding. `#[mechanism(processor = target)]` leaves that out.
+//! processor has these: results are the same up to rounding. Products of large matrices take AVX-512 where it is.
+//! `#[mechanism(processor = target)]` leaves that out.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("linkwork needs one of its features `std` and `libm` for the elementary functions");
@@ -75,7 +76,7 @@ pub mod __private {
         free_tangent_rate,
     };
     pub use crate::private::constant;
-    pub use crate::product::{complete, eights, fours, minus_products, rows};
+    pub use crate::product::{Rows, complete, eights, fours, minus_products, rows};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

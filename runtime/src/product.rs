@@ -4,28 +4,25 @@
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
 use crate::lanes::Work;
+use core::marker::PhantomData;
 use nalgebra::SMatrix;
 
-/// How many registers of eight numbers hold most of a column of so many.
+/// How many registers of eight numbers hold most of a column of so many, where there are such registers.
 #[must_use]
-pub const fn eights(numbers: usize) -> usize {
-    if !cfg!(target_feature = "avx512f") || numbers < 8 {
-        0
-    } else {
-        numbers / 8 + (numbers % 8 > 4) as usize
-    }
+pub const fn eights(numbers: usize, wide: bool) -> usize {
+    if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
 }
 
 /// How many registers of four numbers hold the rest.
 #[must_use]
-pub const fn fours(numbers: usize) -> usize {
-    numbers.saturating_sub(8 * eights(numbers)).div_ceil(4)
+pub const fn fours(numbers: usize, wide: bool) -> usize {
+    numbers.saturating_sub(8 * eights(numbers, wide)).div_ceil(4)
 }
 
 /// How many of so many rows of a matrix are calculated together: all if they leave registers for several columns.
 #[must_use]
-pub const fn rows(numbers: usize) -> usize {
-    let most = if cfg!(target_feature = "avx512f") { 48 } else { 24 };
+pub const fn rows(numbers: usize, wide: bool) -> usize {
+    let most = if wide { 48 } else { 24 };
     if numbers <= most {
         return numbers;
     }
@@ -34,7 +31,9 @@ pub const fn rows(numbers: usize) -> usize {
 }
 
 /// How many registers hold sums at a time. The others are for what is added.
-const SUMS: usize = if cfg!(target_feature = "avx512f") { 24 } else { 12 };
+const fn sums(wide: bool) -> usize {
+    if wide { 24 } else { 12 }
+}
 
 /// A column in `E` registers of eight numbers, then `F` of four. The last begins as much earlier as it would be too long.
 #[derive(Clone, Copy)]
@@ -51,15 +50,14 @@ type Range = (usize, usize);
 pub type Factor<'a, T, const N: usize, const M: usize> =
     (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
 
-/// Puts minus the products of a matrix with others in the place of these, `R` rows of them at a time. So many numbers of a column
-/// are read in `E` registers of eight numbers and `F` of four.
+/// Puts minus the products of a matrix with others in the place of these. The matrix is read in parts as `Wide` says where
+/// registers hold eight numbers, else as `Narrow` does.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
     T: Real,
-    const R: usize,
-    const E: usize,
-    const F: usize,
+    Wide: Parts<T, N>,
+    Narrow: Parts<T, N>,
     const N: usize,
     const M: usize,
     const COUNT: usize,
@@ -67,43 +65,87 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::within(Products::<T, R, E, F, N, M, COUNT> { matrix, factors });
+    A::within(Products::<T, Wide, Narrow, N, M, COUNT> { matrix, factors, parts: PhantomData });
 }
 
-struct Products<
-    'a,
-    T,
-    const R: usize,
-    const E: usize,
-    const F: usize,
-    const N: usize,
-    const M: usize,
-    const COUNT: usize,
-> {
+struct Products<'a, T, Wide, Narrow, const N: usize, const M: usize, const COUNT: usize> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
+    parts: PhantomData<(Wide, Narrow)>,
 }
 
-impl<
-    T: Real,
-    const R: usize,
-    const E: usize,
-    const F: usize,
-    const N: usize,
-    const M: usize,
-    const COUNT: usize,
-> Work for Products<'_, T, R, E, F, N, M, COUNT>
+impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize, const M: usize, const COUNT: usize> Work
+    for Products<'_, T, Wide, Narrow, N, M, COUNT>
 {
+    const LONG: bool = eights(N, true) > 1;
+
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
         for (b, zeros, groups) in self.factors {
             clear(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                let some = multiply::<A, T, R, E, F, N, 4>(self.matrix, some, rows);
-                let some = multiply::<A, T, R, E, F, N, 3>(self.matrix, some, rows);
-                let some = multiply::<A, T, R, E, F, N, 2>(self.matrix, some, rows);
-                multiply::<A, T, R, E, F, N, 1>(self.matrix, some, rows);
+                if A::WIDE {
+                    Wide::multiply::<A>(self.matrix, some, rows);
+                } else {
+                    Narrow::multiply::<A>(self.matrix, some, rows);
+                }
+            }
+        }
+    }
+}
+
+/// How the columns of a matrix are read.
+pub trait Parts<T: Real, const N: usize> {
+    /// Puts minus the products of a matrix with columns in the place of these, outside whose given rows there are zeros.
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
+
+    /// Does what [`complete`] says.
+    fn complete<A: Arithmetic, const K: usize, const M: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; K]; M],
+        runs: &[(Range, Range)],
+    );
+}
+
+/// `R` rows at a time, in `E` registers of eight numbers and `F` of four.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<const R: usize, const E: usize, const F: usize>;
+
+impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Parts<T, N> for Rows<R, E, F> {
+    #[inline(always)]
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+        let some = multiply::<A, T, R, E, F, N, 4>(matrix, columns, rows);
+        let some = multiply::<A, T, R, E, F, N, 3>(matrix, some, rows);
+        let some = multiply::<A, T, R, E, F, N, 2>(matrix, some, rows);
+        multiply::<A, T, R, E, F, N, 1>(matrix, some, rows);
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const M: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; K]; M],
+        runs: &[(Range, Range)],
+    ) {
+        let mut known = Columns::<A, T, E, F, K>::zero();
+        for (t, k) in trunk.into_iter().enumerate() {
+            if let Some(column) = matrix.data.0.get(k) {
+                known.set(t, column);
+            }
+        }
+        let mut factors = factors.iter();
+        for ((first, end), (from, to)) in runs {
+            let columns = matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
+            for (column, factors) in columns.iter_mut().zip(&mut factors) {
+                let mut sums = Column::<A, T, E, F>::read(column);
+                for t in *from..K.min(*to) {
+                    if let Some(factor) = factors.get(t) {
+                        sums.add_multiple::<false>(*factor, &known.get(t));
+                    }
+                }
+                sums.write(column);
             }
         }
     }
@@ -136,7 +178,7 @@ fn multiply<
     columns: &'a mut [[T; N]],
     rows: &[usize],
 ) -> &'a mut [[T; N]] {
-    if C > 1 && C * (E + F) > SUMS {
+    if C > 1 && C * (E + F) > sums(A::WIDE) {
         return columns;
     }
     let (some, rest) = columns.as_chunks_mut::<C>();
@@ -209,14 +251,14 @@ fn write<
 
 /// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ` (`mechanics/derivatives/trunk.rs` of the compiler): the matrix has `H` in the columns
 /// of the trunk and `C⁻¹` in the others. Each run names neighbouring ones of these, from one up to another, and in the same way
-/// where in the trunk their `factors` are not zero, columns of `Gᵀ`. Columns are read in `E` registers of eight numbers and `F`
-/// of four.
+/// where in the trunk their `factors` are not zero, columns of `Gᵀ`. Columns are read in parts as for [`minus_products`], but
+/// all rows together.
 #[inline]
 pub fn complete<
     A: Arithmetic,
     T: Real,
-    const E: usize,
-    const F: usize,
+    Wide: Parts<T, N>,
+    Narrow: Parts<T, N>,
     const N: usize,
     const K: usize,
     const M: usize,
@@ -226,39 +268,28 @@ pub fn complete<
     factors: &[[T; K]; M],
     runs: &[(Range, Range)],
 ) {
-    A::within(Completion::<T, E, F, N, K, M> { matrix, trunk, factors, runs });
+    A::within(Completion::<T, Wide, Narrow, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
 }
 
-struct Completion<'a, T, const E: usize, const F: usize, const N: usize, const K: usize, const M: usize> {
+struct Completion<'a, T, Wide, Narrow, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &'a [[T; K]; M],
     runs: &'a [(Range, Range)],
+    parts: PhantomData<(Wide, Narrow)>,
 }
 
-impl<T: Real, const E: usize, const F: usize, const N: usize, const K: usize, const M: usize> Work
-    for Completion<'_, T, E, F, N, K, M>
+impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
+    for Completion<'_, T, Wide, Narrow, N, K, M>
 {
+    const LONG: bool = eights(N, true) > 1;
+
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let mut trunk = Columns::<A, T, E, F, K>::zero();
-        for (t, k) in self.trunk.into_iter().enumerate() {
-            if let Some(column) = self.matrix.data.0.get(k) {
-                trunk.set(t, column);
-            }
-        }
-        let mut factors = self.factors.iter();
-        for ((first, end), (from, to)) in self.runs {
-            let columns = self.matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-            for (column, factors) in columns.iter_mut().zip(&mut factors) {
-                let mut sums = Column::<A, T, E, F>::read(column);
-                for t in *from..K.min(*to) {
-                    if let Some(factor) = factors.get(t) {
-                        sums.add_multiple::<false>(*factor, &trunk.get(t));
-                    }
-                }
-                sums.write(column);
-            }
+        if A::WIDE {
+            Wide::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
+        } else {
+            Narrow::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
         }
     }
 }
@@ -388,31 +419,57 @@ fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, colum
 mod tests {
     use super::*;
     use crate::arithmetic::Compiled;
+    #[cfg(all(
+        feature = "std",
+        target_arch = "x86_64",
+        not(all(target_feature = "avx2", target_feature = "fma"))
+    ))]
+    use crate::lanes::{avx2, avx512};
 
     fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
         SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
     }
 
-    /// The product for the compilation's target, and that for the processor where there is one.
-    fn product<const R: usize, const E: usize, const F: usize, const N: usize, const M: usize>(
+    /// So many rows at a time, for registers of eight numbers and for those of four.
+    macro_rules! rows_of {
+        ($rows:expr, $wide:literal) => {
+            Rows<{ $rows }, { eights($rows, $wide) }, { fours($rows, $wide) }>
+        };
+    }
+
+    /// The product with both ways to read the matrix, for the compilation's target and for what the processor has.
+    fn product<Wide: Parts<f64, N>, Narrow: Parts<f64, N>, const N: usize, const M: usize>(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
         groups: &[(Range, &[usize])],
     ) -> SMatrix<f64, N, M> {
-        let (mut found, mut other) = (*b, *b);
-        minus_products::<Compiled, _, R, E, F, N, M, 2>(
-            a,
-            [(&mut found, &[], groups), (&mut other, &[], groups)],
-        );
-        assert_eq!(found, other);
-        #[cfg(all(
-            feature = "std",
-            target_arch = "x86_64",
-            not(all(target_feature = "avx2", target_feature = "fma"))
-        ))]
-        if crate::lanes::avx2::is_available() {
-            other = *b;
-            minus_products::<crate::lanes::avx2::Avx2, _, R, E, F, N, M, 1>(a, [(&mut other, &[], groups)]);
+        fn twice<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            a: &SMatrix<f64, N, N>,
+            b: &SMatrix<f64, N, M>,
+            groups: &[(Range, &[usize])],
+        ) -> SMatrix<f64, N, M> {
+            let (mut found, mut other) = (*b, *b);
+            minus_products::<A, _, P, P, N, M, 2>(a, [(&mut found, &[], groups), (&mut other, &[], groups)]);
+            assert_eq!(found, other);
+            found
+        }
+        let found = twice::<Compiled, Wide, N, M>(a, b, groups);
+        let all = [
+            Some(twice::<Compiled, Narrow, N, M>(a, b, groups)),
+            #[cfg(all(
+                feature = "std",
+                target_arch = "x86_64",
+                not(all(target_feature = "avx2", target_feature = "fma"))
+            ))]
+            avx2::is_available().then(|| twice::<avx2::Avx2, Narrow, N, M>(a, b, groups)),
+            #[cfg(all(
+                feature = "std",
+                target_arch = "x86_64",
+                not(all(target_feature = "avx2", target_feature = "fma"))
+            ))]
+            avx512::is_available().then(|| twice::<avx512::Avx512, Wide, N, M>(a, b, groups)),
+        ];
+        for other in all.into_iter().flatten() {
             assert!((found - other).amax() < 1e-13);
         }
         found
@@ -423,8 +480,11 @@ mod tests {
         const N: usize = 19;
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
-        let found =
-            product::<N, { eights(N) }, { fours(N) }, N, 10>(&a, &b, &[((0, 3), &rows), ((3, 10), &rows)]);
+        let found = product::<rows_of!(N, true), rows_of!(N, false), N, 10>(
+            &a,
+            &b,
+            &[((0, 3), &rows), ((3, 10), &rows)],
+        );
         assert!((found + a * b).amax() < 1e-13);
     }
 
@@ -433,17 +493,19 @@ mod tests {
         const N: usize = 29;
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 7>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
-        let found = product::<12, { eights(12) }, { fours(12) }, N, 7>(&a, &b, &[((0, 7), &rows)]);
+        let found = product::<rows_of!(12, true), rows_of!(12, false), N, 7>(&a, &b, &[((0, 7), &rows)]);
         assert!((found + a * b).amax() < 1e-13);
         for n in 1..300 {
-            assert!(super::rows(n) <= n && (super::rows(n) == n || super::rows(n).is_multiple_of(4)), "{n}");
+            for rows in [true, false].map(|wide| super::rows(n, wide)) {
+                assert!(rows <= n && (rows == n || rows.is_multiple_of(4)), "{n}");
+            }
         }
     }
 
     #[test]
     fn small_matrices_do_not_fill_a_register() {
         let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
-        let found = product::<3, { eights(3) }, { fours(3) }, 3, 7>(&a, &b, &[((0, 7), &[0, 1, 2])]);
+        let found = product::<rows_of!(3, true), rows_of!(3, false), 3, 7>(&a, &b, &[((0, 7), &[0, 1, 2])]);
         assert!((found + a * b).amax() < 1e-13);
     }
 
@@ -452,7 +514,7 @@ mod tests {
         let (a, mut b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let mut given = b;
         given.column_mut(1).fill(0.0);
-        let found = product::<7, { eights(7) }, { fours(7) }, 7, 3>(
+        let found = product::<rows_of!(7, true), rows_of!(7, false), 7, 3>(
             &a,
             &given,
             &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])],
@@ -473,7 +535,9 @@ mod tests {
         let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
         let factors: [[f64; 3]; 8] =
             core::array::from_fn(|k| all.data.0[first.iter().chain(&last).nth(k).copied().unwrap_or(0)]);
-        complete::<Compiled, _, { eights(N) }, { fours(N) }, N, 3, 8>(&mut found, trunk, &factors, &runs);
+        complete::<Compiled, _, rows_of!(N, true), rows_of!(N, false), N, 3, 8>(
+            &mut found, trunk, &factors, &runs,
+        );
         let mut expected = start;
         for ((first, end), (from, to)) in runs {
             for (j, t) in (first..end).flat_map(|j| (from..to).map(move |t| (j, t))) {
@@ -488,7 +552,7 @@ mod tests {
         let (a, b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let (mut found, mut given) = (b, b);
         let groups: [(Range, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
-        minus_products::<Compiled, _, 7, { eights(7) }, { fours(7) }, 7, 3, 1>(
+        minus_products::<Compiled, _, rows_of!(7, true), rows_of!(7, false), 7, 3, 1>(
             &a,
             [(&mut found, &[(1, 4), (2, 0)], &groups)],
         );

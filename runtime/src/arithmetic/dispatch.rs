@@ -1,8 +1,9 @@
 //! Which arithmetic a body runs with.
 //!
 //! Where the target is x86-64 without fused multiplication and addition, large functions are compiled twice: for the
-//! target, and for processors with AVX2 and FMA, which are asked for once. Not so in debug builds, where time of
-//! compilation matters more, and not without the standard library, which asks the processor.
+//! target, and for processors with AVX2 and FMA, which are asked for once. Loops of the runtime in them are compiled for AVX-512
+//! besides. Not so in debug builds, where time of compilation matters more, and not without the standard library, which asks the
+//! processor.
 
 use super::{Arithmetic, Compiled};
 use crate::Real;

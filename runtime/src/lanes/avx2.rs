@@ -1,6 +1,7 @@
 //! The registers and the fused operations of processors with AVX2 and FMA, whatever the compilation's target.
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
+use super::avx512::{self, Avx512};
 use super::registers::{Registers, Work};
 use crate::Real;
 use crate::arithmetic::Compiled;
@@ -102,6 +103,9 @@ mod with_features {
 
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn within<W: Work>(work: W) {
+        if W::LONG && avx512::is_available() {
+            return Avx512::within(work);
+        }
         work.run::<Avx2>();
     }
 
@@ -189,6 +193,7 @@ macro_rules! methods {
 
 impl Registers for Avx2 {
     const FUSED: bool = true;
+    const WIDE: bool = false;
 
     #[inline(always)]
     fn within<W: Work>(work: W) {

@@ -12,6 +12,9 @@ use crate::trigonometry::{LARGEST, same};
 
 /// Loops that a generated body leaves to the runtime.
 pub trait Work {
+    /// It fills several registers of eight numbers at a time.
+    const LONG: bool;
+
     /// Does the work. Always inlined, with everything in it, so that it has the features of the function that it ends up in.
     fn run<A: Arithmetic>(self);
 }
@@ -20,6 +23,8 @@ pub trait Work {
 pub trait Registers: Copy + 'static {
     /// One instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
     const FUSED: bool;
+    /// Registers hold eight numbers of double precision, and there are 32 of them; elsewhere four, and 16.
+    const WIDE: bool;
 
     /// Does work in a function that has the instructions.
     fn within<W: Work>(work: W);
@@ -98,6 +103,7 @@ macro_rules! operations {
 
 impl Registers for Compiled {
     const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+    const WIDE: bool = cfg!(target_feature = "avx512f");
 
     #[inline(always)]
     fn within<W: Work>(work: W) {

@@ -202,7 +202,12 @@ fn vectors_compute_lane_by_lane() {
         target_arch = "x86_64",
         not(all(target_feature = "avx2", target_feature = "fma"))
     ))]
-    if avx2::is_available() && avx2::serves::<f64>() && avx2::serves::<f32>() {
-        vectors_of_any_length::<avx2::Avx2>();
+    {
+        if avx2::is_available() && avx2::serves::<f64>() && avx2::serves::<f32>() {
+            vectors_of_any_length::<avx2::Avx2>();
+        }
+        if avx512::is_available() {
+            vectors_of_any_length::<avx512::Avx512>();
+        }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::body::Outputs;
 use super::function::{Function, Shape, Signature, Structure};
-use std::fmt::Display;
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -125,9 +124,10 @@ fn completed(
         return String::new();
     }
     format!(
-        "::linkwork::__private::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
+        "::linkwork::__private::complete::<Ops, {}, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
         s.scalar.name(),
-        registers(n),
+        rows_of(&n.to_string(), true),
+        rows_of(&n.to_string(), false),
         all.join(", "),
     )
 }
@@ -152,19 +152,23 @@ fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structu
 
 /// Minus the products of the inverse with factors of so many columns, in the place of these.
 fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
-    let rows = format!("::linkwork::__private::rows({n})");
+    let parts = |wide: bool| rows_of(&format!("::linkwork::__private::rows({n}, {wide})"), wide);
     format!(
-        "::linkwork::__private::minus_products::<Ops, {}, {{ {rows} }}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
+        "::linkwork::__private::minus_products::<Ops, {}, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
         s.scalar.name(),
-        registers(&rows),
+        parts(true),
+        parts(false),
         factors.len(),
         factors.join(", ")
     )
 }
 
-/// How many registers of eight and of four numbers a column fills: what the compilation's target has decides.
-fn registers(n: impl Display) -> String {
-    format!("{{ ::linkwork::__private::eights({n}) }}, {{ ::linkwork::__private::fours({n}) }}")
+/// So many rows of a matrix at a time, in registers of eight numbers or of four alone.
+fn rows_of(n: &str, wide: bool) -> String {
+    const RUNTIME: &str = "::linkwork::__private";
+    format!(
+        "{RUNTIME}::Rows::<{{ {n} }}, {{ {RUNTIME}::eights({n}, {wide}) }}, {{ {RUNTIME}::fours({n}, {wide}) }}>"
+    )
 }
 
 /// How many zeros a column may have in the rows of its neighbours to be taken together with them.

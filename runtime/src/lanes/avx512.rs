@@ -1,0 +1,124 @@
+//! Registers of eight numbers of double precision, for loops: straight-line bodies of many operations hardly gain by them, and
+//! would have to be compiled once more.
+#![expect(unsafe_code, reason = "instructions that the target does not promise")]
+
+use super::avx2::Avx2;
+use super::registers::{Registers, Work};
+use crate::Real;
+use crate::trigonometry::same;
+use core::arch::x86_64::*;
+use core::mem::transmute;
+
+/// Work with these instructions is done within a function that has the target features, where the processor has them. The
+/// type is known to this crate alone, so that nobody else can do any.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx512;
+
+/// The processor has the instructions and does not slow down where they are used: Intel's since Ice Lake, AMD's since Zen 4.
+#[inline(always)]
+pub(crate) fn is_available() -> bool {
+    use std::is_x86_feature_detected as has;
+    has!("avx2") && has!("fma") && has!("avx512f") && has!("avx512vl") && has!("avx512vbmi2")
+}
+
+/// Functions with the target features. What is not eight numbers is left to AVX2.
+mod with_features {
+    use super::*;
+
+    macro_rules! functions {
+        ($($name:ident($($a:ident)+) = $f:expr;)+) => {$(
+            #[inline]
+            #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
+            pub(super) fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
+                if let ($(Some($a),)+) = ($(same::<_, [f64; 8]>($a),)+) {
+                    // SAFETY: numbers and registers have the same bits.
+                    let result: [f64; 8] = unsafe {
+                        $(let $a: __m512d = transmute(*$a);)+
+                        transmute($f)
+                    };
+                    if let Some(result) = same(&result) {
+                        return *result;
+                    }
+                }
+                Avx2::$name($($a),+)
+            }
+        )+};
+    }
+
+    functions! {
+        add(a b) = _mm512_add_pd(a, b);
+        sub(a b) = _mm512_sub_pd(a, b);
+        mul(a b) = _mm512_mul_pd(a, b);
+        neg(a) = _mm512_sub_pd(_mm512_set1_pd(-0.0), a);
+        fused(a b c) = _mm512_fmadd_pd(a, b, c);
+    }
+
+    #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
+    pub(super) fn within<W: Work>(work: W) {
+        work.run::<Avx512>();
+    }
+}
+
+macro_rules! methods {
+    ($($name:ident($($a:ident)+);)+) => {$(
+        #[inline(always)]
+        fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
+            // SAFETY: the processor has the instructions.
+            unsafe { with_features::$name($($a),+) }
+        }
+    )+};
+}
+
+impl Registers for Avx512 {
+    const FUSED: bool = true;
+    const WIDE: bool = true;
+
+    #[inline(always)]
+    fn within<W: Work>(work: W) {
+        // SAFETY: the processor has the instructions.
+        unsafe { with_features::within(work) }
+    }
+
+    methods! {
+        add(a b);
+        sub(a b);
+        mul(a b);
+        neg(a);
+        fused(a b c);
+    }
+
+    #[inline(always)]
+    fn div<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
+        Avx2::div(a, b)
+    }
+
+    #[inline(always)]
+    fn root<T: Real, const N: usize>(a: &[T; N]) -> [T; N] {
+        Avx2::root(a)
+    }
+
+    #[inline(always)]
+    fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N] {
+        Avx2::magnitude(a)
+    }
+
+    #[inline(always)]
+    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+        Avx2::turned(s, c, shifted)
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
+        Avx2::sin_cos_of_small(x)
+    }
+
+    #[inline(always)]
+    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+        Avx2::are_small(x)
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+        Avx2::sin_cos_of_large(x)
+    }
+}
