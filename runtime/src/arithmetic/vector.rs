@@ -35,7 +35,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         Self(Lanes(numbers), PhantomData)
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn splat(x: T) -> Self {
         Self::of([x; N])
     }
@@ -59,7 +59,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
     }
 
     /// The lanes of one, then those of another. Does not compile if `M` is not `2 N`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn joined<const M: usize>(a: &Vector<A, T, N>, b: &Vector<A, T, N>) -> Vector<A, T, M> {
         const { assert!(N > 0 && M == 2 * N, "half of the lanes come from either") };
         let mut numbers = [a.0.0[0]; M];
@@ -74,7 +74,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
     }
 
     /// The first `M` lanes. Does not compile if there are fewer.
-    #[inline(always)]
+    #[inline]
     pub fn first<const M: usize>(&self) -> Vector<A, T, M> {
         Vector::from(self.0.first())
     }
@@ -82,7 +82,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
     /// The sum of all lanes, in the order of [`Lanes::sum`].
-    #[inline(always)]
+    #[inline]
     pub fn sum(&self) -> T {
         self.0.sum()
     }
