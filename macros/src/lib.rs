@@ -23,7 +23,7 @@ use std::path::PathBuf;
 /// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
-/// | `processor = detect` or `target` | whether large functions use AVX2 and FMA where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
+/// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
 /// | `passive = honour` or `ignore` | damping and friction of the file's joints |
