@@ -6,23 +6,16 @@
 
 #[cfg(feature = "std")]
 pub(crate) mod angles;
-#[cfg(all(
-    feature = "std",
-    target_arch = "x86_64",
-    not(all(target_feature = "avx2", target_feature = "fma")),
-    any(test, not(debug_assertions))
-))]
-pub(crate) mod avx2;
-#[cfg(all(
-    feature = "std",
-    target_arch = "x86_64",
-    not(all(target_feature = "avx2", target_feature = "fma")),
-    any(test, not(debug_assertions))
-))]
-pub(crate) mod avx512;
 mod field;
 mod numeric;
 mod registers;
+#[cfg(all(
+    feature = "std",
+    target_arch = "x86_64",
+    not(all(target_feature = "avx2", target_feature = "fma")),
+    any(test, not(debug_assertions))
+))]
+pub(crate) mod x86;
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};

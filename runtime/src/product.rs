@@ -19,6 +19,11 @@ pub const fn fours(numbers: usize, wide: bool) -> usize {
     numbers.saturating_sub(8 * eights(numbers, wide)).div_ceil(4)
 }
 
+/// So many numbers fill several registers of eight.
+const fn is_long(numbers: usize) -> bool {
+    eights(numbers, true) > 1
+}
+
 /// How many of so many rows of a matrix are calculated together: all if they leave registers for several columns.
 #[must_use]
 pub const fn rows(numbers: usize, wide: bool) -> usize {
@@ -50,14 +55,12 @@ type Range = (usize, usize);
 pub type Factor<'a, T, const N: usize, const M: usize> =
     (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
 
-/// Puts minus the products of a matrix with others in the place of these. The matrix is read in parts as `Wide` says where
-/// registers hold eight numbers, else as `Narrow` does.
+/// Puts minus the products of a matrix with others in the place of these.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
     T: Real,
-    Wide: Parts<T, N>,
-    Narrow: Parts<T, N>,
+    P: Parts<T, N>,
     const N: usize,
     const M: usize,
     const COUNT: usize,
@@ -65,19 +68,19 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::within(Products::<T, Wide, Narrow, N, M, COUNT> { matrix, factors, parts: PhantomData });
+    A::within(Products::<T, P, N, M, COUNT> { matrix, factors, parts: PhantomData });
 }
 
-struct Products<'a, T, Wide, Narrow, const N: usize, const M: usize, const COUNT: usize> {
+struct Products<'a, T, P, const N: usize, const M: usize, const COUNT: usize> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
-    parts: PhantomData<(Wide, Narrow)>,
+    parts: PhantomData<P>,
 }
 
-impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize, const M: usize, const COUNT: usize> Work
-    for Products<'_, T, Wide, Narrow, N, M, COUNT>
+impl<T: Real, P: Parts<T, N>, const N: usize, const M: usize, const COUNT: usize> Work
+    for Products<'_, T, P, N, M, COUNT>
 {
-    const LONG: bool = eights(N, true) > 1;
+    const LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
@@ -85,11 +88,7 @@ impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize, const M: u
             clear(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                if A::WIDE {
-                    Wide::multiply::<A>(self.matrix, some, rows);
-                } else {
-                    Narrow::multiply::<A>(self.matrix, some, rows);
-                }
+                P::multiply::<A>(self.matrix, some, rows);
             }
         }
     }
@@ -147,6 +146,32 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Pa
                 }
                 sums.write(column);
             }
+        }
+    }
+}
+
+/// The first where registers hold eight numbers, else the second.
+impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize> Parts<T, N> for (Wide, Narrow) {
+    #[inline(always)]
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+        if A::WIDE {
+            Wide::multiply::<A>(matrix, columns, rows);
+        } else {
+            Narrow::multiply::<A>(matrix, columns, rows);
+        }
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const M: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; K]; M],
+        runs: &[(Range, Range)],
+    ) {
+        if A::WIDE {
+            Wide::complete::<A, K, M>(matrix, trunk, factors, runs);
+        } else {
+            Narrow::complete::<A, K, M>(matrix, trunk, factors, runs);
         }
     }
 }
@@ -254,43 +279,31 @@ fn write<
 /// where in the trunk their `factors` are not zero, columns of `Gᵀ`. Columns are read in parts as for [`minus_products`], but
 /// all rows together.
 #[inline]
-pub fn complete<
-    A: Arithmetic,
-    T: Real,
-    Wide: Parts<T, N>,
-    Narrow: Parts<T, N>,
-    const N: usize,
-    const K: usize,
-    const M: usize,
->(
+pub fn complete<A: Arithmetic, T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &[[T; K]; M],
     runs: &[(Range, Range)],
 ) {
-    A::within(Completion::<T, Wide, Narrow, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+    A::within(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
 }
 
-struct Completion<'a, T, Wide, Narrow, const N: usize, const K: usize, const M: usize> {
+struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &'a [[T; K]; M],
     runs: &'a [(Range, Range)],
-    parts: PhantomData<(Wide, Narrow)>,
+    parts: PhantomData<P>,
 }
 
-impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
-    for Completion<'_, T, Wide, Narrow, N, K, M>
+impl<T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
+    for Completion<'_, T, P, N, K, M>
 {
-    const LONG: bool = eights(N, true) > 1;
+    const LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        if A::WIDE {
-            Wide::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
-        } else {
-            Narrow::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
-        }
+        P::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
     }
 }
 
@@ -419,60 +432,51 @@ fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, colum
 mod tests {
     use super::*;
     use crate::arithmetic::Compiled;
-    #[cfg(all(
-        feature = "std",
-        target_arch = "x86_64",
-        not(all(target_feature = "avx2", target_feature = "fma"))
-    ))]
-    use crate::lanes::{avx2, avx512};
 
     fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
         SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
     }
 
-    /// So many rows at a time, for registers of eight numbers and for those of four.
+    /// So many rows at a time, for registers of eight numbers or for those of four.
     macro_rules! rows_of {
         ($rows:expr, $wide:literal) => {
             Rows<{ $rows }, { eights($rows, $wide) }, { fours($rows, $wide) }>
         };
     }
 
-    /// The product with both ways to read the matrix, for the compilation's target and for what the processor has.
-    fn product<Wide: Parts<f64, N>, Narrow: Parts<f64, N>, const N: usize, const M: usize>(
+    /// Calls a function for the compilation's target, with both ways to read a matrix, and for what the processor has.
+    macro_rules! everywhere {
+        ($function:ident by $rows:expr, $arguments:tt) => {
+            $function::<Compiled, rows_of!($rows, true), _, _> $arguments;
+            $function::<Compiled, rows_of!($rows, false), _, _> $arguments;
+            #[cfg(all(
+                feature = "std",
+                target_arch = "x86_64",
+                not(all(target_feature = "avx2", target_feature = "fma"))
+            ))]
+            {
+                use crate::lanes::x86::{avx2, avx512};
+                if avx2::is_available() {
+                    $function::<avx2::Avx2, rows_of!($rows, false), _, _> $arguments;
+                }
+                if avx512::is_available() {
+                    $function::<avx512::Avx512, rows_of!($rows, true), _, _> $arguments;
+                }
+            }
+        };
+    }
+
+    /// Compares two products with minus one that is given.
+    fn product<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
         groups: &[(Range, &[usize])],
-    ) -> SMatrix<f64, N, M> {
-        fn twice<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
-            a: &SMatrix<f64, N, N>,
-            b: &SMatrix<f64, N, M>,
-            groups: &[(Range, &[usize])],
-        ) -> SMatrix<f64, N, M> {
-            let (mut found, mut other) = (*b, *b);
-            minus_products::<A, _, P, P, N, M, 2>(a, [(&mut found, &[], groups), (&mut other, &[], groups)]);
-            assert_eq!(found, other);
-            found
-        }
-        let found = twice::<Compiled, Wide, N, M>(a, b, groups);
-        let all = [
-            Some(twice::<Compiled, Narrow, N, M>(a, b, groups)),
-            #[cfg(all(
-                feature = "std",
-                target_arch = "x86_64",
-                not(all(target_feature = "avx2", target_feature = "fma"))
-            ))]
-            avx2::is_available().then(|| twice::<avx2::Avx2, Narrow, N, M>(a, b, groups)),
-            #[cfg(all(
-                feature = "std",
-                target_arch = "x86_64",
-                not(all(target_feature = "avx2", target_feature = "fma"))
-            ))]
-            avx512::is_available().then(|| twice::<avx512::Avx512, Wide, N, M>(a, b, groups)),
-        ];
-        for other in all.into_iter().flatten() {
-            assert!((found - other).amax() < 1e-13);
-        }
-        found
+        expected: &SMatrix<f64, N, M>,
+    ) {
+        let (mut found, mut other) = (*b, *b);
+        minus_products::<A, _, P, N, M, 2>(a, [(&mut found, &[], groups), (&mut other, &[], groups)]);
+        assert_eq!(found, other);
+        assert!((found + expected).amax() < 1e-13);
     }
 
     #[test]
@@ -480,12 +484,7 @@ mod tests {
         const N: usize = 19;
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
-        let found = product::<rows_of!(N, true), rows_of!(N, false), N, 10>(
-            &a,
-            &b,
-            &[((0, 3), &rows), ((3, 10), &rows)],
-        );
-        assert!((found + a * b).amax() < 1e-13);
+        everywhere!(product by N, (&a, &b, &[((0, 3), &rows), ((3, 10), &rows)], &(a * b)));
     }
 
     #[test]
@@ -493,8 +492,7 @@ mod tests {
         const N: usize = 29;
         let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 7>(1.0));
         let rows: [usize; N] = core::array::from_fn(|k| k);
-        let found = product::<rows_of!(12, true), rows_of!(12, false), N, 7>(&a, &b, &[((0, 7), &rows)]);
-        assert!((found + a * b).amax() < 1e-13);
+        everywhere!(product by 12, (&a, &b, &[((0, 7), &rows)], &(a * b)));
         for n in 1..300 {
             for rows in [true, false].map(|wide| super::rows(n, wide)) {
                 assert!(rows <= n && (rows == n || rows.is_multiple_of(4)), "{n}");
@@ -505,8 +503,7 @@ mod tests {
     #[test]
     fn small_matrices_do_not_fill_a_register() {
         let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
-        let found = product::<rows_of!(3, true), rows_of!(3, false), 3, 7>(&a, &b, &[((0, 7), &[0, 1, 2])]);
-        assert!((found + a * b).amax() < 1e-13);
+        everywhere!(product by 3, (&a, &b, &[((0, 7), &[0, 1, 2])], &(a * b)));
     }
 
     #[test]
@@ -514,37 +511,39 @@ mod tests {
         let (a, mut b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let mut given = b;
         given.column_mut(1).fill(0.0);
-        let found = product::<rows_of!(7, true), rows_of!(7, false), 7, 3>(
-            &a,
-            &given,
-            &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])],
-        );
         b.view_mut((2, 0), (2, 1)).fill(0.0);
         b.column_mut(1).fill(0.0);
         b.view_mut((0, 2), (6, 1)).fill(0.0);
-        assert!((found + a * b).amax() < 1e-13);
+        everywhere!(product by 7, (&a, &given, &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])], &(a * b)));
     }
 
     #[test]
     fn columns_are_completed() {
         const N: usize = 14;
+        fn completed<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            start: &SMatrix<f64, N, N>,
+            factors: &[[f64; 3]; M],
+            runs: &[(Range, Range)],
+            expected: &SMatrix<f64, N, N>,
+        ) {
+            let mut found = *start;
+            complete::<A, _, P, N, 3, M>(&mut found, TRUNK, factors, runs);
+            assert!((found - expected).amax() < 1e-13);
+        }
+        const TRUNK: [usize; 3] = [9, 1, 7];
         let start = numbers::<N, N>(4.0);
         let all: SMatrix<f64, 3, N> = numbers(5.0);
-        let mut found = start;
-        let (trunk, runs) = ([9, 1, 7], [((2, 7), (0, 3)), ((10, 13), (1, 3))]);
+        let runs = [((2, 7), (0, 3)), ((10, 13), (1, 3))];
         let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
         let factors: [[f64; 3]; 8] =
             core::array::from_fn(|k| all.data.0[first.iter().chain(&last).nth(k).copied().unwrap_or(0)]);
-        complete::<Compiled, _, rows_of!(N, true), rows_of!(N, false), N, 3, 8>(
-            &mut found, trunk, &factors, &runs,
-        );
         let mut expected = start;
         for ((first, end), (from, to)) in runs {
             for (j, t) in (first..end).flat_map(|j| (from..to).map(move |t| (j, t))) {
-                expected.set_column(j, &(expected.column(j) + start.column(trunk[t]) * all[(t, j)]));
+                expected.set_column(j, &(expected.column(j) + start.column(TRUNK[t]) * all[(t, j)]));
             }
         }
-        assert!((found - expected).amax() < 1e-13);
+        everywhere!(completed by N, (&start, &factors, &runs, &expected));
     }
 
     #[test]
@@ -552,7 +551,7 @@ mod tests {
         let (a, b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
         let (mut found, mut given) = (b, b);
         let groups: [(Range, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
-        minus_products::<Compiled, _, rows_of!(7, true), rows_of!(7, false), 7, 3, 1>(
+        minus_products::<Compiled, _, (rows_of!(7, true), rows_of!(7, false)), 7, 3, 1>(
             &a,
             [(&mut found, &[(1, 4), (2, 0)], &groups)],
         );

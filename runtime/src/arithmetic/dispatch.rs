@@ -29,7 +29,7 @@ pub fn dispatch<const K: usize, T: Real, M: Body<K, Arguments>, Arguments>(
         not(all(target_feature = "avx2", target_feature = "fma")),
         any(test, not(debug_assertions))
     ))]
-    if crate::lanes::avx2::serves::<T>() && crate::lanes::avx2::is_available() {
+    if crate::lanes::x86::avx2::serves::<T>() && crate::lanes::x86::avx2::is_available() {
         #[expect(unsafe_code, reason = "calls of functions with target features are")]
         // SAFETY: the processor has the features.
         return unsafe { with_avx2(mechanism, arguments) };
@@ -48,5 +48,5 @@ fn with_avx2<const K: usize, M: Body<K, Arguments>, Arguments>(
     mechanism: &M,
     arguments: Arguments,
 ) -> M::Output {
-    mechanism.evaluate::<crate::lanes::avx2::Avx2>(arguments)
+    mechanism.evaluate::<crate::lanes::x86::avx2::Avx2>(arguments)
 }

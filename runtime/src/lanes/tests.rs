@@ -203,6 +203,7 @@ fn vectors_compute_lane_by_lane() {
         not(all(target_feature = "avx2", target_feature = "fma"))
     ))]
     {
+        use x86::{avx2, avx512};
         if avx2::is_available() && avx2::serves::<f64>() && avx2::serves::<f32>() {
             vectors_of_any_length::<avx2::Avx2>();
         }

@@ -124,10 +124,9 @@ fn completed(
         return String::new();
     }
     format!(
-        "::linkwork::__private::complete::<Ops, {}, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
+        "::linkwork::__private::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
         s.scalar.name(),
-        rows_of(&n.to_string(), true),
-        rows_of(&n.to_string(), false),
+        parts(|_| n.to_string()),
         all.join(", "),
     )
 }
@@ -152,23 +151,25 @@ fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structu
 
 /// Minus the products of the inverse with factors of so many columns, in the place of these.
 fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
-    let parts = |wide: bool| rows_of(&format!("::linkwork::__private::rows({n}, {wide})"), wide);
     format!(
-        "::linkwork::__private::minus_products::<Ops, {}, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
+        "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
         s.scalar.name(),
-        parts(true),
-        parts(false),
+        parts(|wide| format!("::linkwork::__private::rows({n}, {wide})")),
         factors.len(),
         factors.join(", ")
     )
 }
 
-/// So many rows of a matrix at a time, in registers of eight numbers or of four alone.
-fn rows_of(n: &str, wide: bool) -> String {
+/// How a matrix is read, where registers hold eight numbers and where they hold four: so many rows at a time.
+fn parts(rows: impl Fn(bool) -> String) -> String {
     const RUNTIME: &str = "::linkwork::__private";
-    format!(
-        "{RUNTIME}::Rows::<{{ {n} }}, {{ {RUNTIME}::eights({n}, {wide}) }}, {{ {RUNTIME}::fours({n}, {wide}) }}>"
-    )
+    let of = |wide: bool| {
+        let n = rows(wide);
+        format!(
+            "{RUNTIME}::Rows<{{ {n} }}, {{ {RUNTIME}::eights({n}, {wide}) }}, {{ {RUNTIME}::fours({n}, {wide}) }}>"
+        )
+    };
+    format!("({}, {})", of(true), of(false))
 }
 
 /// How many zeros a column may have in the rows of its neighbours to be taken together with them.

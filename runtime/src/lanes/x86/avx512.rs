@@ -3,8 +3,8 @@
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
 use super::avx2::Avx2;
-use super::registers::{Registers, Work};
 use crate::Real;
+use crate::lanes::registers::{Registers, Work};
 use crate::trigonometry::same;
 use core::arch::x86_64::*;
 use core::mem::transmute;
@@ -57,16 +57,6 @@ mod with_features {
     pub(super) fn within<W: Work>(work: W) {
         work.run::<Avx512>();
     }
-}
-
-macro_rules! methods {
-    ($($name:ident($($a:ident)+);)+) => {$(
-        #[inline(always)]
-        fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
-            // SAFETY: the processor has the instructions.
-            unsafe { with_features::$name($($a),+) }
-        }
-    )+};
 }
 
 impl Registers for Avx512 {

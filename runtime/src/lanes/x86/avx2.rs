@@ -2,9 +2,9 @@
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
 use super::avx512::{self, Avx512};
-use super::registers::{Registers, Work};
 use crate::Real;
 use crate::arithmetic::Compiled;
+use crate::lanes::registers::{Registers, Work};
 use crate::trigonometry::{self, LARGEST, same};
 use core::any::TypeId;
 use core::arch::x86_64::*;
@@ -179,16 +179,6 @@ mod with_features {
         case!(8 in 2);
         Compiled::are_small(x)
     }
-}
-
-macro_rules! methods {
-    ($($name:ident($($a:ident)+) = $doubles:expr, $singles:expr;)+) => {$(
-        #[inline(always)]
-        fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
-            // SAFETY: the processor has the instructions.
-            unsafe { with_features::$name($($a),+) }
-        }
-    )+};
 }
 
 impl Registers for Avx2 {
