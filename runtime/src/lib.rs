@@ -76,7 +76,7 @@ pub mod __private {
         free_tangent_rate,
     };
     pub use crate::private::constant;
-    pub use crate::product::{Rows, complete, eights, fours, minus_products, rows};
+    pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

@@ -1,10 +1,13 @@
-//! Products with the inverse of a mass matrix, for generated code. They never allocate, as nalgebra's own do for large
+//! The inverse of a mass matrix and products with it, for generated code. They never allocate, as nalgebra's own do for large
 //! matrices, and skip what is known to be zero.
+
+mod inverse;
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
 use crate::lanes::Work;
 use core::marker::PhantomData;
+pub use inverse::{complete, invert};
 use nalgebra::SMatrix;
 
 /// How many registers of eight numbers hold most of a column of so many, where there are such registers.
@@ -49,6 +52,9 @@ struct Column<A, T, const E: usize, const F: usize> {
 
 /// Neighbouring rows or columns, from one up to another.
 type Range = (usize, usize);
+
+/// Neighbouring columns, the rows of the trunk where their factors are not zero, and the place of the first one's factors.
+pub type Run = (Range, Range, usize);
 
 /// A matrix with which another is multiplied; column and row of what has to be made zero in it; and its columns, from one up to
 /// another, outside whose given rows there are zeros. All other columns are zero.
@@ -99,13 +105,33 @@ pub trait Parts<T: Real, const N: usize> {
     /// Puts minus the products of a matrix with columns in the place of these, outside whose given rows there are zeros.
     fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
 
+    /// Adds to each of some columns its multiples of vectors, or subtracts them; of the vectors and their factors only some
+    /// neighbouring ones are taken.
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
+    );
+
+    /// Adds the products of columns `vectors` with rows `factors`, some neighbouring ones of both.
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    );
+
     /// Does what [`complete`] says.
-    fn complete<A: Arithmetic, const K: usize, const M: usize>(
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
-        factors: &[[T; K]; M],
-        runs: &[(Range, Range)],
+        factors: &[[T; V]],
+        runs: &[Run],
     );
+
+    /// Puts the inverse of a symmetric positive definite matrix of `K` rows, which begins the columns, in its place.
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
 }
 
 /// `R` rows at a time, in `E` registers of eight numbers and `F` of four.
@@ -122,11 +148,31 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Pa
     }
 
     #[inline(always)]
-    fn complete<A: Arithmetic, const K: usize, const M: usize>(
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
+    ) {
+        add_all::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
+    }
+
+    #[inline(always)]
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    ) {
+        add_products::<A, T, E, F, N, W, 4>(sums, vectors, factors, range);
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
-        factors: &[[T; K]; M],
-        runs: &[(Range, Range)],
+        factors: &[[T; V]],
+        runs: &[Run],
     ) {
         let mut known = Columns::<A, T, E, F, K>::zero();
         for (t, k) in trunk.into_iter().enumerate() {
@@ -134,19 +180,16 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Pa
                 known.set(t, column);
             }
         }
-        let mut factors = factors.iter();
-        for ((first, end), (from, to)) in runs {
+        for ((first, end), range, place) in runs {
             let columns = matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-            for (column, factors) in columns.iter_mut().zip(&mut factors) {
-                let mut sums = Column::<A, T, E, F>::read(column);
-                for t in *from..K.min(*to) {
-                    if let Some(factor) = factors.get(t) {
-                        sums.add_multiple::<false>(*factor, &known.get(t));
-                    }
-                }
-                sums.write(column);
-            }
+            let factors = factors.get(*place..).unwrap_or(&[]);
+            add_all::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
         }
+    }
+
+    #[inline(always)]
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+        inverse::eliminate::<A, T, E, F, N, K>(columns);
     }
 }
 
@@ -162,16 +205,53 @@ impl<T: Real, Wide: Parts<T, N>, Narrow: Parts<T, N>, const N: usize> Parts<T, N
     }
 
     #[inline(always)]
-    fn complete<A: Arithmetic, const K: usize, const M: usize>(
-        matrix: &mut SMatrix<T, N, N>,
-        trunk: [usize; K],
-        factors: &[[T; K]; M],
-        runs: &[(Range, Range)],
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
     ) {
         if A::WIDE {
-            Wide::complete::<A, K, M>(matrix, trunk, factors, runs);
+            Wide::add_multiples::<A, V, W, MINUS>(sums, vectors, factors, range);
         } else {
-            Narrow::complete::<A, K, M>(matrix, trunk, factors, runs);
+            Narrow::add_multiples::<A, V, W, MINUS>(sums, vectors, factors, range);
+        }
+    }
+
+    #[inline(always)]
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    ) {
+        if A::WIDE {
+            Wide::add_products::<A, W>(sums, vectors, factors, range);
+        } else {
+            Narrow::add_products::<A, W>(sums, vectors, factors, range);
+        }
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; V]],
+        runs: &[Run],
+    ) {
+        if A::WIDE {
+            Wide::complete::<A, K, V>(matrix, trunk, factors, runs);
+        } else {
+            Narrow::complete::<A, K, V>(matrix, trunk, factors, runs);
+        }
+    }
+
+    #[inline(always)]
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+        if A::WIDE {
+            Wide::invert::<A, K>(columns);
+        } else {
+            Narrow::invert::<A, K>(columns);
         }
     }
 }
@@ -274,36 +354,129 @@ fn write<
     }
 }
 
-/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ` (`mechanics/derivatives/trunk.rs` of the compiler): the matrix has `H` in the columns
-/// of the trunk and `C⁻¹` in the others. Each run names neighbouring ones of these, from one up to another, and in the same way
-/// where in the trunk their `factors` are not zero, columns of `Gᵀ`. Columns are read in parts as for [`minus_products`], but
-/// all rows together.
-#[inline]
-pub fn complete<A: Arithmetic, T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize>(
-    matrix: &mut SMatrix<T, N, N>,
-    trunk: [usize; K],
-    factors: &[[T; K]; M],
-    runs: &[(Range, Range)],
-) {
-    A::within(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+/// Columns that multiples are taken of.
+trait Source<A, T, const E: usize, const F: usize> {
+    /// How many there are.
+    const COUNT: usize;
+
+    /// One of them; zeros if there is none.
+    fn column(&self, k: usize) -> Column<A, T, E, F>;
 }
 
-struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
-    matrix: &'a mut SMatrix<T, N, N>,
-    trunk: [usize; K],
-    factors: &'a [[T; K]; M],
-    runs: &'a [(Range, Range)],
-    parts: PhantomData<P>,
-}
-
-impl<T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
-    for Completion<'_, T, P, N, K, M>
+impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const W: usize>
+    Source<A, T, E, F> for [[T; N]; W]
 {
-    const LONG: bool = is_long(N);
+    const COUNT: usize = W;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        P::complete::<A, K, M>(self.matrix, self.trunk, self.factors, self.runs);
+    fn column(&self, k: usize) -> Column<A, T, E, F> {
+        match self.get(k) {
+            Some(column) => Column::read(column),
+            None => Column::zero(),
+        }
+    }
+}
+
+/// Adds multiples to columns, or subtracts them, `C` at a time if there are registers enough.
+#[inline(always)]
+fn add_all<
+    A: Arithmetic,
+    T: Real,
+    S: Source<A, T, E, F>,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const V: usize,
+    const MINUS: bool,
+>(
+    sums: &mut [[T; N]],
+    source: &S,
+    factors: &[[T; V]],
+    range: Range,
+) {
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 4>(sums, source, factors, range);
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 3>(sums, source, factors, range);
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 2>(sums, source, factors, range);
+    add::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
+}
+
+/// The same for as many columns as are left to be taken so many at a time; returns the others with their factors.
+#[inline(always)]
+fn add<
+    'a,
+    'b,
+    A: Arithmetic,
+    T: Real,
+    S: Source<A, T, E, F>,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const V: usize,
+    const MINUS: bool,
+    const C: usize,
+>(
+    columns: &'a mut [[T; N]],
+    source: &S,
+    factors: &'b [[T; V]],
+    (first, end): Range,
+) -> (&'a mut [[T; N]], &'b [[T; V]]) {
+    if C > 1 && C * (E + F) > sums(A::WIDE) {
+        return (columns, factors);
+    }
+    let (columns, columns_left) = columns.as_chunks_mut::<C>();
+    let mut factors_left = factors;
+    for columns in columns {
+        let Some((factors, left)) = factors_left.split_first_chunk::<C>() else { break };
+        factors_left = left;
+        let mut sums = [Column::<A, T, E, F>::zero(); C];
+        for (sums, column) in sums.iter_mut().zip(columns.iter()) {
+            *sums = Column::read(column);
+        }
+        for k in first..end.min(V).min(S::COUNT) {
+            let from = source.column(k);
+            for (sums, factors) in sums.iter_mut().zip(factors) {
+                let Some(factor) = factors.get(k) else { continue };
+                sums.add_multiple::<MINUS>(*factor, &from);
+            }
+        }
+        for (sums, column) in sums.iter().zip(columns) {
+            sums.write(column);
+        }
+    }
+    (columns_left, factors_left)
+}
+
+/// Adds products of columns and rows, to so many columns at a time.
+#[inline(always)]
+fn add_products<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const W: usize,
+    const C: usize,
+>(
+    sums: &mut [[T; N]; N],
+    vectors: &[[T; N]; W],
+    factors: &[[T; N]; W],
+    (first, end): Range,
+) {
+    for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
+        let mut sums = [Column::<A, T, E, F>::zero(); C];
+        for (sums, column) in sums.iter_mut().zip(columns.iter()) {
+            *sums = Column::read(column);
+        }
+        for k in first..end.min(W) {
+            let Some(factors) = factors[k].as_chunks::<C>().0.get(place) else { continue };
+            let from = Column::read(&vectors[k]);
+            for (sums, factor) in sums.iter_mut().zip(factors) {
+                sums.add_multiple::<false>(*factor, &from);
+            }
+        }
+        for (sums, column) in sums.iter().zip(columns) {
+            sums.write(column);
+        }
     }
 }
 
@@ -327,10 +500,15 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Col
             read(column, eights, fours);
         }
     }
+}
 
-    /// A column; zeros if there is none.
+impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Source<A, T, E, F>
+    for Columns<A, T, E, F, K>
+{
+    const COUNT: usize = K;
+
     #[inline(always)]
-    fn get(&self, k: usize) -> Column<A, T, E, F> {
+    fn column(&self, k: usize) -> Column<A, T, E, F> {
         match (self.eights.get(k), self.fours.get(k)) {
             (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
             _ => Column::zero(),
@@ -344,6 +522,30 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     #[inline(always)]
     fn zero() -> Self {
         Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
+    }
+
+    #[inline(always)]
+    fn all(x: T) -> Self {
+        Self { eights: [A::splat(x); E], fours: [A::splat(x); F] }
+    }
+
+    /// One minus this.
+    #[inline(always)]
+    fn complement(&self) -> Self {
+        let mut rest = Self::all(T::one());
+        rest.add_multiple::<true>(T::one(), self);
+        rest
+    }
+
+    /// Row by row.
+    #[inline(always)]
+    fn multiply(&mut self, other: &Self) {
+        for (x, y) in self.eights.iter_mut().zip(&other.eights) {
+            *x = *x * *y;
+        }
+        for (x, y) in self.fours.iter_mut().zip(&other.fours) {
+            *x = *x * *y;
+        }
     }
 
     /// Adds a multiple of another, or subtracts it.
@@ -429,11 +631,10 @@ fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, colum
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::arithmetic::Compiled;
+mod testing {
+    use nalgebra::SMatrix;
 
-    fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
+    pub fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
         SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
     }
 
@@ -465,6 +666,14 @@ mod tests {
             }
         };
     }
+    pub(crate) use {everywhere, rows_of};
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::{everywhere, numbers, rows_of};
+    use super::*;
+    use crate::arithmetic::Compiled;
 
     /// Compares two products with minus one that is given.
     fn product<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
@@ -515,35 +724,6 @@ mod tests {
         b.column_mut(1).fill(0.0);
         b.view_mut((0, 2), (6, 1)).fill(0.0);
         everywhere!(product by 7, (&a, &given, &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])], &(a * b)));
-    }
-
-    #[test]
-    fn columns_are_completed() {
-        const N: usize = 14;
-        fn completed<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
-            start: &SMatrix<f64, N, N>,
-            factors: &[[f64; 3]; M],
-            runs: &[(Range, Range)],
-            expected: &SMatrix<f64, N, N>,
-        ) {
-            let mut found = *start;
-            complete::<A, _, P, N, 3, M>(&mut found, TRUNK, factors, runs);
-            assert!((found - expected).amax() < 1e-13);
-        }
-        const TRUNK: [usize; 3] = [9, 1, 7];
-        let start = numbers::<N, N>(4.0);
-        let all: SMatrix<f64, 3, N> = numbers(5.0);
-        let runs = [((2, 7), (0, 3)), ((10, 13), (1, 3))];
-        let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
-        let factors: [[f64; 3]; 8] =
-            core::array::from_fn(|k| all.data.0[first.iter().chain(&last).nth(k).copied().unwrap_or(0)]);
-        let mut expected = start;
-        for ((first, end), (from, to)) in runs {
-            for (j, t) in (first..end).flat_map(|j| (from..to).map(move |t| (j, t))) {
-                expected.set_column(j, &(expected.column(j) + start.column(TRUNK[t]) * all[(t, j)]));
-            }
-        }
-        everywhere!(completed by N, (&start, &factors, &runs, &expected));
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use super::signatures::{self, Sizes};
 use super::{Stage, done, in_lanes};
-use crate::emit::{Function, Shape};
+use crate::emit::{Function, Parted, Shape};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::{Operand, Program};
 use crate::mechanics::derivatives::{
-    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, invariance, symbolic,
+    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, divided, invariance,
+    symbolic,
 };
 use crate::mechanics::{self, Joint, constraints, crba, forces, massless, rnea};
 use crate::model::{Chart, Model, Quantity};
@@ -19,6 +20,10 @@ const SMALL: usize = 10;
 /// Up to how many velocities this is so for the derivatives of forward dynamics of mechanisms that branch. What stands in
 /// a single function needs stack where it is not optimised.
 const MEDIUM: usize = 24;
+
+/// Up to how many velocities the inverse of the mass matrix of a mechanism that does not branch is written out. Beyond it is
+/// quicker in loops.
+const WRITTEN_OUT: usize = 12;
 
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
@@ -70,9 +75,16 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
     let forces = functions.iter().find(|f| matches!(f.shape, Shape::Pair(_)));
     let zeros: Vec<bool> = forces.map_or(Vec::new(), |f| f.program.outputs.iter().map(is_zero).collect());
     for f in &mut functions {
-        f.structure.trunk = match (f.shape, &parts.trunk) {
-            (Shape::Linear(..), _) | (_, None) => Vec::new(),
-            (_, Some(trunk)) => trunk.velocities.clone(),
+        f.structure.inverse = match f.shape {
+            _ if parts.is_divided(f) => {
+                let trunk = parts.trunk_or_all();
+                Parted::Divided { trunk: trunk.velocities.clone(), limbs: trunk.limbs() }
+            }
+            Shape::Linear(..) => Parted::Whole,
+            _ => match &parts.trunk {
+                Some(trunk) => Parted::Trunk(trunk.velocities.clone()),
+                None => Parted::Whole,
+            },
         };
         if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
             f.structure.zeros.clone_from(&zeros);
@@ -205,7 +217,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
             let a = in_lanes::accelerations(&lanes.limbs, &inverse);
-            let parts = in_lanes::inverse(&lanes.limbs, &inverse);
+            let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
                 done(&outputs(forces, parts.clone()))
@@ -214,25 +226,48 @@ impl<'a, 'g> Parts<'a, 'g> {
         program.or_in_lanes(in_lanes.into_iter().flatten())
     }
 
-    /// `M⁻¹`, in parts where there are some; on request after the accelerations.
-    fn inverse(&self, accelerated: bool) -> Program {
-        let outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
-            [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
-        };
+    /// `M⁻¹`, in parts where there are some.
+    fn inverse(&self) -> Program {
+        let outputs =
+            |[inverse, factors]: [crba::Matrix<'g>; 2]| [columns(&inverse), factors.concat()].concat();
         let Some(trunk) = &self.trunk else {
             let factor = Factor::of(&self.mass, &self.joints);
-            let a = accelerated.then(|| factor.solve(self.unbalanced()));
-            return self.stage.program(&outputs(a, [factor.inverse(), Vec::new()]));
+            return self.stage.program(&outputs([factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::of(&self.mass, trunk);
-        let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
-        let program = self.stage.program(&outputs(a, [inverse.columns(), inverse.factors()]));
+        let program = self.stage.program(&outputs([inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-            let a =
-                accelerated.then(|| lanes.limbs.scattered(&in_lanes::accelerations(&lanes.limbs, &inverse)));
-            Some(done(&outputs(a, in_lanes::inverse(&lanes.limbs, &inverse))))
+            Some(done(&outputs(in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]))))
         }))
+    }
+
+    /// What loops make `M⁻¹` of; on request after `τ − h`, of which they make the accelerations.
+    fn divided(&self, accelerated: bool) -> Program {
+        let outputs = |r: Option<Vec<Expr<'g>>>, [inverse, borders]: [crba::Matrix<'g>; 2]| {
+            [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
+        };
+        let r = accelerated.then(|| self.unbalanced());
+        let program = self.stage.program(&outputs(r, divided(&self.mass, &self.trunk_or_all())));
+        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
+            let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
+            let r = accelerated.then(|| lanes.limbs.scattered(&in_lanes::unbalanced(&lanes.limbs)));
+            Some(done(&outputs(r, in_lanes::inverse(&lanes.limbs, &parts))))
+        }))
+    }
+
+    /// True if loops make `M⁻¹`.
+    fn is_divided(&self, f: &Function) -> bool {
+        match f.shape {
+            Shape::Inverse(n) => self.is_large() && (self.trunk.is_some() || n > WRITTEN_OUT),
+            Shape::Accelerated(_) => true,
+            _ => false,
+        }
+    }
+
+    /// The trunk: everything for a mechanism that does not branch.
+    fn trunk_or_all(&self) -> Trunk {
+        self.trunk.clone().unwrap_or_else(|| Trunk::whole(&self.joints, self.model.nv()))
     }
 
     /// `τ − h`.
@@ -296,8 +331,9 @@ impl<'a, 'g> Parts<'a, 'g> {
             _ => {}
         }
         match f.name.as_str() {
-            "mass_matrix_inverse" => self.inverse(false),
-            "__accelerations_and_inverse" => self.inverse(true),
+            "mass_matrix_inverse" if self.is_divided(f) => self.divided(false),
+            "mass_matrix_inverse" => self.inverse(),
+            "__accelerations_and_inverse" => self.divided(true),
             "coriolis_matrix" => {
                 let v = mechanics::velocities(self.model);
                 self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))

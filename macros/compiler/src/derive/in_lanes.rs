@@ -50,22 +50,26 @@ pub fn inverse_dynamics_derivatives<'g>(
 
 /// Accelerations here under forces, with the inverse of the mass matrix in its parts.
 pub fn accelerations<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
+    inverse.solve(&unbalanced(limbs))
+}
+
+/// The forces here that motion does not need.
+pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
     let v = limbs.symbols(Quantity::Velocity);
     let tau = limbs.symbols(Quantity::Force);
     let bias = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, None);
     let resisted = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t - *h);
-    inverse.solve(&resisted.zip(bias).map(|(r, h)| r - h).collect::<Vec<_>>())
+    resisted.zip(bias).map(|(r, h)| r - h).collect()
 }
 
-/// The inverse of the mass matrix of the whole mechanism in its parts: columns, and factors.
-pub fn inverse<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> [crba::Matrix<'g>; 2] {
-    let factors = inverse.factors();
-    let width = factors.first().map_or(0, Vec::len);
-    let column = |k: usize| limbs.scattered(&factors.iter().map(|row| row[k]).collect::<Vec<_>>());
+/// The inverse of the mass matrix of the whole mechanism in its parts: a matrix, and columns beside it.
+pub fn inverse<'g>(limbs: &Limbs<'g>, [matrix, beside]: &[crba::Matrix<'g>; 2]) -> [crba::Matrix<'g>; 2] {
+    let width = beside.first().map_or(0, Vec::len);
+    let column = |k: usize| limbs.scattered(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());
     let columns: Vec<Vec<Expr<'g>>> = (0..width).map(column).collect();
-    let rows = scattered_rows(limbs, &inverse.columns());
-    let factors = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
-    [rows, factors]
+    let rows = scattered_rows(limbs, matrix);
+    let beside = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+    [rows, beside]
 }
 
 fn scattered_rows<'g>(limbs: &Limbs<'g>, matrix: &crba::Matrix<'g>) -> crba::Matrix<'g> {

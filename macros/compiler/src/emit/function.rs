@@ -75,8 +75,7 @@ pub enum Shape {
     Matrix(usize, usize),
     /// Two square matrices.
     Pair(usize),
-    /// `M⁻¹`. The outputs are its columns, or what is left of them beside the product of the trunk's with the factors
-    /// that follow, a row of these for each velocity.
+    /// `M⁻¹`. The outputs are what [`Parted`] says.
     Inverse(usize),
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
     /// themselves, and those of `Inverse`.
@@ -84,7 +83,7 @@ pub enum Shape {
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
-    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations and those of `Inverse`.
+    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are `M` times the accelerations and those of `Inverse`.
     Accelerated(usize),
     /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
     CalledForward(usize),
@@ -120,11 +119,30 @@ pub struct Function {
     pub structure: Structure,
 }
 
+/// How the outputs make the inverse of a mass matrix.
+#[derive(Clone, Debug, Default)]
+pub enum Parted {
+    /// They are its columns.
+    #[default]
+    Whole,
+    /// After the columns comes for each velocity a row of factors, in the order of these velocities of the trunk, whose product
+    /// with their columns is added.
+    Trunk(Vec<usize>),
+    /// After columns, of which those of limbs are the inverses of their blocks, comes for each velocity a row with its entries of
+    /// the mass matrix in the rows of the trunk.
+    Divided {
+        /// Velocities of the trunk, in the order of the entries.
+        trunk: Vec<usize>,
+        /// Those of each limb, in their order.
+        limbs: Vec<Vec<usize>>,
+    },
+}
+
 /// What is known of the matrices of a function.
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
-    /// Where the inverse of the mass matrix is in parts: the velocities of the trunk, in the order of the factors.
-    pub trunk: Vec<usize>,
+    /// In which parts the inverse of the mass matrix is.
+    pub inverse: Parted,
     /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
     pub entries: Vec<(usize, usize)>,
     /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.

@@ -1,7 +1,11 @@
 //! Results of several matrices, and what is composed of them at run time.
 
 use super::body::Outputs;
-use super::function::{Function, Shape, Signature, Structure};
+use super::function::{Function, Parted, Shape, Signature, Structure};
+
+const RUNTIME: &str = "::linkwork::__private";
+/// Before the columns of a matrix.
+const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
 
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
@@ -36,7 +40,12 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
             )
         }
         (Shape::Accelerated(n), [inverse]) => {
-            format!("{}{}\n", completed(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1))
+            format!(
+                "let mut solved = [{}];\n{}{}(solved))\n",
+                outputs.list(0..n),
+                inverted((inverse, "&mut solved"), f, n, n, s, outputs),
+                STORAGE
+            )
         }
         _ => String::new(),
     }
@@ -90,8 +99,11 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
 
 /// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let completed = completed("inverse", f, n, first, s, outputs);
-    format!("let mut inverse = {};\n{completed}", outputs.matrix(first, n, n))
+    let rest = match &f.structure.inverse {
+        Parted::Divided { .. } => inverted(("inverse", "&mut []"), f, n, first, s, outputs),
+        _ => completed("inverse", f, n, first, s, outputs),
+    };
+    format!("let mut inverse = {};\n{rest}", outputs.matrix(first, n, n))
 }
 
 /// Adds what `M⁻¹` has of the trunk to the rest of it, which stands at `place`; nothing if it is whole.
@@ -103,32 +115,103 @@ fn completed(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let trunk = &f.structure.trunk;
-    let width = trunk.len();
-    let factors = |k: usize| first + n * n + k * width..first + n * n + (k + 1) * width;
-    let used = |k: usize| {
-        let range = factors(k);
-        let is_used = |t: &usize| !outputs.is_zero(range.start + t);
-        Some(((0..width).find(is_used)?, (0..width).rfind(is_used)? + 1))
-    };
-    let mut runs: Vec<((usize, usize), (usize, usize))> = Vec::new();
-    let mut all = Vec::new();
-    for (k, used) in (0..n).filter_map(|k| Some((k, used(k)?))) {
-        all.push(outputs.list(factors(k)));
-        match runs.last_mut() {
-            Some(((_, end), known)) if *end == k && *known == used => *end = k + 1,
-            _ => runs.push(((k, k + 1), used)),
-        }
-    }
+    let Parted::Trunk(trunk) = &f.structure.inverse else { return String::new() };
+    let beside = Beside { first: first + n * n, width: trunk.len(), outputs };
+    let used: Vec<(usize, Span)> = (0..n).filter_map(|k| Some((k, beside.used(k)?))).collect();
+    let runs = together(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
     if runs.is_empty() {
         return String::new();
     }
+    let factors: Vec<String> = used.iter().map(|(k, _)| outputs.list(beside.range(*k))).collect();
     format!(
-        "::linkwork::__private::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
+        "{RUNTIME}::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
         s.scalar.name(),
         parts(|_| n.to_string()),
-        all.join(", "),
+        factors.join(", "),
     )
+}
+
+/// Makes `M⁻¹` of the parts, the first of which stand at a place, and multiplies given columns by it.
+fn inverted(
+    (place, solved): (&str, &str),
+    f: &Function,
+    n: usize,
+    first: usize,
+    s: &Signature<'_>,
+    outputs: &Outputs<'_>,
+) -> String {
+    let Parted::Divided { trunk, limbs } = &f.structure.inverse else { return String::new() };
+    let beside = Beside { first: first + n * n, width: trunk.len(), outputs };
+    let length = trunk.len().next_multiple_of(4);
+    let padding = vec![number("0.0", s); length - trunk.len()];
+    let border = |k: usize| {
+        let entries = outputs.pieces.get(beside.range(k)).unwrap_or(&[]).iter().map(|p| &p.text);
+        let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
+        format!("[{}]", all.join(", "))
+    };
+    let mut used = vec![None; n];
+    for limb in limbs {
+        let ends = limb.iter().filter_map(|k| beside.used(*k));
+        let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
+        limb.iter().for_each(|k| used[*k] = all);
+    }
+    let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+    let neighbours = |limb: &Vec<usize>| {
+        let runs = together(limb.iter().map(|k| (*k, (0, 0), *k)));
+        format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
+    };
+    let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
+    format!(
+        "{RUNTIME}::invert::<Ops, {}, {}, {}, {n}, {}, {length}, _>(
+            &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
+        );\n",
+        s.scalar.name(),
+        parts(|_| n.to_string()),
+        parts(|_| length.to_string()),
+        trunk.len(),
+        (0..n).map(border).collect::<Vec<_>>().join(", "),
+        limbs.join(", "),
+    )
+}
+
+/// From one up to another.
+type Span = (usize, usize);
+
+/// Rows of outputs beside those of a matrix.
+struct Beside<'a> {
+    first: usize,
+    width: usize,
+    outputs: &'a Outputs<'a>,
+}
+
+impl Beside<'_> {
+    /// The outputs of a row.
+    fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.first + row * self.width..self.first + (row + 1) * self.width
+    }
+
+    /// Outside this they are always zero.
+    fn used(&self, row: usize) -> Option<Span> {
+        let first = self.range(row).start;
+        let is_used = |t: &usize| !self.outputs.is_zero(first + t);
+        Some(((0..self.width).find(is_used)?, (0..self.width).rfind(is_used)? + 1))
+    }
+}
+
+/// Neighbouring columns with the same rows of the trunk and neighbouring factors, from columns in their order.
+fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
+    let mut runs: Vec<(Span, Span, usize)> = Vec::new();
+    for (k, used, place) in columns {
+        match runs.last_mut() {
+            Some(((first, end), known, from))
+                if *end == k && *known == used && *from + k - *first == place =>
+            {
+                *end = k + 1;
+            }
+            _ => runs.push(((k, k + 1), used, place)),
+        }
+    }
+    runs
 }
 
 /// The columns that are known, put into the matrices.
@@ -162,7 +245,6 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
 
 /// How a matrix is read, where registers hold eight numbers and where they hold four: so many rows at a time.
 fn parts(rows: impl Fn(bool) -> String) -> String {
-    const RUNTIME: &str = "::linkwork::__private";
     let of = |wide: bool| {
         let n = rows(wide);
         format!(
@@ -280,6 +362,6 @@ fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outp
         zero = number("0.0", s),
         one = number("1.0", s),
         twice = 2 * n,
-        storage = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage",
+        storage = STORAGE,
     )
 }

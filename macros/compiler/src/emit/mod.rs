@@ -19,7 +19,7 @@ mod scalar;
 mod stores;
 
 pub use constraints::Constraints;
-pub use function::{Argument, Function, Shape};
+pub use function::{Argument, Function, Parted, Shape};
 pub use item::{Constant, Emitted, Interface, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;
 pub use reactions::HIDDEN as REACTION;

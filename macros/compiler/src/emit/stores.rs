@@ -2,7 +2,7 @@
 //! memory of their own.
 
 use super::body::{Outputs, Piece, Statement};
-use super::function::{Function, Shape};
+use super::function::{Function, Parted, Shape};
 use std::fmt;
 
 /// Up to how many statements results of alike limbs are stored at the end, column by column: then the lanes of several are
@@ -41,7 +41,8 @@ pub fn with_stores(
     (all, left.map(|(_, (piece, _))| piece.clone()).collect())
 }
 
-/// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added.
+/// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added; nor do the
+/// columns of it that are still to come.
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
     let given = f.given();
     let Some(&matrix) = given.first() else { return Vec::new() };
@@ -61,7 +62,14 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
     };
     let square = |matrix: &'static str| (0..n * n).map(move |k| Place { matrix, column: k / n, row: k % n });
     let all = given.into_iter().flat_map(square).enumerate();
-    let kept = all.map(|(k, place)| if k < forces && outputs.is_zero(k) { vec![] } else { vec![place] });
+    let overwritten = match &f.structure.inverse {
+        Parted::Divided { trunk, .. } => trunk.as_slice(),
+        _ => &[],
+    };
+    let kept = all.map(|(k, place)| {
+        let goes_nowhere = (k < forces && outputs.is_zero(k)) || overwritten.contains(&place.column);
+        if goes_nowhere { vec![] } else { vec![place] }
+    });
     (0..before).map(|_| Vec::new()).chain(kept).collect()
 }
 

@@ -20,7 +20,7 @@ pub mod symbolic;
 mod trunk;
 
 pub use factor::Factor;
-pub use trunk::{Inverse, Trunk};
+pub use trunk::{Inverse, Trunk, divided};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {

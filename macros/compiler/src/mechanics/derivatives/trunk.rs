@@ -87,11 +87,43 @@ impl Trunk {
     }
 }
 
+impl Trunk {
+    /// Everything is trunk.
+    pub fn whole(joints: &[Joint<'_>], nv: usize) -> Trunk {
+        Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
+    }
+
+    /// The velocities of each limb, in their order.
+    pub fn limbs(&self) -> Vec<Vec<usize>> {
+        let sorted = |limb: &Limb| {
+            let mut velocities = limb.velocities.clone();
+            velocities.sort_unstable();
+            velocities
+        };
+        self.limbs.iter().map(sorted).filter(|limb| !limb.is_empty()).collect()
+    }
+}
+
 impl Limb {
     /// The sum over all limbs that are side by side.
     fn gathered<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         if self.alike == 1 { e } else { e.lane_sum(self.alike) }
     }
+}
+
+/// What is left of `M⁻¹` if loops do the rest: `C⁻¹` in the columns of the limbs, and the columns of the trunk in `M`, in the
+/// order of its velocities.
+pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
+    let zero = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
+    let mut inverses: Matrix<'g> = mass.iter().map(zero).collect();
+    for limb in &trunk.limbs {
+        let inverse = Factor::in_order(mass, &limb.velocities).inverse();
+        for &i in &limb.velocities {
+            inverses[i].clone_from_slice(&inverse[i]);
+        }
+    }
+    let borders = mass.iter().map(|row| trunk.velocities.iter().map(|&t| row[t]).collect()).collect();
+    [inverses, borders]
 }
 
 /// `M⁻¹` in its parts.

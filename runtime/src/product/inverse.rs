@@ -1,0 +1,323 @@
+//! The inverse of a mass matrix in parts (`mechanics/derivatives/trunk.rs` of the compiler), as loops: for a large mechanism
+//! straight lines of these products would be longer than what the processor can fetch in the time.
+
+use super::{Column, Parts, Range, Run, is_long};
+use crate::Real;
+use crate::arithmetic::Arithmetic;
+use crate::lanes::Work;
+use core::marker::PhantomData;
+use nalgebra::SMatrix;
+
+/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`: the matrix has `H` in the columns of the trunk and `C⁻¹` in the others, whose
+/// `factors` are columns of `Gᵀ`. Columns are read in parts as for [`minus_products`](super::minus_products), but all rows
+/// together.
+#[inline]
+pub fn complete<A: Arithmetic, T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize>(
+    matrix: &mut SMatrix<T, N, N>,
+    trunk: [usize; K],
+    factors: &[[T; K]; M],
+    runs: &[Run],
+) {
+    A::within(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+}
+
+struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
+    matrix: &'a mut SMatrix<T, N, N>,
+    trunk: [usize; K],
+    factors: &'a [[T; K]; M],
+    runs: &'a [Run],
+    parts: PhantomData<P>,
+}
+
+impl<T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
+    for Completion<'_, T, P, N, K, M>
+{
+    const LONG: bool = is_long(N);
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        P::complete::<A, K, K>(self.matrix, self.trunk, self.factors, self.runs);
+    }
+}
+
+/// Columns that begin where lines of the cache do if their lengths allow it: registers that are read right after they were
+/// written must not be in two lines.
+#[repr(align(64))]
+struct Lines<X>(X);
+
+/// Runs of the velocities of a limb.
+pub type Limb<'a> = &'a [Range];
+
+/// Inverts a mass matrix `M = [A B; Bᵀ C]`: the matrix has `C⁻¹` in the columns of the limbs, whatever in those of the trunk;
+/// `borders` are the rows of the trunk in `M` by column, filled up with zeros; the runs have their factors by column. Then it
+/// multiplies given columns with the inverse. `P` and `Q` tell how columns of `N` and of `L` numbers are read.
+#[inline]
+pub fn invert<
+    A: Arithmetic,
+    T: Real,
+    P: Parts<T, N>,
+    Q: Parts<T, L>,
+    const N: usize,
+    const K: usize,
+    const L: usize,
+    const S: usize,
+>(
+    matrix: &mut SMatrix<T, N, N>,
+    trunk: [usize; K],
+    borders: &[[T; L]; N],
+    limbs: &[Limb<'_>],
+    runs: &[Run],
+    solved: &mut [[T; N]; S],
+) {
+    let parts = PhantomData;
+    A::within(Inversion::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
+}
+
+struct Inversion<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
+    matrix: &'a mut SMatrix<T, N, N>,
+    trunk: [usize; K],
+    borders: &'a [[T; L]; N],
+    limbs: &'a [Limb<'a>],
+    runs: &'a [Run],
+    solved: &'a mut [[T; N]; S],
+    parts: PhantomData<(P, Q)>,
+}
+
+impl<T: Real, P: Parts<T, N>, Q: Parts<T, L>, const N: usize, const K: usize, const L: usize, const S: usize>
+    Work for Inversion<'_, T, P, Q, N, K, L, S>
+{
+    const LONG: bool = is_long(N);
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        let Inversion { matrix, trunk, borders, limbs, runs, solved, .. } = self;
+        let mut g = Lines([[T::zero(); L]; N]);
+        let mut inner = Lines([[T::zero(); L]; L]);
+        for (column, k) in inner.0.iter_mut().zip(trunk) {
+            if let Some(border) = borders.get(k) {
+                *column = *border;
+            }
+        }
+        for limb in limbs {
+            for (first, end) in *limb {
+                let inverse = matrix.data.0.get(*first..*end).unwrap_or(&[]);
+                let columns = g.0.get_mut(*first..*end).unwrap_or(&mut []);
+                for rows in *limb {
+                    Q::add_multiples::<A, N, N, true>(columns, borders, inverse, *rows);
+                }
+                Q::add_products::<A, N>(&mut inner.0, borders, &g.0, (*first, *end));
+            }
+        }
+        Q::invert::<A, K>(&mut inner.0);
+        let mut outer = [[T::zero(); N]; K];
+        if limbs.is_empty() {
+            for (outer, inner) in outer.iter_mut().zip(&inner.0) {
+                for (x, k) in inner.iter().zip(trunk) {
+                    set(outer, k, *x);
+                }
+            }
+        } else {
+            let mut rows_of_g = transposed(&g.0);
+            for (row, k) in rows_of_g.iter_mut().zip(trunk) {
+                set(row, k, T::one());
+            }
+            P::add_multiples::<A, L, L, false>(&mut outer, &rows_of_g, &inner.0, (0, K));
+        }
+        for (column, k) in outer.iter().zip(trunk) {
+            if let Some(place) = matrix.data.0.get_mut(k) {
+                *place = *column;
+            }
+        }
+        P::complete::<A, K, L>(matrix, trunk, &g.0, runs);
+        for column in solved {
+            let mut sums = [[T::zero(); N]];
+            let factors = core::slice::from_ref(column);
+            P::add_multiples::<A, N, N, false>(&mut sums, &matrix.data.0, factors, (0, N));
+            [*column] = sums;
+        }
+    }
+}
+
+/// The rows of a matrix as columns, four by four: so they are turned round in registers.
+#[inline(always)]
+fn transposed<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
+    let mut rows = [[T::zero(); N]; L];
+    let (blocks, rest) = columns.as_chunks::<4>();
+    for (k, [a, b, c, d]) in blocks.iter().enumerate() {
+        for (t, row) in rows.iter_mut().enumerate() {
+            if let Some(place) = row.as_chunks_mut::<4>().0.get_mut(k) {
+                *place = [a[t], b[t], c[t], d[t]];
+            }
+        }
+    }
+    for (k, column) in rest.iter().enumerate() {
+        for (x, row) in column.iter().zip(&mut rows) {
+            set(row, N / 4 * 4 + k, *x);
+        }
+    }
+    rows
+}
+
+#[inline(always)]
+fn set<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
+    if let Some(place) = row.get_mut(k) {
+        *place = x;
+    }
+}
+
+/// Puts the inverse of a symmetric positive definite matrix, which begins the columns, in its place by Gauss–Jordan elimination
+/// without interchanges (Golub and Van Loan 2013, ch. 3.2; such a matrix needs none). Rows are divided by their pivots at the
+/// end, so that no row differs from the others on the way.
+#[inline(always)]
+pub(super) fn eliminate<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const K: usize,
+>(
+    columns: &mut [[T; N]; N],
+) {
+    let columns = columns.split_at_mut(K.min(N)).0;
+    // A one among zeros: read from an earlier place it stands in a later row.
+    let mut one = [[T::zero(); N]; 2];
+    set(&mut one[1], 0, T::one());
+    let mut divisors = [T::zero(); N];
+    for k in 0..columns.len() {
+        let Some(unit) = one.as_flattened().get(N - k..) else { return };
+        let pivot = columns[k];
+        let by = T::one() / pivot[k];
+        divisors[k] = by;
+        let unit = Column::<A, T, E, F>::read(unit);
+        let mut taken = Column::read(&pivot);
+        taken.multiply(&unit.complement());
+        taken.multiply(&Column::all(-by));
+        for column in columns.iter_mut() {
+            let factor = column[k];
+            let mut sum = Column::read(column);
+            sum.add_multiple::<false>(factor, &taken);
+            sum.write(column);
+        }
+        taken.add_multiple::<false>(T::one(), &unit);
+        taken.write(&mut columns[k]);
+    }
+    let divisors = Column::<A, T, E, F>::read(&divisors);
+    for column in columns {
+        let mut sum = Column::read(column);
+        sum.multiply(&divisors);
+        sum.write(column);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{everywhere, numbers, rows_of};
+    use super::super::{Rows, eights, fours};
+    use super::*;
+    use crate::arithmetic::Compiled;
+
+    #[test]
+    fn columns_are_completed() {
+        const N: usize = 14;
+        fn completed<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            start: &SMatrix<f64, N, N>,
+            factors: &[[f64; 3]; M],
+            runs: &[Run],
+            expected: &SMatrix<f64, N, N>,
+        ) {
+            let mut found = *start;
+            complete::<A, _, P, N, 3, M>(&mut found, TRUNK, factors, runs);
+            assert!((found - expected).amax() < 1e-13);
+        }
+        const TRUNK: [usize; 3] = [9, 1, 7];
+        let start = numbers::<N, N>(4.0);
+        let all: SMatrix<f64, 3, N> = numbers(5.0);
+        let runs = [((2, 7), (0, 3), 0), ((10, 13), (1, 3), 5)];
+        let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
+        let factors: [[f64; 3]; 8] =
+            core::array::from_fn(|k| all.data.0[first.iter().chain(&last).nth(k).copied().unwrap_or(0)]);
+        let mut expected = start;
+        for ((first, end), (from, to), _) in runs {
+            for (j, t) in (first..end).flat_map(|j| (from..to).map(move |t| (j, t))) {
+                expected.set_column(j, &(expected.column(j) + start.column(TRUNK[t]) * all[(t, j)]));
+            }
+        }
+        everywhere!(completed by N, (&start, &factors, &runs, &expected));
+    }
+
+    /// A mass matrix of two limbs with a trunk, and what is expected of it.
+    fn branched<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
+        let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+        let a = numbers::<N, N>(6.0);
+        SMatrix::from_fn(|i, j| match (limb(i), limb(j)) {
+            _ if i == j => 10.0 + a[(i, i)],
+            (Some(one), Some(other)) if one != other => 0.0,
+            // The first limb does not move the trunk's last.
+            (Some(0), None) if j == trunk[2] => 0.0,
+            (None, Some(0)) if i == trunk[2] => 0.0,
+            _ => a[(i.min(j), i.max(j))],
+        })
+    }
+
+    #[test]
+    fn a_mass_matrix_is_inverted_in_parts() {
+        const N: usize = 14;
+        const TRUNK: [usize; 3] = [9, 1, 7];
+        // The second limb is not in one piece.
+        const LIMBS: [&[usize]; 2] = [&[2, 3, 4, 5, 6], &[0, 8, 10, 11, 12, 13]];
+        fn inverted<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            mass: &SMatrix<f64, N, N>,
+            right: &SMatrix<f64, N, M>,
+        ) {
+            let mut found = numbers::<N, N>(7.0);
+            for limb in LIMBS {
+                let mut block = SMatrix::<f64, N, N>::identity();
+                limb.iter().for_each(|&i| limb.iter().for_each(|&j| block[(i, j)] = mass[(i, j)]));
+                let inverse = block.try_inverse().unwrap();
+                for &k in limb {
+                    found.set_column(k, &inverse.column(k));
+                }
+            }
+            let mut borders = [[0.0; 4]; N];
+            for (k, border) in borders.iter_mut().enumerate() {
+                border.iter_mut().zip(TRUNK).for_each(|(x, t)| *x = mass[(t, k)]);
+            }
+            let limbs: [Limb<'_>; 2] = [&[(2, 7)], &[(0, 1), (8, 9), (10, 14)]];
+            let runs =
+                [((2, 7), (0, 2), 2), ((0, 1), (0, 3), 0), ((8, 9), (0, 3), 8), ((10, 14), (0, 3), 10)];
+            let mut solved = right.data.0;
+            invert::<A, f64, P, Inner, N, 3, 4, M>(&mut found, TRUNK, &borders, &limbs, &runs, &mut solved);
+            assert!((found * mass - SMatrix::<f64, N, N>::identity()).amax() < 1e-13);
+            let solved = SMatrix::<f64, N, M>::from_array_storage(nalgebra::ArrayStorage(solved));
+            assert!((mass * solved - right).amax() < 1e-12);
+        }
+        type Inner = (rows_of!(4, true), rows_of!(4, false));
+        everywhere!(inverted by N, (&branched(TRUNK, &LIMBS), &numbers::<N, 2>(8.0)));
+    }
+
+    #[test]
+    fn without_limbs_all_rows_are_swept() {
+        const N: usize = 13;
+        fn inverted<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            mass: &SMatrix<f64, N, N>,
+            scale: &SMatrix<f64, N, M>,
+        ) {
+            let scaled: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * mass[(i, j)] * scale[j]);
+            let trunk: [usize; N] = core::array::from_fn(|k| (5 * k + 2) % N);
+            let borders: [[f64; 16]; N] = core::array::from_fn(|k| {
+                core::array::from_fn(|t| trunk.get(t).map_or(0.0, |t| scaled[(*t, k)]))
+            });
+            let mut found = SMatrix::zeros();
+            invert::<A, f64, P, Inner, N, N, 16, 0>(&mut found, trunk, &borders, &[], &[], &mut []);
+            let found: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * found[(i, j)] * scale[j]);
+            assert!((found * mass - SMatrix::<f64, N, N>::identity()).amax() < 1e-12);
+        }
+        type Inner = (rows_of!(16, true), rows_of!(16, false));
+        let factor = numbers::<N, N>(9.0);
+        let mass = factor * factor.transpose() + SMatrix::identity();
+        // Pivots whose sizes differ by orders of magnitude.
+        let scale = SMatrix::<f64, N, 1>::from_fn(|k, _| 4.0_f64.powi(k as i32 - 6));
+        everywhere!(inverted by N, (&mass, &scale));
+    }
+}
