@@ -6,6 +6,7 @@ use crate::Real;
 use crate::arithmetic::Arithmetic;
 use crate::lanes::Work;
 use core::marker::PhantomData;
+use core::slice::from_ref;
 use nalgebra::SMatrix;
 
 /// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`: the matrix has `H` in the columns of the trunk and `C⁻¹` in the others, whose
@@ -130,10 +131,21 @@ impl<T: Real, P: Parts<T, N>, Q: Parts<T, L>, const N: usize, const K: usize, co
         }
         P::complete::<A, K, L>(matrix, trunk, &g.0, runs);
         for column in solved {
-            let mut sums = [[T::zero(); N]];
-            let factors = core::slice::from_ref(column);
-            P::add_multiples::<A, N, N, false>(&mut sums, &matrix.data.0, factors, (0, N));
-            [*column] = sums;
+            let mut x = [[T::zero(); N]];
+            P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(column), (0, N));
+            if limbs.is_empty() {
+                // The inverse of an ill-conditioned matrix is exact enough for what is left over, not for the whole.
+                let (mut rest, mut left) = ([[T::zero(); L]], [T::zero(); N]);
+                for (rest, k) in rest[0].iter_mut().zip(trunk) {
+                    *rest = column.get(k).copied().unwrap_or(T::zero());
+                }
+                Q::add_multiples::<A, N, N, true>(&mut rest, borders, &x, (0, N));
+                for (rest, k) in rest[0].iter().zip(trunk) {
+                    set(&mut left, k, *rest);
+                }
+                P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(&left), (0, N));
+            }
+            [*column] = x;
         }
     }
 }
@@ -319,5 +331,28 @@ mod tests {
         // Pivots whose sizes differ by orders of magnitude.
         let scale = SMatrix::<f64, N, 1>::from_fn(|k, _| 4.0_f64.powi(k as i32 - 6));
         everywhere!(inverted by N, (&mass, &scale));
+    }
+
+    #[test]
+    fn an_ill_conditioned_matrix_solves_its_equations() {
+        const N: usize = 13;
+        fn solved<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+            mass: &SMatrix<f64, N, N>,
+            right: &SMatrix<f64, N, M>,
+        ) {
+            let trunk: [usize; N] = core::array::from_fn(|k| k);
+            let borders: [[f64; 16]; N] =
+                core::array::from_fn(|k| core::array::from_fn(|t| if t < N { mass[(t, k)] } else { 0.0 }));
+            let (mut inverse, mut solved) = (SMatrix::zeros(), right.data.0);
+            invert::<A, f64, P, Inner, N, N, 16, M>(&mut inverse, trunk, &borders, &[], &[], &mut solved);
+            let x = SMatrix::<f64, N, M>::from_array_storage(nalgebra::ArrayStorage(solved));
+            let error = (mass * x - right).amax() / (mass.abs() * x.abs()).amax();
+            assert!(error < 1e-13);
+        }
+        type Inner = (rows_of!(16, true), rows_of!(16, false));
+        // Of rank two but for small numbers in the diagonal.
+        let factor = numbers::<N, N>(9.0);
+        let mass = factor * factor.transpose() + SMatrix::identity() * 1e-8;
+        everywhere!(solved by N, (&mass, &numbers::<N, 2>(10.0)));
     }
 }
