@@ -114,7 +114,7 @@ pub trait Parts<T: Real, const N: usize> {
         range: Range,
     );
 
-    /// Adds the products of columns `vectors` with rows `factors`, some neighbouring ones of both.
+    /// Adds the products of columns `vectors` with rows `factors`, some neighbouring ones of both. `N` is a multiple of four.
     fn add_products<A: Arithmetic, const W: usize>(
         sums: &mut [[T; N]; N],
         vectors: &[[T; N]; W],

@@ -92,6 +92,7 @@ impl<T: Real, P: Parts<T, N>, Q: Parts<T, L>, const N: usize, const K: usize, co
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
         let Inversion { matrix, trunk, borders, limbs, runs, solved, .. } = self;
+        // Gᵀ = −B C⁻¹ by columns, and S = A + B G, which begins with A.
         let mut g = Lines([[T::zero(); L]; N]);
         let mut inner = Lines([[T::zero(); L]; L]);
         for (column, k) in inner.0.iter_mut().zip(trunk) {
@@ -110,6 +111,7 @@ impl<T: Real, P: Parts<T, N>, Q: Parts<T, L>, const N: usize, const K: usize, co
             }
         }
         Q::invert::<A, K>(&mut inner.0);
+        // H = G S⁻¹, with the identity in the rows of the trunk.
         let mut outer = [[T::zero(); N]; K];
         if limbs.is_empty() {
             for (outer, inner) in outer.iter_mut().zip(&inner.0) {
