@@ -29,8 +29,8 @@ struct Tail {
     fourth: Ball,
 }
 
-/// Three arms, declared link by link in turns: their velocities are not neighbours. Two of them are alike, the third does
-/// not move with the second joint of the trunk.
+/// Three arms, none like another, declared link by link in turns: their velocities are not neighbours. The tail does not move
+/// with the neck.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Squid {
     #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
@@ -69,10 +69,43 @@ struct Squid {
     left_tip: Body,
     #[joint(left_middle.at(0.4 * x) -> left_tip, about = y)]
     left_third: Pin,
-    #[body(mass = 0.3, com = 0.1 * x, inertia = cylinder(0.3, 0.1, 0.2, x))]
+}
+
+/// Two arms alike at the end of a long neck.
+#[mechanism(gravity = -9.81 * z, derivatives, packed)]
+struct Bird {
+    #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[body(mass = 1, com = 0.1 * z, inertia = cylinder(1, 0.1, 0.2, z))]
+    neck: Body,
+    #[joint(hull.at(0.2 * z) -> neck)]
+    first: Ball,
+    #[body(mass = 1, com = 0.1 * z, inertia = cylinder(1, 0.1, 0.2, z))]
+    throat: Body,
+    #[joint(neck.at(0.2 * z) -> throat)]
+    second: Ball,
+    #[body(mass = 2, com = 0.1 * z, inertia = cuboid(2, 0.1, 0.2, 0.3))]
+    head: Body,
+    #[joint(throat.at(0.2 * z) -> head, about = y)]
+    third: Pin,
+    #[body(mass = 1, com = 0.2 * x, inertia = cylinder(1, 0.1, 0.4, x))]
+    left: Body,
+    #[joint(head.at(0.3 * y) -> left)]
+    left_first: Ball,
+    #[body(mass = 1, com = 0.2 * x, inertia = cylinder(1, 0.1, 0.4, x))]
+    right: Body,
+    #[joint(head.at(-0.3 * y) -> right)]
+    right_first: Ball,
+    #[body(mass = 0.8, com = 0.2 * x, inertia = cylinder(0.8, 0.1, 0.4, x))]
+    left_tip: Body,
+    #[joint(left.at(0.4 * x) -> left_tip)]
+    left_second: Ball,
+    #[body(mass = 0.8, com = 0.2 * x, inertia = cylinder(0.8, 0.1, 0.4, x))]
     right_tip: Body,
-    #[joint(right_middle.at(0.4 * x) -> right_tip, about = y)]
-    right_third: Pin,
+    #[joint(right.at(0.4 * x) -> right_tip)]
+    right_second: Ball,
 }
 
 /// Compares with the equations of motion: `M⁻¹ M` is one, and where `M v̇ + h = τ` the derivatives of `v̇` are `−M⁻¹` times those
@@ -112,4 +145,5 @@ macro_rules! solve_the_equations {
 }
 
 solve_the_equations!(a_chain, Tail, 15);
-solve_the_equations!(limbs_declared_in_turns, Squid, 27);
+solve_the_equations!(limbs_declared_in_turns, Squid, 26);
+solve_the_equations!(limbs_alike_on_a_long_trunk, Bird, 25);

@@ -21,8 +21,8 @@ const SMALL: usize = 10;
 /// a single function needs stack where it is not optimised.
 const MEDIUM: usize = 24;
 
-/// Up to how many velocities the inverse of the mass matrix of a mechanism that does not branch is written out. Beyond it is
-/// quicker in loops.
+/// Up to how many velocities of a trunk, or of a mechanism that does not branch, the inverse of the mass matrix is written out.
+/// Beyond it is quicker in loops.
 const WRITTEN_OUT: usize = 12;
 
 /// Up to how many velocities differentiation is tried.
@@ -76,7 +76,7 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
     let zeros: Vec<bool> = forces.map_or(Vec::new(), |f| f.program.outputs.iter().map(is_zero).collect());
     for f in &mut functions {
         f.structure.inverse = match f.shape {
-            _ if parts.is_divided(f) => {
+            Shape::Inverse(_) | Shape::Accelerated(_) if parts.is_divided() => {
                 let trunk = parts.trunk_or_all();
                 Parted::Divided { trunk: trunk.velocities.clone(), limbs: trunk.limbs() }
             }
@@ -226,19 +226,25 @@ impl<'a, 'g> Parts<'a, 'g> {
         program.or_in_lanes(in_lanes.into_iter().flatten())
     }
 
-    /// `M⁻¹`, in parts where there are some.
-    fn inverse(&self) -> Program {
-        let outputs =
-            |[inverse, factors]: [crba::Matrix<'g>; 2]| [columns(&inverse), factors.concat()].concat();
+    /// `M⁻¹`, in parts where there are some; on request after the accelerations.
+    fn inverse(&self, accelerated: bool) -> Program {
+        let outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+            [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
+        };
         let Some(trunk) = &self.trunk else {
             let factor = Factor::of(&self.mass, &self.joints);
-            return self.stage.program(&outputs([factor.inverse(), Vec::new()]));
+            let a = accelerated.then(|| factor.solve(self.unbalanced()));
+            return self.stage.program(&outputs(a, [factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::of(&self.mass, trunk);
-        let program = self.stage.program(&outputs([inverse.columns(), inverse.factors()]));
+        let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
+        let program = self.stage.program(&outputs(a, [inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-            Some(done(&outputs(in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]))))
+            let a =
+                accelerated.then(|| lanes.limbs.scattered(&in_lanes::accelerations(&lanes.limbs, &inverse)));
+            let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
+            Some(done(&outputs(a, parts)))
         }))
     }
 
@@ -256,13 +262,14 @@ impl<'a, 'g> Parts<'a, 'g> {
         }))
     }
 
-    /// True if loops make `M⁻¹`.
-    fn is_divided(&self, f: &Function) -> bool {
-        match f.shape {
-            Shape::Inverse(n) => self.is_large() && (self.trunk.is_some() || n > WRITTEN_OUT),
-            Shape::Accelerated(_) => true,
-            _ => false,
-        }
+    /// True if loops make `M⁻¹`. Alike limbs are lanes in straight lines, too.
+    fn is_divided(&self) -> bool {
+        let in_lanes = self.limbs.as_ref().is_some_and(|lanes| lanes.trunk.is_some());
+        self.is_large()
+            && match &self.trunk {
+                Some(trunk) => !in_lanes || trunk.velocities.len() > WRITTEN_OUT,
+                None => self.model.nv() > WRITTEN_OUT,
+            }
     }
 
     /// The trunk: everything for a mechanism that does not branch.
@@ -331,9 +338,10 @@ impl<'a, 'g> Parts<'a, 'g> {
             _ => {}
         }
         match f.name.as_str() {
-            "mass_matrix_inverse" if self.is_divided(f) => self.divided(false),
-            "mass_matrix_inverse" => self.inverse(),
-            "__accelerations_and_inverse" => self.divided(true),
+            "mass_matrix_inverse" if self.is_divided() => self.divided(false),
+            "mass_matrix_inverse" => self.inverse(false),
+            "__accelerations_and_inverse" if self.is_divided() => self.divided(true),
+            "__accelerations_and_inverse" => self.inverse(true),
             "coriolis_matrix" => {
                 let v = mechanics::velocities(self.model);
                 self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))

@@ -83,7 +83,8 @@ pub enum Shape {
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
     Linear(usize, usize),
-    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are `M` times the accelerations and those of `Inverse`.
+    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
+    /// where the inverse is divided, and those of `Inverse`.
     Accelerated(usize),
     /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
     CalledForward(usize),

@@ -39,14 +39,14 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
                 known(f, outputs, n)
             )
         }
-        (Shape::Accelerated(n), [inverse]) => {
-            format!(
-                "let mut solved = [{}];\n{}{}(solved))\n",
+        (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
+            Parted::Divided { .. } => format!(
+                "let mut solved = [{}];\n{}{STORAGE}(solved))\n",
                 outputs.list(0..n),
-                inverted((inverse, "&mut solved"), f, n, n, s, outputs),
-                STORAGE
-            )
-        }
+                inverted((inverse, "&mut solved"), f, n, n, s, outputs)
+            ),
+            _ => format!("{}{}\n", completed(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1)),
+        },
         _ => String::new(),
     }
 }
