@@ -7,6 +7,9 @@ const RUNTIME: &str = "::linkwork::__private";
 /// Before the columns of a matrix.
 const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
 
+/// No columns to multiply by the inverse.
+const NOTHING: &str = "&mut []";
+
 /// Type of a result of several matrices.
 pub fn several(shape: Shape, s: &Signature<'_>) -> String {
     let square = |n| s.shape(Shape::Square(n));
@@ -27,7 +30,7 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}",
-            completed(inverse, f, n, 2 * n * n, s, outputs),
+            completed([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
             solved([by_q, by_v], inverse, n, s, &f.structure)
         ),
         (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
@@ -43,9 +46,11 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
             Parted::Divided { .. } => format!(
                 "let mut solved = [{}];\n{}{STORAGE}(solved))\n",
                 outputs.list(0..n),
-                inverted((inverse, "&mut solved"), f, n, n, s, outputs)
+                completed([inverse, "&mut solved"], f, n, n, s, outputs)
             ),
-            _ => format!("{}{}\n", completed(inverse, f, n, n, s, outputs), outputs.matrix(0, n, 1)),
+            _ => {
+                format!("{}{}\n", completed([inverse, NOTHING], f, n, n, s, outputs), outputs.matrix(0, n, 1))
+            }
         },
         _ => String::new(),
     }
@@ -63,7 +68,7 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             square(0, n),
             square(1, n),
             square(2, n),
-            completed("all.2", f, n, 2 * n * n, s, outputs),
+            completed(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
         Shape::Linear(n, m) => {
@@ -99,87 +104,35 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
 
 /// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let rest = match &f.structure.inverse {
-        Parted::Divided { .. } => inverted(("inverse", "&mut []"), f, n, first, s, outputs),
-        _ => completed("inverse", f, n, first, s, outputs),
-    };
+    let rest = completed(["inverse", NOTHING], f, n, first, s, outputs);
     format!("let mut inverse = {};\n{rest}", outputs.matrix(first, n, n))
 }
 
-/// Adds what `M⁻¹` has of the trunk to the rest of it, which stands at `place`; nothing if it is whole.
+/// Makes `M⁻¹` of its parts, the first of which stand at `place`; nothing if it is whole. Where it is divided, given columns are
+/// multiplied by it, too.
 fn completed(
-    place: &str,
+    [place, solved]: [&str; 2],
     f: &Function,
     n: usize,
     first: usize,
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let Parted::Trunk(trunk) = &f.structure.inverse else { return String::new() };
-    let beside = Beside { first: first + n * n, width: trunk.len(), outputs };
-    let used: Vec<(usize, Span)> = (0..n).filter_map(|k| Some((k, beside.used(k)?))).collect();
-    let runs = together(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
-    if runs.is_empty() {
-        return String::new();
+    let beside = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
+    match &f.structure.inverse {
+        Parted::Whole => String::new(),
+        Parted::Trunk(trunk) => beside(trunk.len()).completion(place, trunk, s),
+        Parted::Divided { trunk, limbs } => beside(trunk.len()).inversion([place, solved], trunk, limbs, s),
     }
-    let factors: Vec<String> = used.iter().map(|(k, _)| outputs.list(beside.range(*k))).collect();
-    format!(
-        "{RUNTIME}::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
-        s.scalar.name(),
-        parts(|_| n.to_string()),
-        factors.join(", "),
-    )
-}
-
-/// Makes `M⁻¹` of the parts, the first of which stand at a place, and multiplies given columns by it.
-fn inverted(
-    (place, solved): (&str, &str),
-    f: &Function,
-    n: usize,
-    first: usize,
-    s: &Signature<'_>,
-    outputs: &Outputs<'_>,
-) -> String {
-    let Parted::Divided { trunk, limbs } = &f.structure.inverse else { return String::new() };
-    let beside = Beside { first: first + n * n, width: trunk.len(), outputs };
-    let length = trunk.len().next_multiple_of(4);
-    let padding = vec![number("0.0", s); length - trunk.len()];
-    let border = |k: usize| {
-        let entries = outputs.pieces.get(beside.range(k)).unwrap_or(&[]).iter().map(|p| &p.text);
-        let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
-        format!("[{}]", all.join(", "))
-    };
-    let mut used = vec![None; n];
-    for limb in limbs {
-        let ends = limb.iter().filter_map(|k| beside.used(*k));
-        let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
-        limb.iter().for_each(|k| used[*k] = all);
-    }
-    let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
-    let neighbours = |limb: &Vec<usize>| {
-        let runs = together(limb.iter().map(|k| (*k, (0, 0), *k)));
-        format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
-    };
-    let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
-    format!(
-        "{RUNTIME}::invert::<Ops, {}, {}, {}, {n}, {}, {length}, _>(
-            &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
-        );\n",
-        s.scalar.name(),
-        parts(|_| n.to_string()),
-        parts(|_| length.to_string()),
-        trunk.len(),
-        (0..n).map(border).collect::<Vec<_>>().join(", "),
-        limbs.join(", "),
-    )
 }
 
 /// From one up to another.
 type Span = (usize, usize);
 
-/// Rows of outputs beside those of a matrix.
+/// Rows of outputs beside those of a matrix, one for each velocity.
 struct Beside<'a> {
     first: usize,
+    rows: usize,
     width: usize,
     outputs: &'a Outputs<'a>,
 }
@@ -195,6 +148,63 @@ impl Beside<'_> {
         let first = self.range(row).start;
         let is_used = |t: &usize| !self.outputs.is_zero(first + t);
         Some(((0..self.width).find(is_used)?, (0..self.width).rfind(is_used)? + 1))
+    }
+
+    /// Adds the product of the trunk's columns with these factors to the matrix at a place; nothing if there are none.
+    fn completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
+        let used: Vec<(usize, Span)> = (0..self.rows).filter_map(|k| Some((k, self.used(k)?))).collect();
+        let runs = together(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
+        if runs.is_empty() {
+            return String::new();
+        }
+        let factors: Vec<String> = used.iter().map(|(k, _)| self.outputs.list(self.range(*k))).collect();
+        format!(
+            "{RUNTIME}::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
+            s.scalar.name(),
+            parts(|_| self.rows.to_string()),
+            factors.join(", "),
+        )
+    }
+
+    /// Inverts the matrix at a place, with these entries of the mass matrix, and multiplies given columns by the inverse.
+    fn inversion(
+        &self,
+        [place, solved]: [&str; 2],
+        trunk: &[usize],
+        limbs: &[Vec<usize>],
+        s: &Signature<'_>,
+    ) -> String {
+        let length = self.width.next_multiple_of(4);
+        let padding = vec![number("0.0", s); length - self.width];
+        let border = |k: usize| {
+            let entries = self.outputs.pieces.get(self.range(k)).unwrap_or(&[]).iter().map(|p| &p.text);
+            let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
+            format!("[{}]", all.join(", "))
+        };
+        let mut used = vec![None; self.rows];
+        for limb in limbs {
+            let ends = limb.iter().filter_map(|k| self.used(*k));
+            let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
+            limb.iter().for_each(|k| used[*k] = all);
+        }
+        let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+        let neighbours = |limb: &Vec<usize>| {
+            let runs = together(limb.iter().map(|k| (*k, (0, 0), *k)));
+            format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
+        };
+        let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
+        format!(
+            "{RUNTIME}::invert::<Ops, {}, {}, {}, {}, {}, {length}, _>(
+                &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
+            );\n",
+            s.scalar.name(),
+            parts(|_| self.rows.to_string()),
+            parts(|_| length.to_string()),
+            self.rows,
+            self.width,
+            (0..self.rows).map(border).collect::<Vec<_>>().join(", "),
+            limbs.join(", "),
+        )
     }
 }
 

@@ -85,9 +85,7 @@ impl Trunk {
         let several = limbs.iter().map(|limb| limb.alike).sum::<usize>() > 1;
         (several && (0..n).all(|i| (0..i).all(|j| is_apart(i, j)))).then_some(Trunk { velocities, limbs })
     }
-}
 
-impl Trunk {
     /// Everything is trunk.
     pub fn whole(joints: &[Joint<'_>], nv: usize) -> Trunk {
         Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
