@@ -1,26 +1,17 @@
 //! The inverse of a mass matrix and products with it, for generated code. They never allocate, as nalgebra's own do for large
 //! matrices, and skip what is known to be zero.
 
+mod column;
 mod inverse;
 
 use crate::Real;
-use crate::arithmetic::{Arithmetic, Vector};
+use crate::arithmetic::Arithmetic;
 use crate::lanes::Work;
+use column::{Column, Columns, Source};
+pub use column::{eights, fours};
 use core::marker::PhantomData;
 pub use inverse::{complete, invert};
 use nalgebra::SMatrix;
-
-/// How many registers of eight numbers hold most of a column of so many, where there are such registers.
-#[must_use]
-pub const fn eights(numbers: usize, wide: bool) -> usize {
-    if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
-}
-
-/// How many registers of four numbers hold the rest.
-#[must_use]
-pub const fn fours(numbers: usize, wide: bool) -> usize {
-    numbers.saturating_sub(8 * eights(numbers, wide)).div_ceil(4)
-}
 
 /// So many numbers fill several registers of eight.
 const fn is_long(numbers: usize) -> bool {
@@ -41,13 +32,6 @@ pub const fn rows(numbers: usize, wide: bool) -> usize {
 /// How many registers hold sums at a time. The others are for what is added.
 const fn sums(wide: bool) -> usize {
     if wide { 24 } else { 12 }
-}
-
-/// A column in `E` registers of eight numbers, then `F` of four. The last begins as much earlier as it would be too long.
-#[derive(Clone, Copy)]
-struct Column<A, T, const E: usize, const F: usize> {
-    eights: [Vector<A, T, 8>; E],
-    fours: [Vector<A, T, 4>; F],
 }
 
 /// Neighbouring rows or columns, from one up to another.
@@ -332,6 +316,18 @@ fn minus_sums<
     sums
 }
 
+/// Reads columns.
+#[inline(always)]
+fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const C: usize>(
+    columns: &[[T; N]; C],
+) -> [Column<A, T, E, F>; C] {
+    let mut all = [Column::zero(); C];
+    for (place, column) in all.iter_mut().zip(columns) {
+        *place = Column::read(column);
+    }
+    all
+}
+
 /// Writes sums to the rows of columns from one on.
 #[inline(always)]
 fn write<
@@ -350,29 +346,6 @@ fn write<
     for (sums, column) in sums.iter().zip(columns) {
         if let Some(rows) = column.get_mut(first..).and_then(<[T]>::first_chunk_mut::<R>) {
             sums.write(rows);
-        }
-    }
-}
-
-/// Columns that multiples are taken of.
-trait Source<A, T, const E: usize, const F: usize> {
-    /// How many there are.
-    const COUNT: usize;
-
-    /// One of them; zeros if there is none.
-    fn column(&self, k: usize) -> Column<A, T, E, F>;
-}
-
-impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const W: usize>
-    Source<A, T, E, F> for [[T; N]; W]
-{
-    const COUNT: usize = W;
-
-    #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
-        match self.get(k) {
-            Some(column) => Column::read(column),
-            None => Column::zero(),
         }
     }
 }
@@ -428,10 +401,7 @@ fn add<
     for columns in columns {
         let Some((factors, left)) = factors_left.split_first_chunk::<C>() else { break };
         factors_left = left;
-        let mut sums = [Column::<A, T, E, F>::zero(); C];
-        for (sums, column) in sums.iter_mut().zip(columns.iter()) {
-            *sums = Column::read(column);
-        }
+        let mut sums = read_each::<A, T, E, F, N, C>(columns);
         for k in first..end.min(V).min(S::COUNT) {
             let from = source.column(k);
             for (sums, factors) in sums.iter_mut().zip(factors) {
@@ -439,9 +409,7 @@ fn add<
                 sums.add_multiple::<MINUS>(*factor, &from);
             }
         }
-        for (sums, column) in sums.iter().zip(columns) {
-            sums.write(column);
-        }
+        write::<A, T, E, F, N, C, N>(&sums, columns, 0);
     }
     (columns_left, factors_left)
 }
@@ -463,10 +431,7 @@ fn add_products<
     (first, end): Range,
 ) {
     for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
-        let mut sums = [Column::<A, T, E, F>::zero(); C];
-        for (sums, column) in sums.iter_mut().zip(columns.iter()) {
-            *sums = Column::read(column);
-        }
+        let mut sums = read_each::<A, T, E, F, N, C>(columns);
         for k in first..end.min(W) {
             let Some(factors) = factors[k].as_chunks::<C>().0.get(place) else { continue };
             let from = Column::read(&vectors[k]);
@@ -474,159 +439,7 @@ fn add_products<
                 sums.add_multiple::<false>(*factor, &from);
             }
         }
-        for (sums, column) in sums.iter().zip(columns) {
-            sums.write(column);
-        }
-    }
-}
-
-/// Columns of a matrix, beginning where lines of the cache do.
-#[repr(align(64))]
-struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
-    eights: [[Vector<A, T, 8>; E]; K],
-    fours: [[Vector<A, T, 4>; F]; K],
-}
-
-impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Columns<A, T, E, F, K> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
-    }
-
-    /// Reads a column where it is to be: a whole one would be moved once more.
-    #[inline(always)]
-    fn set(&mut self, k: usize, column: &[T]) {
-        if let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) {
-            read(column, eights, fours);
-        }
-    }
-}
-
-impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Source<A, T, E, F>
-    for Columns<A, T, E, F, K>
-{
-    const COUNT: usize = K;
-
-    #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
-        match (self.eights.get(k), self.fours.get(k)) {
-            (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
-            _ => Column::zero(),
-        }
-    }
-}
-
-// No function of the standard library that takes closures: those are not always inlined.
-
-impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
-    }
-
-    #[inline(always)]
-    fn all(x: T) -> Self {
-        Self { eights: [A::splat(x); E], fours: [A::splat(x); F] }
-    }
-
-    /// One minus this.
-    #[inline(always)]
-    fn complement(&self) -> Self {
-        let mut rest = Self::all(T::one());
-        rest.add_multiple::<true>(T::one(), self);
-        rest
-    }
-
-    /// Row by row.
-    #[inline(always)]
-    fn multiply(&mut self, other: &Self) {
-        for (x, y) in self.eights.iter_mut().zip(&other.eights) {
-            *x = *x * *y;
-        }
-        for (x, y) in self.fours.iter_mut().zip(&other.fours) {
-            *x = *x * *y;
-        }
-    }
-
-    /// Adds a multiple of another, or subtracts it.
-    #[inline(always)]
-    fn add_multiple<const MINUS: bool>(&mut self, factor: T, other: &Self) {
-        add_multiples::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
-        add_multiples::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
-    }
-
-    #[inline(always)]
-    fn read(column: &[T]) -> Self {
-        let mut all = Self::zero();
-        read(column, &mut all.eights, &mut all.fours);
-        all
-    }
-
-    #[inline(always)]
-    fn write(&self, column: &mut [T]) {
-        for (k, register) in self.eights.iter().enumerate() {
-            put(register, column, 8 * k);
-        }
-        for (k, register) in self.fours.iter().enumerate() {
-            put(register, column, 8 * E + 4 * k);
-        }
-    }
-}
-
-/// Adds multiples of others, or subtracts them.
-#[inline(always)]
-fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
-    sums: &mut [Vector<A, T, W>],
-    factor: T,
-    others: &[Vector<A, T, W>],
-) {
-    let by = A::splat(factor);
-    for (sum, x) in sums.iter_mut().zip(others) {
-        *sum = if MINUS { A::neg_mul_add(*x, by, *sum) } else { A::mul_add(*x, by, *sum) };
-    }
-}
-
-/// Reads a column.
-#[inline(always)]
-fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
-    column: &[T],
-    eights: &mut [Vector<A, T, 8>; E],
-    fours: &mut [Vector<A, T, 4>; F],
-) {
-    for (k, register) in eights.iter_mut().enumerate() {
-        *register = part(column, 8 * k);
-    }
-    for (k, register) in fours.iter_mut().enumerate() {
-        *register = part(column, 8 * E + 4 * k);
-    }
-}
-
-/// So many numbers from one on, or as many earlier as there are too few.
-#[inline(always)]
-fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
-    let rest = column.get(from.min(column.len().saturating_sub(W))..).unwrap_or(&[]);
-    let mut numbers = [T::zero(); W];
-    if let Some(all) = rest.first_chunk() {
-        numbers = *all;
-    } else {
-        for (number, x) in numbers.iter_mut().zip(rest) {
-            *number = *x;
-        }
-    }
-    A::lanes(numbers)
-}
-
-/// The same for writing.
-#[inline(always)]
-fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, column: &mut [T], from: usize) {
-    let rest = column.get_mut(from.min(column.len().saturating_sub(W))..).unwrap_or(&mut []);
-    let numbers = register.numbers();
-    if let Some(all) = rest.first_chunk_mut() {
-        *all = *numbers;
-    } else {
-        for (place, x) in rest.iter_mut().zip(numbers) {
-            *place = *x;
-        }
+        write::<A, T, E, F, N, C, N>(&sums, columns, 0);
     }
 }
 

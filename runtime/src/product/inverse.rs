@@ -1,7 +1,8 @@
 //! The inverse of a mass matrix in parts (`mechanics/derivatives/trunk.rs` of the compiler), as loops: for a large mechanism
 //! straight lines of these products would be longer than what the processor can fetch in the time.
 
-use super::{Column, Parts, Range, Run, is_long};
+use super::column::Column;
+use super::{Parts, Range, Run, is_long};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use crate::lanes::Work;
@@ -260,6 +261,15 @@ mod tests {
         everywhere!(completed by N, (&start, &factors, &runs, &expected));
     }
 
+    /// The rows of a trunk in a mass matrix, by column.
+    fn borders<const N: usize, const K: usize, const L: usize>(
+        mass: &SMatrix<f64, N, N>,
+        trunk: [usize; K],
+    ) -> [[f64; L]; N] {
+        let entry = |t: usize, k: usize| trunk.get(t).map_or(0.0, |t| mass[(*t, k)]);
+        core::array::from_fn(|k| core::array::from_fn(|t| entry(t, k)))
+    }
+
     /// A mass matrix of two limbs with a trunk, and what is expected of it.
     fn branched<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
         let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
@@ -293,15 +303,18 @@ mod tests {
                     found.set_column(k, &inverse.column(k));
                 }
             }
-            let mut borders = [[0.0; 4]; N];
-            for (k, border) in borders.iter_mut().enumerate() {
-                border.iter_mut().zip(TRUNK).for_each(|(x, t)| *x = mass[(t, k)]);
-            }
             let limbs: [Limb<'_>; 2] = [&[(2, 7)], &[(0, 1), (8, 9), (10, 14)]];
             let runs =
                 [((2, 7), (0, 2), 2), ((0, 1), (0, 3), 0), ((8, 9), (0, 3), 8), ((10, 14), (0, 3), 10)];
             let mut solved = right.data.0;
-            invert::<A, f64, P, Inner, N, 3, 4, M>(&mut found, TRUNK, &borders, &limbs, &runs, &mut solved);
+            invert::<A, f64, P, Inner, N, 3, 4, M>(
+                &mut found,
+                TRUNK,
+                &borders(mass, TRUNK),
+                &limbs,
+                &runs,
+                &mut solved,
+            );
             assert!((found * mass - SMatrix::<f64, N, N>::identity()).amax() < 1e-13);
             let solved = SMatrix::<f64, N, M>::from_array_storage(nalgebra::ArrayStorage(solved));
             assert!((mass * solved - right).amax() < 1e-12);
@@ -319,11 +332,15 @@ mod tests {
         ) {
             let scaled: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * mass[(i, j)] * scale[j]);
             let trunk: [usize; N] = core::array::from_fn(|k| (5 * k + 2) % N);
-            let borders: [[f64; 16]; N] = core::array::from_fn(|k| {
-                core::array::from_fn(|t| trunk.get(t).map_or(0.0, |t| scaled[(*t, k)]))
-            });
             let mut found = SMatrix::zeros();
-            invert::<A, f64, P, Inner, N, N, 16, 0>(&mut found, trunk, &borders, &[], &[], &mut []);
+            invert::<A, f64, P, Inner, N, N, 16, 0>(
+                &mut found,
+                trunk,
+                &borders(&scaled, trunk),
+                &[],
+                &[],
+                &mut [],
+            );
             let found: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * found[(i, j)] * scale[j]);
             assert!((found * mass - SMatrix::<f64, N, N>::identity()).amax() < 1e-12);
         }
@@ -343,10 +360,15 @@ mod tests {
             right: &SMatrix<f64, N, M>,
         ) {
             let trunk: [usize; N] = core::array::from_fn(|k| k);
-            let borders: [[f64; 16]; N] =
-                core::array::from_fn(|k| core::array::from_fn(|t| if t < N { mass[(t, k)] } else { 0.0 }));
             let (mut inverse, mut solved) = (SMatrix::zeros(), right.data.0);
-            invert::<A, f64, P, Inner, N, N, 16, M>(&mut inverse, trunk, &borders, &[], &[], &mut solved);
+            invert::<A, f64, P, Inner, N, N, 16, M>(
+                &mut inverse,
+                trunk,
+                &borders(mass, trunk),
+                &[],
+                &[],
+                &mut solved,
+            );
             let x = SMatrix::<f64, N, M>::from_array_storage(nalgebra::ArrayStorage(solved));
             let error = (mass * x - right).amax() / (mass.abs() * x.abs()).amax();
             assert!(error < 1e-13);
