@@ -173,18 +173,19 @@ impl Registers for Compiled {
                     && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
                 {
                     use wide::$register;
-                    let mut small = $register::new([f64::from_bits(u64::MAX); $lanes]);
+                    // What is no number is none here either.
+                    let mut large = $register::new([0.0; $lanes]);
                     for x in x {
-                        small &= $register::new(*x).abs().simd_le($register::splat(LARGEST));
+                        large |= $register::new(*x).abs().simd_gt($register::splat(LARGEST));
                     }
-                    return small.all();
+                    return large.none();
                 }
             };
         }
         case!(2 f64x2);
         case!(4 f64x4);
         case!(8 f64x8);
-        x.iter().flatten().all(|x| x.abs() <= LARGEST)
+        !x.iter().flatten().any(|x| x.abs() > LARGEST)
     }
 
     #[cold]

@@ -123,8 +123,8 @@ mod with_features {
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     let result: [[f64; $lanes]; 2] = unsafe {
-                        let s: [__m256i; $count] = transmute(*s);
-                        let c: [__m256i; $count] = transmute(*c);
+                        let s: [__m256d; $count] = transmute(*s);
+                        let c: [__m256d; $count] = transmute(*c);
                         let shifted: [__m256i; $count] = transmute(*shifted);
                         let (mut sines, mut cosines) = (s, c);
                         for k in 0..$count {
@@ -161,16 +161,17 @@ mod with_features {
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     return unsafe {
-                        let mut small = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+                        // What is no number is none here either.
+                        let mut large = _mm256_setzero_pd();
                         for x in x {
                             let x: [__m256d; $count] = transmute(*x);
                             for x in x {
                                 let magnitude = _mm256_andnot_pd(_mm256_set1_pd(-0.0), x);
-                                let less = _mm256_cmp_pd::<_CMP_LE_OQ>(magnitude, _mm256_set1_pd(LARGEST));
-                                small = _mm256_and_pd(small, less);
+                                let more = _mm256_cmp_pd::<_CMP_GT_OQ>(magnitude, _mm256_set1_pd(LARGEST));
+                                large = _mm256_or_pd(large, more);
                             }
                         }
-                        _mm256_movemask_pd(small) == 0b1111
+                        _mm256_movemask_pd(large) == 0
                     };
                 }
             };
@@ -234,12 +235,12 @@ fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
 /// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn turned_register(s: __m256i, c: __m256i, quadrant: __m256i) -> [__m256i; 2] {
-    let (one, sign) = (_mm256_set1_epi64x(1), _mm256_set1_epi64x(i64::MIN));
-    let odd = _mm256_sub_epi64(_mm256_setzero_si256(), _mm256_and_si256(quadrant, one));
-    let exchange = _mm256_and_si256(_mm256_xor_si256(s, c), odd);
-    let bit = |quadrant| _mm256_and_si256(_mm256_slli_epi64::<62>(quadrant), sign);
-    let (sine, cosine) = (_mm256_xor_si256(s, exchange), _mm256_xor_si256(c, exchange));
-    let next = _mm256_add_epi64(quadrant, one);
-    [_mm256_xor_si256(sine, bit(quadrant)), _mm256_xor_si256(cosine, bit(next))]
+fn turned_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {
+    let sign = _mm256_set1_pd(-0.0);
+    // Only the first bit of each number is looked at.
+    let odd = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(quadrant));
+    let sine = _mm256_blendv_pd(s, c, odd);
+    let cosine = _mm256_blendv_pd(c, _mm256_xor_pd(s, sign), odd);
+    let half = _mm256_and_pd(_mm256_castsi256_pd(_mm256_slli_epi64::<62>(quadrant)), sign);
+    [_mm256_xor_pd(sine, half), _mm256_xor_pd(cosine, half)]
 }
