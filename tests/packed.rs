@@ -14,6 +14,14 @@ struct Quadruped;
 #[mechanism(urdf = "../models/urdf/panda.urdf", packed)]
 struct Panda;
 
+/// So many results that they cannot wait in registers: neighbours are stored together as they become known.
+#[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, packed)]
+struct Humanoid;
+
+/// The same with several columns side by side.
+#[mechanism(urdf = "../models/urdf/g1.urdf", base = free, packed)]
+struct G1;
+
 /// Two arms on one cart, with everything else that can be asked for.
 #[mechanism(
     gravity = -9.81 * y,
@@ -80,6 +88,9 @@ fn packed_is_whole() {
     // Fingers of equal mass that move against each other push nothing.
     assert_eq!(check!(Panda, Panda), 7 * 8 / 2 + 1);
     assert_eq!(check!(TwoArms, TwoArms { m: 1.2, l: 0.5 }), 5);
+    // Legs do not act on one another, nor on what the torso carries.
+    assert!(check!(Humanoid, Humanoid) < 35 * 36 / 2);
+    assert!(check!(G1, G1) < 35 * 36 / 2);
     let arms = TwoArms { m: 1.2, l: 0.5 };
     let q = SVector::from([0.1, 0.2, 0.3]);
     let (one, other) = (arms.prepare().mass_matrix_packed(&q), arms.mass_matrix_packed(&q));

@@ -48,8 +48,8 @@ pub(crate) mod dispatch;
 mod number;
 mod vector;
 
-use crate::Lanes;
 use crate::lanes::Registers;
+use crate::{Lanes, Real};
 pub use number::{Elementary, Number};
 pub use vector::Vector;
 
@@ -106,6 +106,28 @@ pub trait Arithmetic: Registers {
         b: Vector<Self, T, N>,
     ) -> Vector<Self, T, M> {
         Vector::joined(&a, &b)
+    }
+
+    /// Puts lane `I` of one vector and lane `J` of another into rows `ROW` and `ROW + 1` of a column. Does not compile if
+    /// there are fewer lanes or rows.
+    #[inline(always)]
+    fn store_two<
+        const I: usize,
+        const J: usize,
+        const ROW: usize,
+        T: Real,
+        const N: usize,
+        const M: usize,
+        const R: usize,
+    >(
+        column: &mut [T; R],
+        a: Vector<Self, T, N>,
+        b: Vector<Self, T, M>,
+    ) {
+        const { assert!(ROW + 1 < R, "there are not so many rows") };
+        if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
+            *rows = a.with::<I, J, M>(&b);
+        }
     }
 
     /// Arguments in lanes.

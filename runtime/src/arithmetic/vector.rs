@@ -1,6 +1,8 @@
 //! Lanes within a generated body.
 
 use crate::lanes::Registers;
+#[cfg(feature = "std")]
+use crate::trigonometry::same;
 use crate::{Lanes, Real};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -81,6 +83,31 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 }
 
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
+    /// Lane `I`, and lane `J` of another. Does not compile if there are fewer.
+    #[inline(always)]
+    pub(crate) fn with<const I: usize, const J: usize, const M: usize>(
+        &self,
+        other: &Vector<A, T, M>,
+    ) -> [T; 2] {
+        const { assert!(I < N && J < M, "there are not so many lanes") };
+        let (a, b) = (self.numbers(), other.numbers());
+        // By registers: lanes that are used more than once would be stored one by one.
+        #[cfg(feature = "std")]
+        if I % 2 == J % 2
+            && N.is_multiple_of(2)
+            && M.is_multiple_of(2)
+            && let (Some(a), Some(b)) = (same::<_, [f64; N]>(a), same::<_, [f64; M]>(b))
+        {
+            let (i, j) = (I - I % 2, J - J % 2);
+            let halves = [[a[i], a[i + 1]], [b[j], b[j + 1]]].map(wide::f64x2::new);
+            let two = wide::f64x2::transpose(halves)[I % 2].to_array();
+            if let Some(two) = same(&two) {
+                return *two;
+            }
+        }
+        [a[I], b[J]]
+    }
+
     /// The sum of all lanes, in the order of [`Lanes::sum`].
     #[inline]
     pub fn sum(&self) -> T {

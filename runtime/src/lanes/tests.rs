@@ -212,3 +212,26 @@ fn vectors_compute_lane_by_lane() {
         }
     }
 }
+
+/// Lanes `I` and `J` of two vectors end up in rows 1 and 2, and nothing else changes.
+fn stored<T: crate::Real, const I: usize, const J: usize, const N: usize, const M: usize>(
+    number: fn(usize) -> T,
+) {
+    let (a, b) = (Lanes::<T, N>::from_fn(number), Lanes::<T, M>::from_fn(|k| number(100 + k)));
+    let mut column = [T::zero(); 4];
+    A::store_two::<I, J, 1, T, N, M, 4>(&mut column, A::lanes(a.0), A::lanes(b.0));
+    assert_eq!(column, [T::zero(), a[I], b[J], T::zero()], "lanes {I} of {N} and {J} of {M}");
+}
+
+#[test]
+fn lanes_are_stored_in_rows() {
+    let double = |k| 0.5 + k as f64;
+    stored::<f64, 0, 0, 2, 2>(double);
+    stored::<f64, 1, 1, 2, 2>(double);
+    stored::<f64, 0, 1, 2, 2>(double);
+    stored::<f64, 1, 3, 2, 4>(double);
+    stored::<f64, 2, 0, 4, 4>(double);
+    stored::<f64, 5, 3, 8, 4>(double);
+    stored::<f64, 2, 1, 3, 3>(double);
+    stored::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
+}

@@ -95,7 +95,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero };
     if !f.given().is_empty() {
-        let (statements, left) = stores::with_stores(f, rest, &results);
+        let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
         out.push_str(&matrices::finish(f, s, &results));
         return;

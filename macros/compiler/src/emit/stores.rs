@@ -3,11 +3,15 @@
 
 use super::body::{Outputs, Piece, Statement};
 use super::function::{Function, Parted, Shape};
+use crate::lower::{Op, Operand, Program};
 use std::fmt;
 
 /// Up to how many statements results of alike limbs are stored at the end, column by column: then the lanes of several are
 /// turned round in registers and stored together.
 const TURNED: usize = 300;
+
+/// How many statements after one vector another may be known whose lanes are stored together with its own.
+const NEAR: usize = 60;
 
 /// An entry of a matrix.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,14 +30,14 @@ impl fmt::Display for Place {
 /// The statements with those that store results, and the results that are left.
 pub fn with_stores(
     f: &Function,
+    program: &Program,
     statements: Vec<Statement>,
     outputs: &Outputs<'_>,
 ) -> (Vec<Statement>, Vec<Piece>) {
     let places = places(f, outputs);
-    let in_limbs = f.program.in_lanes.as_ref().is_some_and(|program| !program.gathers.is_empty());
-    let all = match in_limbs && statements.len() <= TURNED {
+    let all = match !program.gathers.is_empty() && statements.len() <= TURNED {
         true => at_the_end(statements, &places, outputs),
-        false => as_known(statements, &places, outputs),
+        false => as_known(program, statements, &places, outputs),
     };
     let given = places.iter().map(Vec::len).chain(std::iter::repeat(0));
     let left = outputs.pieces.iter().zip(given).enumerate();
@@ -74,22 +78,41 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
 }
 
 /// Every result right after the last statement that it needs.
-fn as_known(statements: Vec<Statement>, places: &[Vec<Place>], outputs: &Outputs<'_>) -> Vec<Statement> {
+fn as_known(
+    program: &Program,
+    statements: Vec<Statement>,
+    places: &[Vec<Place>],
+    outputs: &Outputs<'_>,
+) -> Vec<Statement> {
     let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
     let mut bound_by = vec![0; size];
     for (k, statement) in statements.iter().enumerate() {
         statement.names.iter().for_each(|name| bound_by[*name] = k + 1);
     }
+    let at =
+        |needs: &[usize]| needs.iter().filter_map(|need| bound_by.get(*need)).max().copied().unwrap_or(0);
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
-    for (piece, places) in outputs.pieces.iter().zip(places).filter(|(_, places)| !places.is_empty()) {
-        let at = piece.needs.iter().filter_map(|need| bound_by.get(*need)).max().copied().unwrap_or(0);
+    let mut left = places.to_vec();
+    let known = |vector: usize| bound_by.get(vector).copied().filter(|at| *at > 0);
+    for [one, next] in neighbours(lanes(program, places, &known)) {
+        for lane in [&one, &next] {
+            left[lane.output].retain(|place| *place != lane.place);
+        }
+        let Place { matrix, column, row } = one.place;
+        let text = format!(
+            "Ops::store_two::<{}, {}, {row}, _, _, _, _>(&mut {matrix}.data.0[{column}], t{}, t{});",
+            one.lane, next.lane, one.vector, next.vector
+        );
+        ready[one.known.max(next.known)].push(store(text, vec![one.vector, next.vector]));
+    }
+    for (piece, places) in outputs.pieces.iter().zip(&left).filter(|(_, places)| !places.is_empty()) {
         let text = match places.as_slice() {
             [one] => format!("{one} = {};", piece.text),
             several => several.iter().fold(format!("let entry = {};", piece.text), |text, place| {
                 format!("{text}\n{place} = entry;")
             }),
         };
-        ready[at].push(store(text, piece.needs.clone()));
+        ready[at(&piece.needs)].push(store(text, piece.needs.clone()));
     }
     let mut ready = ready.into_iter();
     let mut all: Vec<Statement> = ready.next().into_iter().flatten().collect();
@@ -98,6 +121,45 @@ fn as_known(statements: Vec<Statement>, places: &[Vec<Place>], outputs: &Outputs
         all.extend(ready);
     }
     all
+}
+
+/// A lane of a vector that is stored.
+struct Lane {
+    place: Place,
+    output: usize,
+    vector: usize,
+    lane: usize,
+    /// The number of the statement that the vector is known after.
+    known: usize,
+}
+
+/// All results that are lanes of vectors with names, place by place.
+fn lanes(program: &Program, places: &[Vec<Place>], known: &dyn Fn(usize) -> Option<usize>) -> Vec<Lane> {
+    let mut all = Vec::new();
+    for (output, (operand, places)) in program.outputs.iter().zip(places).enumerate() {
+        if let Operand::Value(v) = operand
+            && let Op::Lane(lane, Operand::Value(vector)) = program.instructions[*v]
+            && let Some(known) = known(vector)
+        {
+            all.extend(places.iter().map(|place| Lane { place: *place, output, vector, lane, known }));
+        }
+    }
+    all.sort_by_key(|lane| lane.place);
+    all
+}
+
+/// Those that one instruction can store: one below the other, and of vectors that are known near each other.
+fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
+    let mut pairs = Vec::new();
+    let mut rest = lanes.into_iter().peekable();
+    while let Some(one) = rest.next() {
+        let below = Place { row: one.place.row + 1, ..one.place };
+        let is_next = |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR;
+        if let Some(next) = rest.next_if(is_next) {
+            pairs.push([one, next]);
+        }
+    }
+    pairs
 }
 
 /// All results after the last statement.
