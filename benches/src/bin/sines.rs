@@ -1,0 +1,79 @@
+//! Sines and cosines of joint angles next to those of the standard library and of `libm`, in one table.
+//!
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin sines`, or without the flag for the
+//! default target, where generated functions ask for AVX2 and FMA as here. Nanoseconds of all angles of a call, which are
+//! within 10⁴ rad: the least over many rounds, in which all take turns.
+
+use linkwork::__private::{Arithmetic, Body, dispatch};
+use linkwork_benches::random::Random;
+use std::array::from_fn;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// How long each number of angles is measured.
+const BUDGET: Duration = Duration::from_millis(300);
+
+/// Number of configurations that the calls go through.
+const STATES: usize = 64;
+
+/// Largest angle, rad.
+const BOUND: f64 = 1e4;
+
+/// Sines and cosines of so many angles.
+type Both<const N: usize> = ([f64; N], [f64; N]);
+
+/// What a generated function calculates first.
+struct Sines;
+
+impl<const N: usize> Body<0, &[f64; N]> for Sines {
+    type Output = Both<N>;
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, angles: &[f64; N]) -> Both<N> {
+        A::sin_cos_all(*angles)
+    }
+}
+
+/// Linkwork's way to calculate them, the standard library's, and that of `libm`.
+fn ways<const N: usize>() -> [fn(&[f64; N]) -> Both<N>; 3] {
+    [|x| dispatch::<0, f64, _, _>(&Sines, x), |x| each(x, f64::sin_cos), |x| each(x, libm::sincos)]
+}
+
+fn each<const N: usize>(x: &[f64; N], sin_cos: impl Fn(f64) -> (f64, f64)) -> Both<N> {
+    let (mut s, mut c) = ([0.0; N], [0.0; N]);
+    for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
+        (*s, *c) = sin_cos(*x);
+    }
+    (s, c)
+}
+
+fn main() {
+    println!("| angles | Linkwork, ns | std, ns | libm, ns | std : Linkwork | libm : Linkwork |");
+    println!("| ---: | ---: | ---: | ---: | ---: | ---: |");
+    measure::<1>();
+    measure::<6>();
+    measure::<8>();
+    measure::<12>();
+    measure::<16>();
+    measure::<32>();
+}
+
+fn measure<const N: usize>() {
+    let mut random = Random::new(1);
+    let states: Vec<[f64; N]> = (0..STATES).map(|_| from_fn(|_| random.within(BOUND))).collect();
+    let mut least = [f64::INFINITY; 3];
+    let start = Instant::now();
+    while start.elapsed() < BUDGET {
+        for (least, way) in least.iter_mut().zip(ways::<N>()) {
+            let begin = Instant::now();
+            for _ in 0..16 {
+                for x in &states {
+                    black_box(way(black_box(x)));
+                }
+            }
+            *least = least.min(begin.elapsed().as_secs_f64() * 1e9 / (16 * STATES) as f64);
+        }
+    }
+    let [ours, std, libm] = least;
+    println!("| {N} | {ours:.1} | {std:.1} | {libm:.1} | {:.1} | {:.1} |", std / ours, libm / ours);
+}

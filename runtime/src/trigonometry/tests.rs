@@ -1,0 +1,78 @@
+mod exact;
+
+use super::*;
+use crate::arithmetic::Compiled as A;
+
+/// Distance in units of the last place.
+fn ulps(a: f64, b: f64) -> u64 {
+    let ordered = |x: f64| if x < 0.0 { -((x.to_bits() << 1 >> 1) as i64) } else { x.to_bits() as i64 };
+    ordered(a).abs_diff(ordered(b))
+}
+
+/// With every arithmetic that there is.
+fn check(x: f64) {
+    check_with::<A>(x);
+    #[cfg(all(
+        feature = "std",
+        target_arch = "x86_64",
+        not(all(target_feature = "avx2", target_feature = "fma")),
+    ))]
+    {
+        use crate::lanes::x86::avx2;
+        if avx2::is_available() {
+            check_with::<avx2::Avx2>(x);
+        }
+    }
+}
+
+fn check_with<A: Arithmetic>(x: f64) {
+    let (s, c) = A::sin_cos(x);
+    // Of small angles the sine is the angle itself; large ones are the library's.
+    if !(1e-8..=LARGEST).contains(&x.abs()) {
+        assert_eq!((s, c), ComplexField::sin_cos(x), "of {x:e}");
+        return;
+    }
+    let [sine, cosine] = exact::sin_cos(x);
+    assert!(exact::error(s, sine) <= 1.0, "sin {x:e}: {s:e}, by {}", exact::error(s, sine));
+    assert!(exact::error(c, cosine) <= 1.0, "cos {x:e}: {c:e}, by {}", exact::error(c, cosine));
+}
+
+#[test]
+fn is_within_one_unit_in_the_last_place() {
+    let mut state = 1_u64;
+    for _ in 0..100_000 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let unit = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+        check(unit * 8.0);
+        check(unit * 2e4);
+        check(unit * 2e5);
+    }
+}
+
+#[test]
+fn is_so_near_multiples_of_a_quarter_turn_and_at_extremes() {
+    for k in (-60_000_i32..60_000).step_by(3) {
+        let x = f64::from(k) * core::f64::consts::FRAC_PI_2;
+        check(x);
+        check(f64::from_bits(x.to_bits() + 1));
+    }
+    for x in [1e-300, 5e-324, 1e5, 1.1e5, 1e22, f64::MAX] {
+        check(x);
+        check(-x);
+    }
+    assert_eq!((A::sin_cos(0.0), A::sin_cos(-0.0)), ((0.0, 1.0), (0.0, 1.0)));
+    assert!(A::sin_cos(f64::INFINITY).0.is_nan() && A::sin_cos(f64::NAN).1.is_nan());
+}
+
+#[test]
+fn arrays_and_single_precision() {
+    let x = [0.1, -2.0, 7.0, 3e5];
+    let (s, c) = A::sin_cos_all(x);
+    for k in 0..4 {
+        assert!(ulps(s[k], ComplexField::sin(x[k])) <= 1);
+        assert!(ulps(c[k], ComplexField::cos(x[k])) <= 1);
+        let single = A::sin_cos(x[k] as f32);
+        let exact = ComplexField::sin_cos(f64::from(x[k] as f32));
+        assert_eq!(single, (exact.0 as f32, exact.1 as f32));
+    }
+}
