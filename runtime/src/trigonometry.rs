@@ -1,6 +1,7 @@
 //! Sines and cosines of all angles of a mechanism at once: branch-free over arrays, so that the compiler turns them into
 //! vector instructions. Within one unit in the last place for |x| ≤ 10⁵; larger angles and infinities take the functions of the
-//! standard library (or of `libm`), each for itself: a result never depends on the other angles.
+//! standard library (or of `libm`), each for itself: a result never depends on the other angles. NaN counts as small: it goes
+//! through all operations.
 //!
 //! Without optimisation everything that is inlined takes room on the stack of its own, for every call: there nothing is.
 
@@ -61,12 +62,12 @@ fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
-    let mut small = true;
+    let mut large = false;
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-        small &= x.abs() <= LARGEST;
+        large |= x.abs() > LARGEST;
         (*s, *c) = small_angle::<A>(*x);
     }
-    if !small {
+    if large {
         // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
         let copy = Aligned(*x);
         (s, c) = A::sin_cos_of_large(&copy.0);
@@ -79,8 +80,7 @@ fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
 pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-        let small = x.abs() <= LARGEST;
-        (*s, *c) = if small { small_angle::<A>(*x) } else { ComplexField::sin_cos(*x) };
+        (*s, *c) = if x.abs() > LARGEST { ComplexField::sin_cos(*x) } else { small_angle::<A>(*x) };
     }
     (s, c)
 }

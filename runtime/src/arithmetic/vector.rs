@@ -99,8 +99,8 @@ impl<A, T: Real, const N: usize> Vector<A, T, N> {
             && let (Some(a), Some(b)) = (same::<_, [f64; N]>(a), same::<_, [f64; M]>(b))
         {
             let (i, j) = (I - I % 2, J - J % 2);
-            let halves = [[a[i], a[i + 1]], [b[j], b[j + 1]]].map(wide::f64x2::new);
-            let two = wide::f64x2::transpose(halves)[I % 2].to_array();
+            let (a, b) = (wide::f64x2::new([a[i], a[i + 1]]), wide::f64x2::new([b[j], b[j + 1]]));
+            let two = wide::f64x2::transpose([a, b])[I % 2].to_array();
             if let Some(two) = same(&two) {
                 return *two;
             }

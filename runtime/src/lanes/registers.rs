@@ -173,7 +173,7 @@ impl Registers for Compiled {
                     && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
                 {
                     use wide::$register;
-                    // What is no number is none here either.
+                    // An ordered comparison: NaN is not large.
                     let mut large = $register::new([0.0; $lanes]);
                     for x in x {
                         large |= $register::new(*x).abs().simd_gt($register::splat(LARGEST));

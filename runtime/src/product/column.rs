@@ -30,6 +30,7 @@ pub struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Columns<A, T, E, F, K> {
+    /// All zero.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
@@ -61,6 +62,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
 // No function of the standard library that takes closures: those are not always inlined.
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> {
+    /// Zero in every row.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
@@ -98,6 +100,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         add_multiples::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
     }
 
+    /// A column of as many rows as the registers hold, or fewer.
     #[inline(always)]
     pub fn read(column: &[T]) -> Self {
         let mut all = Self::zero();
@@ -105,6 +108,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         all
     }
 
+    /// Into a column of as many rows as it was read from.
     #[inline(always)]
     pub fn write(&self, column: &mut [T]) {
         for (k, register) in self.eights.iter().enumerate() {

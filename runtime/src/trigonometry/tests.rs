@@ -3,12 +3,6 @@ mod exact;
 use super::*;
 use crate::arithmetic::Compiled as A;
 
-/// Distance in units of the last place.
-fn ulps(a: f64, b: f64) -> u64 {
-    let ordered = |x: f64| if x < 0.0 { -((x.to_bits() << 1 >> 1) as i64) } else { x.to_bits() as i64 };
-    ordered(a).abs_diff(ordered(b))
-}
-
 /// With every arithmetic that there is.
 fn check(x: f64) {
     check_with::<A>(x);
@@ -40,7 +34,7 @@ fn check_with<A: Arithmetic>(x: f64) {
 #[test]
 fn is_within_one_unit_in_the_last_place() {
     let mut state = 1_u64;
-    for _ in 0..100_000 {
+    for _ in 0..200_000 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let unit = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
         check(unit * 8.0);
@@ -51,7 +45,7 @@ fn is_within_one_unit_in_the_last_place() {
 
 #[test]
 fn is_so_near_multiples_of_a_quarter_turn_and_at_extremes() {
-    for k in (-60_000_i32..60_000).step_by(3) {
+    for k in -60_000_i32..60_000 {
         let x = f64::from(k) * core::f64::consts::FRAC_PI_2;
         check(x);
         check(f64::from_bits(x.to_bits() + 1));
@@ -69,8 +63,8 @@ fn arrays_and_single_precision() {
     let x = [0.1, -2.0, 7.0, 3e5];
     let (s, c) = A::sin_cos_all(x);
     for k in 0..4 {
-        assert!(ulps(s[k], ComplexField::sin(x[k])) <= 1);
-        assert!(ulps(c[k], ComplexField::cos(x[k])) <= 1);
+        assert_eq!((s[k], c[k]), A::sin_cos(x[k]));
+        check(x[k]);
         let single = A::sin_cos(x[k] as f32);
         let exact = ComplexField::sin_cos(f64::from(x[k] as f32));
         assert_eq!(single, (exact.0 as f32, exact.1 as f32));

@@ -10,7 +10,8 @@ use std::fmt;
 /// turned round in registers and stored together.
 const TURNED: usize = 300;
 
-/// How many statements after one vector another may be known whose lanes are stored together with its own.
+/// How many statements after one vector another may be known whose lanes are stored together with its own. More would make
+/// the first wait in memory, for few pairs: from 60 to 200 a humanoid's mass matrix gains 15 stores.
 const NEAR: usize = 60;
 
 /// An entry of a matrix.
@@ -89,11 +90,10 @@ fn as_known(
     for (k, statement) in statements.iter().enumerate() {
         statement.names.iter().for_each(|name| bound_by[*name] = k + 1);
     }
-    let at =
-        |needs: &[usize]| needs.iter().filter_map(|need| bound_by.get(*need)).max().copied().unwrap_or(0);
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
-    let known = |vector: usize| bound_by.get(vector).copied().filter(|at| *at > 0);
+    let known = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
+    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| known(*need)).max().unwrap_or(0);
     for [one, next] in neighbours(lanes(program, places, &known)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
@@ -112,7 +112,7 @@ fn as_known(
                 format!("{text}\n{place} = entry;")
             }),
         };
-        ready[at(&piece.needs)].push(store(text, piece.needs.clone()));
+        ready[all_known(&piece.needs)].push(store(text, piece.needs.clone()));
     }
     let mut ready = ready.into_iter();
     let mut all: Vec<Statement> = ready.next().into_iter().flatten().collect();

@@ -161,7 +161,7 @@ mod with_features {
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     return unsafe {
-                        // What is no number is none here either.
+                        // An ordered comparison: NaN is not large.
                         let mut large = _mm256_setzero_pd();
                         for x in x {
                             let x: [__m256d; $count] = transmute(*x);
