@@ -33,6 +33,8 @@ use std::path::PathBuf;
 /// | `lock = ["joint", …]` | joints frozen at zero |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 ///
+/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`.
+///
 /// Mistakes are compile errors at the token, all of them at once; those of a file carry its line and column.
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {

@@ -331,6 +331,30 @@ fn followers_share_their_masters_coordinate() {
     );
 }
 
+/// Exporters leave such figures where there are none; a body with mass is not as small as they say.
+#[test]
+fn noise_is_no_inertia() {
+    let link = |mass: &str, moment: &str| {
+        format!(
+            "<link name='a'><inertial><mass value='{mass}'/>
+             <inertia ixx='0' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='0'/></inertial></link>"
+        )
+    };
+    let mistake = |moment: &str| {
+        format!(
+            "r.urdf:2:14: no real body has the inertia of `a`
+             = help: its principal moments are 0, 0, {moment}: the largest exceeds the sum of the others
+             = help: mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+        )
+    };
+    for (mass, moment, real) in
+        [("0", "1e-18", true), ("0", "2e-18", false), ("2", "1e-16", true), ("2", "3e-16", false)]
+    {
+        let expected = if real { "q:\nframe a on ground".to_string() } else { mistake(moment) };
+        check_urdf(&link(mass, moment), &expected);
+    }
+}
+
 /// The inertia of a solid as the model has it.
 fn inertia(solid: &str) -> [[f64; 3]; 3] {
     let mut cx = Diagnostics::new();

@@ -26,6 +26,9 @@ pub const SOLIDS: [(&str, &[&str]); 14] = [
 /// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
 const NOTHING: f64 = 1e-18;
 
+/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten nanometres.
+const SMALLEST: f64 = 1e-16;
+
 /// Relative tolerance of the checks: published figures are rounded.
 const TOLERANCE: f64 = 1e-6;
 
@@ -211,9 +214,10 @@ fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<
     }))
 }
 
-/// Reports an inertia that no real body can have, if it is given by numbers. `hint` says how to take it anyway.
+/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to take it anyway.
 pub fn check_inertia(
     body: &str,
+    mass: Option<f64>,
     inertia: &Sym3<'_>,
     place: &Place,
     hint: Option<&str>,
@@ -223,7 +227,7 @@ pub fn check_inertia(
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
     let list = moments.map(brief).join(", ");
-    if scale <= NOTHING {
+    if scale <= NOTHING.max(SMALLEST * mass.unwrap_or(0.0)) {
         return;
     }
     let diagnostic = if moments[0] < -TOLERANCE * scale {

@@ -46,7 +46,7 @@ impl<'g> Builder<'_, 'g> {
             let hint = e.place.file.as_ref().map(|_| {
                 "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
             });
-            check_inertia(name, inertia, &e.place, hint, cx);
+            check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
         }
         Some((mass?, com?, inertia?))
     }

@@ -72,8 +72,20 @@ fn names_are_given_once() {
     let links = [link("a"), link("ground")].join("\n");
     check_robot(
         &format!("{links}\n{}", joint("j", "fixed", "a", "ground", "")),
-        "r.urdf:3:13: a link cannot be called `ground`: the fixed frame has this name
-         = help: give the link another name",
+        "body a
+         body ground_link
+         Weld root_joint: ground -> a
+         Weld j: a -> ground_link",
+    );
+    let free = UrdfOptions { base: Base::Free, inputs: true, ..defaults() };
+    let both = [link("ground"), link("ground_link")].concat();
+    check_with(
+        &free,
+        &format!("<robot>{both}{}</robot>", joint("j", "fixed", "ground", "ground_link", "")),
+        "body ground_link2
+         body ground_link
+         Free root_joint: ground -> ground_link2
+         Weld j: ground_link2 -> ground_link",
     );
     // A fixed root of this name is the ground.
     check_robot(

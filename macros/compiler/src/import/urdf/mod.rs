@@ -35,8 +35,9 @@ pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Op
     if !check_root(node, cx) {
         return None;
     }
-    let robot = read_robot(node, options, cx)?;
-    names::check_names(&robot, options.base, cx);
+    let mut robot = read_robot(node, options, cx)?;
+    names::rename_ground(&mut robot, options.base);
+    names::check_names(&robot, cx);
     names::check_ends(&robot, cx);
     names::check_locks(&robot.joints, &options.lock, cx);
     if cx.failed() {

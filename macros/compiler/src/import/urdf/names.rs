@@ -6,16 +6,29 @@ use crate::import::context::{Cx, position, quote};
 use crate::syntax::{Base, Name};
 use std::collections::BTreeMap;
 
-/// Reports links and joints that share a name with another, or with the ground. A fixed root may be called `ground`: it
-/// is the ground.
-pub(super) fn check_names(robot: &Robot, base: Base, cx: &mut Cx<'_>) {
+/// Reports links and joints that share a name with another.
+pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
     check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
-    let carried = robot.joints.iter().any(|joint| joint.child.text == "ground");
-    let is_ground = base == Base::Fixed && !carried;
-    for link in robot.links.iter().filter(|link| link.name.text == "ground" && !is_ground) {
-        let message = "a link cannot be called `ground`: the fixed frame has this name";
-        cx.error(&link.name.place, message, |d| d.help("give the link another name"));
+}
+
+/// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called so: it is the ground.
+pub(super) fn rename_ground(robot: &mut Robot, base: Base) {
+    const GROUND: &str = "ground";
+    if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
+        return;
+    }
+    let mut other = "ground_link".to_string();
+    for k in 2.. {
+        if robot.links.iter().all(|link| link.name.text != other) {
+            break;
+        }
+        other = format!("ground_link{k}");
+    }
+    let ends = robot.joints.iter_mut().flat_map(|joint| [&mut joint.parent, &mut joint.child]);
+    let names = robot.links.iter_mut().map(|link| &mut link.name).chain(ends);
+    for name in names.filter(|name| name.text == GROUND) {
+        name.text.clone_from(&other);
     }
 }
 
