@@ -249,7 +249,7 @@ fn one_run(input: &Input, watch: &mut Stopwatch) -> Result<(), Failure> {
 fn functions<'g>(model: &Model<'g>, watch: &mut Stopwatch) {
     let joints = watch.measure("  joints", || mechanics::joints(model));
     let mass = watch.measure("  composite bodies", || crba::mass_matrix(model, &joints));
-    watch.measure("  regularity", || regularity::singular_velocity(model, &joints, &mass));
+    watch.measure("  regularity", || regularity::singular_velocities(model, &joints, &mass));
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let lowered = |watch: &mut Stopwatch, name: &str, f: &mut dyn FnMut() -> Vec<Expr<'g>>| {
         let outputs = watch.measure(&format!("  {name}"), f);

@@ -1,6 +1,6 @@
 //! Model → everything that is generated: the mechanics of each function, lowered.
 
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, all_of};
 use crate::emit::frames::{FrameSteps, LinkSteps};
 use crate::emit::{Function, Output, Shape};
 use crate::expr::diff::Derivative;
@@ -11,7 +11,7 @@ use crate::mechanics::{self, Joint, crba, energy, forces, frames, massless, powe
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
-use crate::syntax::Requests;
+use crate::syntax::{ROOT_JOINT, Requests};
 
 mod constraints;
 mod derivatives;
@@ -33,6 +33,41 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
 }
 
+/// Reports velocities that move nothing, all together: a file may have many.
+fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
+    const MOST: usize = 8;
+    let place = &model.velocities[singular[0]].1;
+    let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
+    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    if names.len() > MOST {
+        list.push(format!("{} more", names.len() - MOST));
+    }
+    let (subject, verb, joints) = match names.len() {
+        1 => ("coordinate", "moves", "the joint carries"),
+        _ => ("coordinates", "move", "the joints carry"),
+    };
+    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
+    let diagnostic = cx.error(place.clone(), message);
+    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
+    if place.file.is_some() {
+        let mut joints: Vec<&str> = names.iter().map(|name| joint_of(name)).collect();
+        joints.dedup();
+        // The root's is not the file's.
+        joints.retain(|joint| *joint != ROOT_JOINT);
+        match joints.as_slice() {
+            [] => {}
+            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
+            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
+        }
+    }
+}
+
+/// The joint of a velocity, which has the name of the velocity unless it has several.
+fn joint_of(velocity: &str) -> &str {
+    const PARTS: [&str; 9] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz", ".x", ".y", ".angle"];
+    PARTS.iter().find_map(|part| velocity.strip_suffix(part)).unwrap_or(velocity)
+}
+
 /// The same with what is generated on request, and a choice of passes.
 pub fn derive_with<'g>(
     model: &Model<'g>,
@@ -43,14 +78,9 @@ pub fn derive_with<'g>(
     let joints = mechanics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let loaded = massless::loaded_mass(model, &joints, mass.clone());
-    if let Some(k) = mechanics::regularity::singular_velocity(model, &joints, &loaded) {
-        let (name, place) = &model.velocities[k];
-        let diagnostic =
-            cx.error(place.clone(), format!("the coordinate `{name}` moves nothing that has inertia"));
-        diagnostic.help("the mass matrix is singular: give mass or inertia to what the joint carries");
-        if place.file.is_some() {
-            diagnostic.help(format!("or freeze the joint: `lock = [\"{name}\"]`"));
-        }
+    let singular = mechanics::regularity::singular_velocities(model, &joints, &loaded);
+    if !singular.is_empty() {
+        report_singular(model, &singular, cx);
         return None;
     }
     let extras = Extras {

@@ -158,10 +158,19 @@ fn compile_error(place: &Place, message: &str) -> TokenStream {
 
 /// `a`, `a or b`, `a, b or c`.
 pub fn one_of(list: &[String]) -> String {
+    joined(list, "or")
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub fn all_of(list: &[String]) -> String {
+    joined(list, "and")
+}
+
+fn joined(list: &[String], word: &str) -> String {
     match list {
         [] => String::new(),
         [one] => one.clone(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+        [first @ .., last] => format!("{} {word} {last}", first.join(", ")),
     }
 }
 

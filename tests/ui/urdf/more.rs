@@ -35,6 +35,13 @@ mod massless_arm {
     struct Robot;
 }
 
+mod massless_hand {
+    use linkwork::prelude::*;
+
+    #[mechanism(urdf = "urdf/massless_hand.urdf", base = free)]
+    struct Robot;
+}
+
 mod name_of_a_link {
     use linkwork::prelude::*;
 

@@ -9,17 +9,19 @@ use crate::model::{Model, Quantity, random_configuration};
 /// Pivots below this part of their diagonal entry's first value count as zero.
 const TOLERANCE: f64 = 1e-11;
 
-/// The entry of `v` at which the factorisation fails in every one of several random configurations.
-pub fn singular_velocity(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Option<usize> {
-    let mut found = None;
-    for seed in 0..3 {
-        found = failing_pivot(model, joints, mass, seed);
-        found?;
+/// The entries of `v` at which the factorisation fails in every one of several random configurations, from the root on.
+pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Vec<usize> {
+    let mut found = failing_pivots(model, joints, mass, 0);
+    for seed in 1..3 {
+        if !found.is_empty() {
+            let again = failing_pivots(model, joints, mass, seed);
+            found.retain(|k| again.contains(k));
+        }
     }
     found
 }
 
-fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, seed: u64) -> Option<usize> {
+fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, seed: u64) -> Vec<usize> {
     let n = model.nv();
     let q = random_configuration(model, seed);
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
@@ -28,8 +30,7 @@ fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, see
         _ => crate::model::sample(s, seed),
     });
     let mut m: Vec<Vec<f64>> = values.chunks(n.max(1)).map(<[f64]>::to_vec).collect();
-    // Root first: the first entry that fails is then the one that adds nothing to those before it; of several that
-    // carry nothing at all, the innermost is named.
+    // Root first: an entry that fails is then one that adds nothing to those before it.
     let mut order: Vec<usize> = Vec::new();
     // Coordinates that place nothing come last.
     for index in joints.iter().flat_map(|j| j.dofs.iter().map(|d| d.index)).chain(0..n) {
@@ -38,9 +39,11 @@ fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, see
         }
     }
     let scale: Vec<f64> = (0..n).map(|k| m[k][k]).collect();
+    let mut failing = Vec::new();
     for (step, &k) in order.iter().enumerate() {
         if m[k][k] <= TOLERANCE * scale[k] || scale[k] <= 0.0 {
-            return Some(k);
+            failing.push(k);
+            continue;
         }
         for &i in &order[step + 1..] {
             let factor = m[i][k] / m[k][k];
@@ -49,5 +52,5 @@ fn failing_pivot(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, see
             }
         }
     }
-    None
+    failing
 }

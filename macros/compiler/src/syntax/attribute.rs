@@ -59,6 +59,9 @@ pub struct Shell {
     pub elements: Vec<(Ident, Ident)>,
 }
 
+/// The joint that holds the root of a file, which no file names; with a number if one does.
+pub const ROOT_JOINT: &str = "root_joint";
+
 /// The options of `#[mechanism(urdf = "…", …)]`.
 #[derive(Clone, Debug)]
 pub struct UrdfOptions {

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use super::tree::Order;
 use crate::import::context::{Cx, quote};
 use crate::import::{Imported, UrdfOptions};
-use crate::syntax::{Base, Body, Endpoint, Expr, Joint, JointKind, Name};
+use crate::syntax::{Base, Body, Endpoint, Expr, Joint, JointKind, Name, ROOT_JOINT};
 
 /// Puts the robot together. Bodies come in the order of the joints that carry them.
 pub(super) fn assemble(
@@ -34,12 +34,12 @@ pub(super) fn assemble(
 fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
     let names = || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
-    let mut text = "root_joint".to_string();
+    let mut text = ROOT_JOINT.to_string();
     for k in 2.. {
         if names().all(|name| *name != text) {
             break;
         }
-        text = format!("root_joint{k}");
+        text = format!("{ROOT_JOINT}{k}");
     }
     let name = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
