@@ -38,11 +38,12 @@ pub struct Imported {
 /// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
 /// `None` if there was any.
 pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<Imported> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
     if text.len() > LARGEST_FILE {
         file::report(&file::too_large(text.len() as u64), options, cx);
         return None;
     }
+    let text = &*xml::without_late_declaration(text);
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let document = xml::parse(text, cx)?;
     urdf::read(document.root_element(), options, cx)

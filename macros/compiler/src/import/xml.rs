@@ -4,6 +4,7 @@
 use super::context::{Cx, quote};
 use crate::diag::Place;
 use roxmltree::{Document, Error, Node, ParsingOptions};
+use std::borrow::Cow;
 
 /// Elements inside one another. URDF needs six.
 const DEEPEST: usize = 64;
@@ -19,6 +20,19 @@ const READ: [&str; 12] = [
     "robot", "link", "joint", "inertial", "mass", "inertia", "origin", "axis", "parent", "child", "dynamics",
     "mimic",
 ];
+
+/// Blanks an XML declaration that stands after empty lines. It has no business there, but other readers of URDF take it; all
+/// else keeps its place.
+pub(super) fn without_late_declaration(text: &str) -> Cow<'_, str> {
+    let start = text.len() - text.trim_start().len();
+    let declaration = &text[start..];
+    if start == 0 || !declaration.starts_with("<?xml ") {
+        return Cow::Borrowed(text);
+    }
+    let Some((declaration, rest)) = declaration.split_once("?>") else { return Cow::Borrowed(text) };
+    let blank: String = declaration.chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
+    Cow::Owned(format!("{}{blank}  {rest}", &text[..start]))
+}
 
 /// Parses the file; `None` if it is not XML or is a template.
 pub(super) fn parse<'t>(text: &'t str, cx: &mut Cx<'_>) -> Option<Document<'t>> {

@@ -125,3 +125,15 @@ fn places_count_characters() {
     let expected = "r.urdf:52:10: `<link>` without `name`\n= help: expected `<link name=\"…\"/>`";
     check(&format!("\u{feff}<robot>\n{before}<link/></robot>"), expected);
 }
+
+/// Other readers of URDF take what XML does not allow around the file.
+#[test]
+fn a_declaration_may_come_late_and_zeros_may_follow() {
+    let link = "<robot><link name='a'/>";
+    check(&format!("\n \n<?xml version='1.0'?>{link}</robot>\n\0"), "body a\nWeld root_joint: ground -> a");
+    check(
+        &format!("\n<?xml version='1.0'\n?> {link}<jiont/></robot>"),
+        "r.urdf:3:27: unknown element `<jiont>`\n= help: did you mean `<joint>`?",
+    );
+    check("\n<?xml version='1.0'", "r.urdf:2:1: malformed XML: unexpected XML declaration");
+}
