@@ -9,14 +9,17 @@ use crate::model::{Model, Quantity, random_configuration};
 /// Pivots below this part of their diagonal entry's first value count as zero.
 const TOLERANCE: f64 = 1e-11;
 
-/// The entries of `v` at which the factorisation fails in every one of several random configurations, from the root on.
+/// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
+/// random configurations; those where it fails in all of them, if there are such.
 pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Vec<usize> {
     let mut found = failing_pivots(model, joints, mass, 0);
     for seed in 1..3 {
-        if !found.is_empty() {
-            let again = failing_pivots(model, joints, mass, seed);
-            found.retain(|k| again.contains(k));
+        if found.is_empty() {
+            break;
         }
+        let again = failing_pivots(model, joints, mass, seed);
+        let both: Vec<usize> = found.iter().copied().filter(|k| again.contains(k)).collect();
+        found = if both.is_empty() { again } else { both };
     }
     found
 }

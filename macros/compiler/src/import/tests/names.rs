@@ -77,6 +77,11 @@ fn names_are_given_once() {
          Weld root_joint: ground -> a
          Weld j: a -> ground_link",
     );
+    check_robot(
+        &format!("{links}\n{}", link("ground")),
+        "r.urdf:4:13: second link with the name `ground`
+         = help: the first is at r.urdf:3:13",
+    );
     let free = UrdfOptions { base: Base::Free, inputs: true, ..defaults() };
     let both = [link("ground"), link("ground_link")].concat();
     check_with(

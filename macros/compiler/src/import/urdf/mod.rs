@@ -36,8 +36,8 @@ pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Op
         return None;
     }
     let mut robot = read_robot(node, options, cx)?;
-    names::rename_ground(&mut robot, options.base);
     names::check_names(&robot, cx);
+    names::rename_ground(&mut robot, options.base);
     names::check_ends(&robot, cx);
     names::check_locks(&robot.joints, &options.lock, cx);
     if cx.failed() {
