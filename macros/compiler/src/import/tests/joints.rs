@@ -130,6 +130,7 @@ fn a_follower_needs_somebody_to_follow() {
         &format!(
             "r.urdf:3:85: unknown joint `j22`
              = help: expected `j1`, `j4` or `j5`
+             {help}
              r.urdf:7:83: joint `j3` is `planar` and cannot follow
              {help}
              r.urdf:9:86: joint `j2` is `fixed` and cannot be followed

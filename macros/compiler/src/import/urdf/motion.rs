@@ -51,7 +51,7 @@ fn find_leader(
         let names =
             joints.iter().filter(|other| other.has_coordinate()).map(|other| other.name.text.as_str());
         let message = format!("unknown joint {}", quote(&mimic.joint.text));
-        cx.error(place, message, |d| d.suggest(&mimic.joint.text, names));
+        cx.error(place, message, |d| d.suggest(&mimic.joint.text, names).help(MOVE_ALONE));
         return None;
     };
     for (which, one) in [("follow", joint), ("be followed", &joints[leader])] {
