@@ -33,41 +33,6 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
 }
 
-/// Reports velocities that move nothing, all together: a file may have many.
-fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
-    const MOST: usize = 8;
-    let place = &model.velocities[singular[0]].1;
-    let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
-    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
-    if names.len() > MOST {
-        list.push(format!("{} more", names.len() - MOST));
-    }
-    let (subject, verb, joints) = match names.len() {
-        1 => ("coordinate", "moves", "the joint carries"),
-        _ => ("coordinates", "move", "the joints carry"),
-    };
-    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
-    let diagnostic = cx.error(place.clone(), message);
-    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
-    if place.file.is_some() {
-        let mut joints: Vec<&str> = names.iter().map(|name| joint_of(name)).collect();
-        joints.dedup();
-        // The root's is not the file's.
-        joints.retain(|joint| *joint != ROOT_JOINT);
-        match joints.as_slice() {
-            [] => {}
-            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
-            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
-        }
-    }
-}
-
-/// The joint of a velocity, which has the name of the velocity unless it has several.
-fn joint_of(velocity: &str) -> &str {
-    const PARTS: [&str; 9] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz", ".x", ".y", ".angle"];
-    PARTS.iter().find_map(|part| velocity.strip_suffix(part)).unwrap_or(velocity)
-}
-
 /// The same with what is generated on request, and a choice of passes.
 pub fn derive_with<'g>(
     model: &Model<'g>,
@@ -115,6 +80,42 @@ pub fn derive_with<'g>(
         prepared,
         constants,
     })
+}
+
+/// Reports velocities that move nothing, all together: a file may have many.
+fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
+    const MOST: usize = 8;
+    let place = &model.velocities[singular[0]].1;
+    let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
+    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    if names.len() > MOST {
+        list.push(format!("{} more", names.len() - MOST));
+    }
+    let (subject, verb, joints) = match names.len() {
+        1 => ("coordinate", "moves", "the joint carries"),
+        _ => ("coordinates", "move", "the joints carry"),
+    };
+    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
+    let diagnostic = cx.error(place.clone(), message);
+    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
+    if place.file.is_some() {
+        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
+        joints.dedup();
+        // The root's is not the file's.
+        joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
+        match joints.as_slice() {
+            [] => {}
+            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
+            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
+        }
+    }
+}
+
+/// The name of a velocity's joint. Those of a joint with several stand at the same place, each with a word of its own.
+fn joint_of<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
+    let (name, place) = &model.velocities[velocity];
+    let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;
+    name.rsplit_once('.').filter(|_| !alone).map_or(name, |(joint, _)| joint)
 }
 
 /// What some words need beside the model.

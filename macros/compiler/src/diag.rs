@@ -23,7 +23,7 @@ impl Place {
 }
 
 /// A position in an imported file, counted from one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilePosition {
     /// The file's path as the user wrote it.
     pub file: Rc<str>,

@@ -295,7 +295,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         if let Some(value) = self.moving_name(name, e, cx) {
             return value;
         }
-        if self.bodies.iter().any(|b| b == name) || name == "ground" {
+        if self.bodies.iter().any(|b| b == name) || name == GROUND {
             cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
                 .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
         } else if let Some(what) = self.what(name) {
@@ -335,13 +335,13 @@ impl<'a, 'g> Scope<'a, 'g> {
                 .help(format!("write `{}`", member.text));
             return None;
         }
-        if body != "ground" && !self.bodies.contains(body) {
+        if body != GROUND && !self.bodies.contains(body) {
             if let Some(what) = self.what(body) {
                 cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
                     .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
                 return None;
             }
-            let known = self.bodies.iter().map(String::as_str).chain(["ground"]);
+            let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
             cx.error(inner.place.clone(), format!("unknown body `{body}`")).suggest(body, known);
             return None;
         }

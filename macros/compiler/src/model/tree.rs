@@ -2,11 +2,9 @@
 
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
+pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
-
-/// The name of what does not move.
-pub const GROUND: &str = "ground";
 
 /// Index into bodies and jointed particles together.
 pub type BodyIndex = usize;

@@ -59,6 +59,9 @@ pub struct Shell {
     pub elements: Vec<(Ident, Ident)>,
 }
 
+/// The name of the fixed frame.
+pub const GROUND: &str = "ground";
+
 /// The joint that holds the root of a file, which no file names; with a number if one does.
 pub const ROOT_JOINT: &str = "root_joint";
 

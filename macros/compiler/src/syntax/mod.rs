@@ -10,7 +10,7 @@ pub mod element;
 pub mod expression;
 pub mod guard;
 
-pub use attribute::{Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
+pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]

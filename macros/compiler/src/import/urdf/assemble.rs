@@ -3,10 +3,11 @@
 use super::Robot;
 use super::joint::FileJoint;
 use super::motion::Motion;
+use super::names::unused;
 use super::tree::Order;
 use crate::import::context::{Cx, quote};
 use crate::import::{Imported, UrdfOptions};
-use crate::syntax::{Base, Body, Endpoint, Expr, Joint, JointKind, Name, ROOT_JOINT};
+use crate::syntax::{Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, Name, ROOT_JOINT};
 
 /// Puts the robot together. Bodies come in the order of the joints that carry them.
 pub(super) fn assemble(
@@ -16,7 +17,7 @@ pub(super) fn assemble(
     options: &UrdfOptions,
     cx: &mut Cx<'_>,
 ) -> Imported {
-    let is_ground = options.base == Base::Fixed && robot.links[order.root].name.text == "ground";
+    let is_ground = robot.links[order.root].name.text == GROUND;
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
     let mut given: Vec<Option<(FileJoint, Motion)>> =
@@ -34,19 +35,13 @@ pub(super) fn assemble(
 fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
     let names = || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
-    let mut text = ROOT_JOINT.to_string();
-    for k in 2.. {
-        if names().all(|name| *name != text) {
-            break;
-        }
-        text = format!("{ROOT_JOINT}{k}");
-    }
+    let text = unused(ROOT_JOINT, |text| names().any(|name| name == text));
     let name = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
     };
-    bare_joint(name(&text), kind, end_at(name("ground")), end_at(link.clone()))
+    bare_joint(name(&text), kind, end_at(name(GROUND)), end_at(link.clone()))
 }
 
 /// A body's own origin.

@@ -1,9 +1,9 @@
-//! Checks that names are there, and once only: links, joints, the ends of joints, locks.
+//! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file leaves open.
 
 use super::Robot;
 use super::joint::FileJoint;
 use crate::import::context::{Cx, position, quote};
-use crate::syntax::{Base, Name};
+use crate::syntax::{Base, GROUND, Name};
 use std::collections::BTreeMap;
 
 /// Reports links and joints that share a name with another.
@@ -14,22 +14,27 @@ pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
 
 /// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called so: it is the ground.
 pub(super) fn rename_ground(robot: &mut Robot, base: Base) {
-    const GROUND: &str = "ground";
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
     }
-    let mut other = "ground_link".to_string();
-    for k in 2.. {
-        if robot.links.iter().all(|link| link.name.text != other) {
-            break;
-        }
-        other = format!("ground_link{k}");
-    }
+    let other = unused("ground_link", |name| robot.links.iter().any(|link| link.name.text == name));
     let ends = robot.joints.iter_mut().flat_map(|joint| [&mut joint.parent, &mut joint.child]);
     let names = robot.links.iter_mut().map(|link| &mut link.name).chain(ends);
     for name in names.filter(|name| name.text == GROUND) {
         name.text.clone_from(&other);
     }
+}
+
+/// The name, with a number if it is taken.
+pub(super) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    let mut text = name.to_string();
+    for k in 2.. {
+        if !is_taken(&text) {
+            break;
+        }
+        text = format!("{name}{k}");
+    }
+    text
 }
 
 fn check_unique<'a>(names: impl Iterator<Item = &'a Name>, what: &str, cx: &mut Cx<'_>) {
