@@ -76,11 +76,11 @@ impl fmt::Display for ConstraintError {
 
 impl core::error::Error for ConstraintError {}
 
-/// A state.
-pub type Configuration<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);
+/// Configuration and velocity that fulfil constraints.
+pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);
 
-/// Accelerations and multipliers.
-pub type Multipliers<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
+/// Accelerations `v̇` and multipliers `λ`.
+pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
 /// A mechanism with `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
 /// velocities alone: what `#[mechanism]` implements where joints close loops or constraints are declared. Time `t` is in
@@ -132,7 +132,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-    ) -> Multipliers<Self::Scalar, NV, NC>;
+    ) -> Solution<Self::Scalar, NV, NC>;
 
     /// The change of velocity `x` of least kinetic energy that takes `gap` away: `J x = −gap`.
     fn constraint_correction(
@@ -146,7 +146,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3). The coordinates whose
     /// velocities have the indices `held` stay as they are.
     ///
-    /// Errors: [`ConstraintError::Configuration`] where none is found.
+    /// # Errors
+    ///
+    /// [`ConstraintError::Configuration`] where none is found.
     fn assemble(
         &self,
         t: Self::Scalar,
@@ -159,7 +161,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy. For what has
     /// drifted; [`assemble`](Self::assemble) comes from farther away.
     ///
-    /// Errors: [`ConstraintError::Configuration`] where Newton's method does not converge.
+    /// # Errors
+    ///
+    /// [`ConstraintError::Configuration`] where Newton's method does not converge.
     fn project_configuration(
         &self,
         t: Self::Scalar,
@@ -187,7 +191,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 
     /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
     ///
-    /// Errors: [`ConstraintError::Velocity`] where none does.
+    /// # Errors
+    ///
+    /// [`ConstraintError::Velocity`] where none does.
     fn project_velocity(
         &self,
         t: Self::Scalar,
@@ -213,13 +219,15 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 
     /// Both: configuration first.
     ///
-    /// Errors: those of the two.
+    /// # Errors
+    ///
+    /// Those of the two.
     fn project_state(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         let q = self.project_configuration(t, q)?;
         let v = self.project_velocity(t, &q, v)?;
         Ok((q, v))
@@ -250,9 +258,9 @@ fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     constant::<T>(16.0) * epsilon() * reach(x)
 }
 
-/// Whether what is left of constraints can be borne.
+/// Whether what is left of constraints can be borne: half of the digits where they lose rank.
 fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
-    size <= constant::<T>(5e7) * epsilon() * reach(x)
+    size <= epsilon::<T>().sqrt() * reach(x)
 }
 
 fn off<T: Real, const NC: usize>(names: [&'static str; NC], worst: usize, size: T) -> ConstraintError {

@@ -1,7 +1,7 @@
 //! Mechanisms whose equations contain time: driven cranks, rotating hoops, moving pivots. Integrators are written against
 //! this trait, which every [`Mechanism`] has too.
 
-use crate::constraint::{Configuration, ConstraintError};
+use crate::constraint::{ConstraintError, Projected};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -23,17 +23,19 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
 
     /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
     ///
-    /// Errors: those of [`Constrained::project_state`](crate::Constrained::project_state).
+    /// # Errors
+    ///
+    /// Those of [`Constrained::project_state`](crate::Constrained::project_state).
     fn project(
         &self,
         _t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         Ok((*q, *v))
     }
 
-    /// The configuration with all coordinates zero and unit quaternions ([`Mechanism::neutral`]).
+    /// The configuration with all coordinates zero; identity quaternions ([`Mechanism::neutral`]).
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
     /// `q ⊕ dv`: the configuration reached from `q` with the velocity `dv` in one unit of time ([`Mechanism::integrate`]).
@@ -90,7 +92,9 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration
     /// ([`Mechanism::try_forward_dynamics`]).
     ///
-    /// Errors: [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip.
+    /// # Errors
+    ///
+    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip.
     fn try_forward_dynamics(
         &self,
         t: Self::Scalar,
@@ -229,7 +233,7 @@ where
         _t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         Mechanism::project(self, q, v)
     }
 }
@@ -252,7 +256,7 @@ where
         &self,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
-    ) -> Result<Configuration<T, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
         self.mechanism.project(self.t, q, v)
     }
 }

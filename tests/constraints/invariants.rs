@@ -146,3 +146,36 @@ fn states_off_the_constraints_are_errors() {
     let lost = squeezer.assemble(&SVector::repeat(f64::NAN), &[]);
     assert_eq!(lost, Err(ConstraintError::NotFinite));
 }
+
+/// A bob held on a circle, and two coordinates with a given sum, in any precision.
+#[mechanism(gravity = -9.81 * y)]
+struct Held<T: Real> {
+    length: T,
+    #[body(mass = 1)]
+    bob: Body,
+    #[joint(ground -> bob, along = (x, y))]
+    place: Stage,
+    #[constraint(norm(r(bob / ground)) = length)]
+    rod: Holonomic,
+}
+
+/// With half of the digits a constraint must hold, so that in single precision, too, a wrong configuration is an error.
+#[test]
+fn single_precision_knows_what_is_off() {
+    fn check<T: Real>(tolerance: T) {
+        let one = T::one();
+        let held = Held { length: one };
+        let near = SVector::from([one / (one + one), one]);
+        let found = held.assemble(&near, &[]).expect("the circle is near");
+        assert!((found.norm() - one).abs() < tolerance);
+        // Beside the circle, with one coordinate held.
+        let beside = SVector::from([one + one + one, one]);
+        let lost = held.assemble(&beside, &[0]);
+        assert!(matches!(lost, Err(ConstraintError::Configuration { .. })), "{lost:?}");
+        // The other one alone is brought there.
+        let found = held.assemble(&SVector::from([T::zero(), one + one]), &[0]).expect("it is above");
+        assert!((found[1] - one).abs() < tolerance && found[0] == T::zero());
+    }
+    check::<f64>(1e-14);
+    check::<f32>(1e-6);
+}

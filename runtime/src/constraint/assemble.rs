@@ -42,7 +42,8 @@ where
         // Relative to each row, so that units do not matter; rows without influence are left alone.
         for k in 0..NH {
             let own = normal[(k, k)];
-            normal[(k, k)] = own + own * damping + constant(f64::MIN_POSITIVE);
+            let influences = own > nalgebra::zero();
+            normal[(k, k)] = if influences { own + own * damping } else { nalgebra::one() };
         }
         let step = normal.cholesky().map(|c| -(rows.transpose() * c.solve(&residuals)));
         let next = step.map(|step| mechanism.integrate(&q, &step));

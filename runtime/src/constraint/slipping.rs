@@ -1,7 +1,7 @@
 //! What generated code calls where contacts slip: the signs of their normal forces are found, with which friction acts.
 
 use super::solve::{regular, regular_solution};
-use super::{ConstraintError, Multipliers};
+use super::{ConstraintError, Solution};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -14,7 +14,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
     rows: &[usize; K],
     names: &[&'static str; NC],
     solve: impl Fn(&[T; K]) -> [T; N],
-) -> Result<Multipliers<T, NV, NC>, ConstraintError> {
+) -> Result<Solution<T, NV, NC>, ConstraintError> {
     let jammed = |row: usize| ConstraintError::Jammed { constraint: names.get(row).copied().unwrap_or("") };
     let mut sides = [T::one(); K];
     for _ in 0..=2 * K {
@@ -45,7 +45,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
 pub fn pressing_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
     rows: &[usize],
     found: &[T; N],
-) -> Option<Multipliers<T, NV, NC>> {
+) -> Option<Solution<T, NV, NC>> {
     let solution = regular_solution::<T, NV, NC, N>(found)?;
     let presses = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
     rows.iter().all(presses).then_some(solution)

@@ -1,7 +1,7 @@
 //! What generated code calls to solve for accelerations and multipliers where its own elimination cannot be trusted:
 //! in singular configurations and with redundant constraints.
 
-use super::Multipliers;
+use super::Solution;
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -16,7 +16,7 @@ fn tolerance<T: Real>() -> T {
 #[inline]
 pub fn regular_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
     found: &[T; N],
-) -> Option<Multipliers<T, NV, NC>> {
+) -> Option<Solution<T, NV, NC>> {
     if !(0..NC).all(|k| regular::<T, NV, NC, N>(found, k)) {
         return None;
     }
@@ -44,7 +44,7 @@ pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
     jacobian: &SMatrix<T, NC, NV>,
     force: &SVector<T, NV>,
     bias: &SVector<T, NC>,
-) -> Multipliers<T, NV, NC> {
+) -> Solution<T, NV, NC> {
     let (mut mass, mut force) = (mass.data.0, force.data.0[0]);
     let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
     for (row, bias) in bias.data.0[0].iter().enumerate().filter(|(row, _)| determining.contains(row)) {
@@ -77,7 +77,7 @@ pub fn least_multipliers<T: Real, const NV: usize, const NC: usize>(
 pub fn least_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
     groups: &[usize; NC],
     found: &[T; N],
-) -> Multipliers<T, NV, NC> {
+) -> Solution<T, NV, NC> {
     let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
     let gram = core::array::from_fn(|i| core::array::from_fn(|j| part(NV + NC + i * NC + j)));
     let lambda = least_norm(groups, gram, core::array::from_fn(|k| part(NV + k)));

@@ -1,7 +1,7 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
 use super::{Error, Method, State, Step};
-use crate::constraint::{Configuration, ConstraintError};
+use crate::constraint::{ConstraintError, Projected};
 use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
@@ -97,13 +97,15 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// The state nearest to a given one that fulfils the constraints.
     ///
-    /// Errors: [`ConstraintError`] if there is none.
+    /// # Errors
+    ///
+    /// [`ConstraintError`] if there is none.
     fn project(
         &self,
         t: T,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
-    ) -> Result<Configuration<T, NQ, NV>, ConstraintError>;
+    ) -> Result<Projected<T, NQ, NV>, ConstraintError>;
 
     /// Generalized momentum `p`; of a constrained mechanism the velocity itself stands for it.
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
@@ -141,7 +143,9 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
 
     /// A step of a method. Where it fails because forces determine no acceleration, the error says why.
     ///
-    /// Errors: those of [`Method::advance`], and [`Error::Constraint`].
+    /// # Errors
+    ///
+    /// Those of [`Method::advance`], and [`Error::Constraint`].
     pub(crate) fn advance<T: Real, S: Method<T>, const NQ: usize, const NV: usize>(
         &mut self,
         method: &S,
@@ -213,7 +217,7 @@ where
         t: T,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
-    ) -> Result<Configuration<T, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
         self.mechanism.project(t, q, v)
     }
 
