@@ -3,12 +3,13 @@
 mod event;
 mod run;
 
-pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop};
+pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop, Undefined};
 
 use crate::integrate::{
     DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, positive,
 };
 use crate::{Real, Rheonomic};
+use core::fmt;
 use nalgebra::SVector;
 use run::Progress;
 
@@ -77,6 +78,7 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
 /// seconds (or one per step of the integrator), one per event, and the last exactly at the end of the
 /// [`duration`](Self::duration). After an error the iterator ends. Changing a setting
 /// starts over. Nothing is allocated.
+#[must_use = "a simulation does nothing until its samples are asked for"]
 pub struct Simulation<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
 where
     T: Real,
@@ -146,7 +148,7 @@ where
     }
 
     /// Integrates with another method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),
-    /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint),
+    /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), [`Rosenbrock`](crate::integrate::Rosenbrock),
     /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
         let Self { system, events, start, duration, every, .. } = self;
@@ -176,8 +178,8 @@ where
     /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] says which.
     ///
     /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step may be
-    /// missed; a function that is zero at the start counts once it has left zero and returned. The crossing is located
-    /// to rounding on the interpolated motion.
+    /// missed; a function that is zero at the start counts once it has left zero and returned, however soon. The crossing
+    /// is located to rounding on the interpolated motion. A function that is not a number is [`Error::NotFinite`].
     pub fn event<G>(
         self,
         crossing: Crossing,
@@ -190,7 +192,7 @@ where
     }
 
     /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. Its sample holds
-    /// the velocity after it. Impacts that follow each other ever faster, without end, are not resolved.
+    /// the velocity after it. Impacts that follow each other ever faster, without end, are [`Error::Impacts`].
     pub fn impact<G, F>(
         self,
         crossing: Crossing,
@@ -206,20 +208,21 @@ where
 
     /// Runs to the end and returns the last sample.
     ///
-    /// Errors: those of the method, and [`Error::InvalidStep`] if neither a duration nor an
+    /// # Errors
+    ///
+    /// Those of the method, and [`Error::Endless`] if neither a duration nor an
     /// [`until`](Self::until) ends the run.
     pub fn finish(mut self) -> Result<Sample<T, NQ, NV, NU>, Error>
     where
         I: Inputs<T, NQ, NV, NU>,
         E: Events<T, NQ, NV>,
     {
-        let endless = Error::InvalidStep { name: "the duration", value: f64::INFINITY };
         if self.duration.is_none() && !E::STOPS {
-            return Err(endless);
+            return Err(Error::Endless);
         }
         let mut run = self.begin()?;
         run.quiet = true;
-        let mut last = Err(endless);
+        let mut last = Err(Error::Endless);
         while let Some(sample) = self.next_sample(&mut run)? {
             last = Ok(sample);
         }
@@ -263,6 +266,22 @@ where
             progress: self.progress.clone(),
             over: self.over,
         }
+    }
+}
+
+impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize> fmt::Debug
+    for Simulation<'_, M, T, I, S, E, NQ, NV, NU>
+where
+    T: Real,
+    S: Method<T> + fmt::Debug,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Simulation")
+            .field("start", &self.start)
+            .field("method", &self.method)
+            .field("duration", &self.duration)
+            .field("sample_every", &self.every)
+            .finish_non_exhaustive()
     }
 }
 

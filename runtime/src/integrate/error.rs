@@ -14,7 +14,10 @@ pub enum Error {
         /// What it was.
         value: f64,
     },
-    /// The state or its rate became infinite or NaN: a singular mass matrix, or a motion that escapes.
+    /// Neither a duration nor an event would end the run. Raised before the first step.
+    Endless,
+    /// The state or its rate became infinite or NaN (a singular mass matrix, or a motion that escapes), or the function of an
+    /// event NaN.
     NotFinite {
         /// Time at the start of the failed step.
         t: f64,
@@ -44,6 +47,12 @@ pub enum Error {
         /// What is violated, or why the motion is not determined.
         reason: ConstraintError,
     },
+    /// Impacts follow each other ever faster, as those of a ball that comes to rest: end the run before, and go on with
+    /// the contact as a constraint.
+    Impacts {
+        /// Time reached.
+        t: f64,
+    },
     /// The equations of an implicit step were not solved: take smaller steps.
     NotConverged {
         /// Time at the start of the failed step.
@@ -59,6 +68,7 @@ impl fmt::Display for Error {
             Self::InvalidStep { name, value } => {
                 write!(f, "{name} must be finite and positive, found {value}")
             }
+            Self::Endless => write!(f, "the run has no end: it needs a duration or an event that stops it"),
             Self::NotFinite { t } => write!(f, "the motion is not finite after t = {t} s"),
             Self::StepTooSmall { t, h } => {
                 write!(f, "the tolerance asks for a step of {h} s at t = {t} s, which is too small")
@@ -66,6 +76,7 @@ impl fmt::Display for Error {
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
             Self::OffConstraints { t } => write!(f, "the state at t = {t} s is off the constraints"),
             Self::Constraint { t, reason } => write!(f, "at t = {t} s {reason}"),
+            Self::Impacts { t } => write!(f, "at t = {t} s impacts follow each other without end"),
             Self::NotConverged { t, iterations } => {
                 write!(f, "the implicit step at t = {t} s did not converge in {iterations} iterations")
             }

@@ -228,7 +228,7 @@ fn settings_that_make_no_sense_are_refused() {
         assert!(invalid(run.clone().sample_every(bad).finish()));
         assert!(invalid(run.clone().control_every(bad, |_, _, _| SVector::zeros()).finish()));
     }
-    assert!(invalid(simulate(&oscillator).finish()), "a run without end has no last sample");
+    assert_eq!(simulate(&oscillator).finish(), Err(Error::Endless), "a run without end has no last sample");
     let shown = format!("{}", Error::InvalidStep { name: "the step", value: -1.0 });
     assert_eq!(shown, "the step must be finite and positive, found -1");
 }

@@ -37,6 +37,10 @@ pub struct Hit<T> {
     pub index: usize,
 }
 
+/// The function of an event is not a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Undefined;
+
 /// How a run goes on after an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
@@ -109,7 +113,16 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     fn begin(&mut self, state: &State<T, NQ, NV>);
 
     /// The first event between `from` and `to` on a step.
-    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, path: &P, from: T, to: T) -> Option<Hit<T>>;
+    ///
+    /// # Errors
+    ///
+    /// [`Undefined`] where a function is not a number.
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(
+        &mut self,
+        path: &P,
+        from: T,
+        to: T,
+    ) -> Result<Option<Hit<T>>, Undefined>;
 
     /// Takes over the signs at the end of the last range without an event.
     fn pass(&mut self);
@@ -128,8 +141,13 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
 
     fn begin(&mut self, _state: &State<T, NQ, NV>) {}
 
-    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, _path: &P, _from: T, _to: T) -> Option<Hit<T>> {
-        None
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(
+        &mut self,
+        _path: &P,
+        _from: T,
+        _to: T,
+    ) -> Result<Option<Hit<T>>, Undefined> {
+        Ok(None)
     }
 
     fn pass(&mut self) {}
@@ -175,8 +193,13 @@ where
         self.1.side = side((self.1.function)(state.t, &state.q, &state.v));
     }
 
-    fn locate<P: Fn(T) -> State<T, NQ, NV>>(&mut self, path: &P, from: T, to: T) -> Option<Hit<T>> {
-        let earlier = self.0.locate(path, from, to);
+    fn locate<P: Fn(T) -> State<T, NQ, NV>>(
+        &mut self,
+        path: &P,
+        mut from: T,
+        to: T,
+    ) -> Result<Option<Hit<T>>, Undefined> {
+        let earlier = self.0.locate(path, from, to)?;
         let to = earlier.map_or(to, |hit| hit.theta);
         let event = &mut self.1;
         let mut value = |theta: T| {
@@ -184,16 +207,22 @@ where
             (event.function)(state.t, &state.q, &state.v)
         };
         let end = value(to);
+        if end.partial_cmp(&end).is_none() {
+            return Err(Undefined);
+        }
         event.ahead = side(end);
+        if event.side == Ordering::Equal {
+            (from, event.side) = leaving(&mut value, [from, to]);
+        }
         if !event.crossing.counts(event.side, event.ahead) {
-            return earlier;
+            return Ok(earlier);
         }
         let sign = if event.side == Ordering::Less { T::one() } else { -T::one() };
         let theta = first_sign_change(|theta| value(theta) * sign, [from, to], end * sign);
         if earlier.is_some_and(|hit| hit.theta <= theta) {
-            return earlier;
+            return Ok(earlier);
         }
-        Some(Hit { theta, index: E::COUNT })
+        Ok(Some(Hit { theta, index: E::COUNT }))
     }
 
     fn pass(&mut self) {
@@ -212,6 +241,20 @@ where
         self.1.side = if flow == Flow::Jump { Ordering::Equal } else { self.1.side.reverse() };
         flow
     }
+}
+
+/// To which side `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and from where on that is known: it may be
+/// back before `b`.
+fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
+    let rounding = f(a).abs() * constant(4.0);
+    for part in [1.5e-8, 1e-6, 6e-5, 4e-3] {
+        let x = a + (b - a) * constant(part);
+        let value = f(x);
+        if value.abs() > rounding {
+            return (x, side(value));
+        }
+    }
+    (a, Ordering::Equal)
 }
 
 /// The place where `f` changes from negative to `end`, its non-negative value at `b`: bracketed to rounding, the

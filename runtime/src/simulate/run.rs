@@ -1,12 +1,15 @@
 //! The course of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::{Events, Flow, Hit, Sample, Simulation, positive};
+use super::{Events, Flow, Hit, Sample, Simulation, Undefined, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 
 /// Parts into which every step is divided in the search for events.
 const SEARCHES: u8 = 4;
+
+/// Part of a step within which the same impact again is one of infinitely many.
+const SOON: f64 = 1e-6;
 
 /// How far a run has come.
 #[derive(Clone, Debug)]
@@ -29,6 +32,8 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     pub(super) quiet: bool,
     /// Whether an event has ended the run.
     stopped: bool,
+    /// Number and time of the last event that changed the velocity.
+    jump: Option<(usize, T)>,
 }
 
 /// `t`, or `onto` if it is that up to rounding.
@@ -61,7 +66,8 @@ where
         self.every.map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
         let node = self.on_constraints(self.start.finite()?)?;
-        let far = |a: T, b: T| (a - b).abs() > constant::<T>(1e-6) * (T::one() + a.abs());
+        let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
+        let far = |a: T, b: T| (a - b).abs() > tolerance * (T::one() + a.abs());
         let moved = node.q.iter().zip(&self.start.q).any(|(a, b)| far(*a, *b));
         let changed = node.v.iter().zip(&self.start.v).any(|(a, b)| far(*a, *b));
         if moved || changed {
@@ -79,6 +85,7 @@ where
             shown: false,
             quiet: false,
             stopped: false,
+            jump: None,
         })
     }
 
@@ -159,7 +166,7 @@ where
         step: &Step<T, NQ, NV>,
     ) -> Due<T, NQ, NV, NU> {
         if run.hit.is_none() {
-            self.search(run, step);
+            self.search(run, step)?;
         }
         let event = run.hit.map(|hit| (hit, step.at(&self.system, hit.theta)));
         let limit = event.map_or(step.end.t, |(_, state)| state.t);
@@ -175,7 +182,7 @@ where
         match event {
             Some((hit, state)) => {
                 let state = self.on_constraints(state)?;
-                Ok(Some(self.fire(run, hit, state)))
+                self.fire(run, hit, state, step).map(Some)
             }
             None => {
                 (run.node, run.step, run.shown) = (step.end, None, false);
@@ -190,9 +197,13 @@ where
     }
 
     /// Looks for the first event behind the cursor.
-    fn search(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
+    fn search(
+        &mut self,
+        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        step: &Step<T, NQ, NV>,
+    ) -> Result<(), Error> {
         if E::COUNT == 0 {
-            return;
+            return Ok(());
         }
         let system = &self.system;
         let path = |theta: T| {
@@ -203,14 +214,18 @@ where
             if to <= run.cursor {
                 continue;
             }
-            run.hit = self.events.locate(&path, run.cursor, to);
+            run.hit = self
+                .events
+                .locate(&path, run.cursor, to)
+                .map_err(|Undefined| Error::NotFinite { t: to_f64(step.start.t) })?;
             if let Some(hit) = run.hit {
                 run.cursor = hit.theta;
-                return;
+                return Ok(());
             }
             self.events.pass();
             run.cursor = to;
         }
+        Ok(())
     }
 
     fn fire(
@@ -218,15 +233,23 @@ where
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
         hit: Hit<T>,
         mut state: State<T, NQ, NV>,
-    ) -> Sample<T, NQ, NV, NU> {
+        step: &Step<T, NQ, NV>,
+    ) -> Result<Sample<T, NQ, NV, NU>, Error> {
         run.hit = None;
         let flow = self.events.act(hit.index, &mut state);
+        if flow == Flow::Jump {
+            let soon = (step.end.t - step.start.t) * constant(SOON);
+            if run.jump.is_some_and(|(index, t)| index == hit.index && state.t - t < soon) {
+                return Err(Error::Impacts { t: to_f64(state.t) });
+            }
+            run.jump = Some((hit.index, state.t));
+        }
         if flow != Flow::Go {
             (run.node, run.step, run.shown) = (state, None, true);
             run.stopped = flow == Flow::Stop;
             self.method.disturb(&mut run.memory, Jump::State);
         }
-        self.sample(state, Some(hit.index))
+        Ok(self.sample(state, Some(hit.index)))
     }
 
     /// Begins a control period if one is due.

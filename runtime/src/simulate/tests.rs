@@ -203,10 +203,46 @@ fn a_ball_bounces() {
             assert!((hit.t - t).abs() < 1e-12 && (hit.v[0] - v).abs() < 1e-12, "{hit:?}");
         }
     };
+    // The whole flight fits into a step, and into a part of one.
+    check(&mut run.clone());
+    check(&mut run.clone().method(Rk4::step(2.9)));
     check(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
     check(&mut run.clone().method(Rk4::step(0.01)));
     check(&mut run.clone().method(ImplicitMidpoint::step(0.01)).sample_every(0.1));
     check(&mut run.clone().method(DormandPrince::new().max_step(0.05)).sample_every(0.125));
+}
+
+#[test]
+fn a_ball_bounces_for_ever() {
+    let ball = falling();
+    let run = simulate(&ball).from([0.5], [0.0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
+    // 500 flights of 2 s.
+    let end = run.duration(1002.0).finish().unwrap();
+    assert!((end.q[0] - 0.5).abs() < 1e-7 && end.v[0].abs() < 1e-6, "{end:?}");
+    // Thrown from the surface that ends the flight.
+    let thrown = simulate(&ball).from([0.0], [3.0]).until(|_, q, _| q[0]).duration(100.0).finish().unwrap();
+    assert!((thrown.t - 6.0).abs() < 1e-12, "{thrown:?}");
+}
+
+/// Bounces that lose a part of the speed end after a finite time.
+#[test]
+fn impacts_without_end_are_an_error() {
+    let ball = falling();
+    for part in [0.8, 0.5, 0.05] {
+        let run = simulate(&ball).from([0.5], [0.0]);
+        let run = run.impact(Crossing::Falling, |_, q, _| q[0], move |_, _, v| v * -part).duration(30.0);
+        let rest = (1.0 + part) / (1.0 - part);
+        for end in [run.clone().finish(), run.method(Rk4::step(0.01)).finish()] {
+            assert!(matches!(end, Err(Error::Impacts { t }) if (t - rest).abs() < 1e-4), "{part}: {end:?}");
+        }
+    }
+}
+
+#[test]
+fn an_event_that_is_not_a_number_is_an_error() {
+    let ball = falling();
+    let end = simulate(&ball).duration(1.0).until(|t, _, _| if t < 0.5 { 1.0 } else { f64::NAN }).finish();
+    assert!(matches!(end, Err(Error::NotFinite { .. })), "{end:?}");
 }
 
 #[test]
