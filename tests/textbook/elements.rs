@@ -29,6 +29,59 @@ fn mass_with_inerter() {
     assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
 }
 
+/// A moving-coil loudspeaker: the charge through its coil is a coordinate that moves no body, whose inertia is the inductance.
+#[mechanism(derivatives)]
+struct Loudspeaker {
+    mass: f64,
+    stiffness: f64,
+    damping: f64,
+    inductance: f64,
+    resistance: f64,
+    coupling: f64,
+    #[body(mass = mass)]
+    cone: Body,
+    charge: Coordinate,
+    #[joint(ground -> cone, along = x)]
+    travel: Sleeve,
+    #[acts(on = travel, stiffness = stiffness)]
+    surround: Spring,
+    #[acts(on = travel, damping = damping)]
+    air: Dashpot,
+    #[acts(on = charge, inertance = inductance)]
+    coil: Inerter,
+    #[acts(on = charge, damping = resistance)]
+    wire: Dashpot,
+    #[acts(on = travel, value = coupling * rate(charge))]
+    push: Force,
+    #[acts(on = charge, value = -coupling * rate(travel))]
+    induced: Force,
+    #[acts(on = charge)]
+    voltage: Force,
+}
+
+#[test]
+fn a_coil_is_the_inertia_of_its_charge() {
+    let (m, k, c, l, r, bl) = (0.02, 900.0, 1.3, 0.5e-3, 6.0, 7.0);
+    let (mass, stiffness, damping) = (m, k, c);
+    let speaker = Loudspeaker { mass, stiffness, damping, inductance: l, resistance: r, coupling: bl };
+    let order = Loudspeaker::VELOCITIES.map(|name| usize::from(name == "travel"));
+    let put = |charge: f64, travel: f64| Vector2::from(order.map(|is_travel| [charge, travel][is_travel]));
+    let (q, v, u) = (put(0.1, 2e-3), put(0.4, 0.3), Vector1::new(5.0));
+    // L q̈ = u − R q̇ − B ẋ, m ẍ = B q̇ − c ẋ − k x.
+    let expected = put((5.0 - r * 0.4 - bl * 0.3) / l, (bl * 0.4 - c * 0.3 - k * 2e-3) / m);
+    let found = speaker.forward_dynamics(&q, &v, &speaker.generalized_forces(&q, &u));
+    assert_close("accelerations", found.as_slice(), expected.as_slice(), EXACT);
+    assert_close("mass", speaker.mass_matrix(&q).diagonal().as_slice(), put(l, m).as_slice(), EXACT);
+    let inverse = speaker.mass_matrix_inverse(&q);
+    assert_close("its inverse", inverse.diagonal().as_slice(), put(1.0 / l, 1.0 / m).as_slice(), EXACT);
+    let (by_q, by_v, _) = speaker.forward_dynamics_derivatives(&q, &v, &Vector2::zeros());
+    let (charge, travel) = (usize::from(order[0] != 0), usize::from(order[0] == 0));
+    assert_close("stiffness", &[by_q[(travel, travel)], by_q[(charge, charge)]], &[-k / m, 0.0], EXACT);
+    let rates = [[charge, charge], [charge, travel], [travel, charge], [travel, travel]];
+    let expected = [-r / l, -bl / l, bl / m, -c / m];
+    assert_close("resistances", &rates.map(|[i, j]| by_v[(i, j)]), &expected, EXACT);
+}
+
 /// Writes the same two bodies with another law for the springs: between two of their points, on a length, on an angle.
 macro_rules! duffing {
     ($name:ident: [$($law:tt)*], [$($turning:tt)*]) => {

@@ -93,10 +93,11 @@ pub fn second_inverse<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<
     (!b.is_zero()).then(|| a / (a * c - b * b))
 }
 
-/// Entries of `v` from the leaves to the root.
+/// Entries of `v` from the leaves to the root; first those that move no link, of which only elements take notice.
 pub fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
-    let mut seen = vec![false; nv];
-    let mut order = Vec::new();
+    let mut seen = vec![true; nv];
+    joints.iter().flat_map(|joint| &joint.dofs).for_each(|dof| seen[dof.index] = false);
+    let mut order: Vec<usize> = (0..nv).filter(|k| seen[*k]).collect();
     for joint in joints.iter().rev() {
         for dof in joint.dofs.iter().rev() {
             if !std::mem::replace(&mut seen[dof.index], true) {
