@@ -85,6 +85,27 @@ struct Workshop {
     bead: Particle,
 }
 
+/// A universal joint on a body that moves, on which a ball has another: what is moved between the axes of each acts twice.
+#[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
+struct Slings {
+    #[body(mass = 0.3, com = -0.3 * z, inertia = sphere(0.3, 0.05))]
+    sling: Body,
+    #[joint(ground -> sling, about = y)]
+    hook: Pin,
+    #[body(mass = 0.1, com = 0.1 * y, inertia = rod(0.1, 0.2, y))]
+    rotor: Body,
+    #[joint(sling.at(-0.3 * z) -> rotor, about = (x, z))]
+    gimbal: Universal,
+    #[body(mass = 0.2, com = 0.1 * x + 0.05 * z, inertia = cuboid(0.2, 0.1, 0.2, 0.3))]
+    bob: Body,
+    #[joint(sling.at(0.1 * x) -> bob)]
+    ball: Ball,
+    #[body(mass = 0.4, com = 0.1 * y, inertia = cuboid(0.4, 0.3, 0.2, 0.1))]
+    tail: Body,
+    #[joint(bob.at(0.2 * z) -> tail, about = (z, x))]
+    second: Universal,
+}
+
 /// How many columns of stacked matrices are independent.
 fn rank<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
     let stacked = DMatrix::from_fn(N * matrices.len(), M, |i, j| matrices[i / N][(i % N, j)]);
@@ -144,6 +165,7 @@ fn mechanisms_with_parameters() {
     assert_eq!(Puma::BODIES, ["trunk", "upper", "fore", "first", "second", "hand"]);
     assert_eq!(Puma::BASE_PARAMETERS[0], "trunk.zz");
     check!(Workshop, Workshop { mass: 0.7, length: 0.4 });
+    check!(Slings, Slings {});
 }
 
 #[test]

@@ -122,9 +122,36 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
     }
     let kept = |k: &usize| parts[*k] == Part::Own;
     let kept: Vec<usize> = (0..entries.len()).filter(kept).collect();
-    Base {
+    let base = Base {
         entries: kept.iter().map(|k| entries[*k]).collect(),
         values: kept.iter().map(|k| values[*k]).collect(),
         columns: kept.iter().map(|k| columns[*k].clone()).collect(),
+    };
+    without_repeated(model, base)
+}
+
+/// Without values that follow from others: between two axes of a joint there is no body of its own, and what is moved there
+/// from one body may act in two ways.
+fn without_repeated<'g>(model: &Model<'g>, mut base: Base<'g>) -> Base<'g> {
+    let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
+    let parts = independent(model, &alone);
+    for (k, part) in parts.iter().enumerate() {
+        let Part::Combined(list) = part else { continue };
+        let dependent = base.columns[k].clone();
+        for (i, factor) in list {
+            for (entry, other) in base.columns[*i].iter_mut().zip(&dependent) {
+                *entry += *other * *factor;
+            }
+        }
     }
+    let kept: Vec<bool> = parts.iter().map(|part| *part == Part::Own).collect();
+    retain(&mut base.entries, &kept);
+    retain(&mut base.values, &kept);
+    retain(&mut base.columns, &kept);
+    base
+}
+
+fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    list.retain(|_| kept.next().is_some_and(|kept| *kept));
 }
