@@ -479,4 +479,20 @@ mod value_on_the_ground {
     }
 }
 
+mod friction_that_pushes {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        #[body(mass = 1)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+        #[acts(on = rail, coulomb = -0.3, viscous = -1, speed = 0)]
+        first: Friction,
+        #[acts(on = rail, coulomb = 1, stiction = -2, stribeck_speed = -0.1)]
+        second: Friction,
+    }
+}
+
 fn main() {}

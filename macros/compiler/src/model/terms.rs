@@ -166,6 +166,20 @@ impl<'g> Builder<'_, 'g> {
         };
         let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
         let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
+        let mut check =
+            |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
+                let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
+                if n < 0.0 || positive && n == 0.0 {
+                    let must = if positive { "must be positive" } else { "cannot be negative" };
+                    cx.error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
+                }
+            };
+        for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
+            check(written, found, false, "friction");
+        }
+        for (written, found) in [(stribeck, vs.flatten()), (speed, v0)] {
+            check(written, found, true, "speed");
+        }
         let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return };
         let v = stretch.rate;
         let dry = match (fs, vs) {
