@@ -2,7 +2,6 @@
 //! rates and the derivatives of those. Motions are taken relative to the nearest link that carries both sides, so
 //! that what both share drops out.
 
-use super::axis::always;
 use super::build::Builder;
 use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
@@ -10,7 +9,8 @@ use super::rows::Rows;
 use super::world::{Level, Placed, PlacedKind, View};
 use super::{Constraint, LinkId, Measure, Pose, Quantity, Transmission, contact, mobility, redundancy};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::eval::eval;
+use crate::expr::eval::{eval, eval_one};
+use crate::expr::replace::replace;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::model::sample;
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
@@ -456,13 +456,17 @@ impl<'g> Builder<'_, 'g> {
                 cx.error(place.clone(), "a constraint contains no input");
                 return;
             }
-            if is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) && !is_linear(&coefficients) {
+            let linear = match is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+                true => linear_form(rate, &gradient),
+                false => Some(rate),
+            };
+            let Some(linear) = linear else {
                 cx.error(place.clone(), "this constraint is not linear in the velocities").help(
                     "each term holds one velocity at most, as in `dot(v(skate / ground / ground), sled.y)`",
                 );
                 return;
-            }
-            self.push_rate((name, &constraint.name.place), measure, None, rate);
+            };
+            self.push_rate((name, &constraint.name.place), measure, None, linear);
         }
     }
 
@@ -537,7 +541,29 @@ pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     [("first", first), ("second", second)]
 }
 
-/// True if coefficients that name velocities do not depend on them after all.
-fn is_linear(coefficients: &[Expr<'_>]) -> bool {
-    coefficients.iter().all(|c| velocity_gradient(*c).iter().all(|(_, d)| always(*d, 0.0)))
+/// A rate whose derivatives by the velocities name velocities, but do not depend on them: the same without those. `None` if
+/// they do.
+fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
+    // Signs and corners show where velocities change their signs, together or not.
+    let at = |e: Expr<'g>, pattern: u64| {
+        eval_one(e, &|s| match Quantity::of(s) {
+            Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
+            Quantity::Velocity(_) => sample(s, pattern),
+            _ => sample(s, 0),
+        })
+    };
+    let is_constant = |e: Expr<'g>| {
+        let first = at(e, 0);
+        let near = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
+        first.is_finite() && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| near(at(e, *p)))
+    };
+    let with = |e: Expr<'g>, value: f64| {
+        replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| e.num(value)))
+    };
+    let rest = with(rate, 0.0);
+    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !at(rest, 0).is_finite() {
+        return None;
+    }
+    let g = rate.graph();
+    Some(gradient.iter().fold(rest, |sum, (k, c)| sum + with(*c, 1.0) * Quantity::Velocity(*k).expr(g)))
 }
