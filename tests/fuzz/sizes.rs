@@ -155,6 +155,16 @@ fn too_many_loops_are_refused_with_a_reason() {
     }
 }
 
+/// A mass through so many definitions, each of which names the one before twice.
+fn definitions(start: &str, n: usize) -> String {
+    let chain = (0..n).fold(format!("#[define({start})] d0: Scalar,"), |text, k| {
+        format!("{text} #[define(sin(d{k}) * cos(d{k}))] d{}: Scalar,", k + 1)
+    });
+    format!(
+        "struct S {{ m: f64, {chain} #[body(mass = 2 + d{n})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}"
+    )
+}
+
 #[test]
 fn sharing_does_not_explode() {
     let nest =
@@ -184,6 +194,9 @@ fn sharing_does_not_explode() {
         ("large leads", "struct S { m: f64, #[body(mass = m, com = x)] b: Body, #[joint(ground -> b, about = z, pitch = 1e300)] j: Screw }".into()),
         ("large gravity", with_mass("m").replace("j: Sleeve", "j: Sleeve, #[joint(b -> c, along = 1e-300 * x)] k: Pin")),
         ("a sum of many parameters", sum_of_parameters(40, 250)),
+        ("definitions that name another twice", definitions("m", 60)),
+        ("definitions of a mistake", definitions("nothing", 60)),
+        ("definitions one in another", definitions("m", 200)),
     ];
     run_cases(cases);
 }

@@ -14,7 +14,8 @@ use super::{
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Vec3};
-use crate::syntax::{Action, ActionKind, Description, Endpoint, ExprKind, Joint, JointKind, Name, Target};
+use crate::syntax::{Action, ActionKind, Description, Endpoint, ExprKind, Joint, JointKind, Target};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
@@ -201,11 +202,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             definitions: &description.definitions,
             view: View::new(Level::Constant, None).into(),
             world: World::default().into(),
+            known: BTreeMap::new().into(),
         };
         for name in all.clone().filter(|n| n.text == GROUND) {
             cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move");
         }
-        check_parameter_names(&description.parameters, cx);
+        check_names(description, cx);
         let gravity = description.gravity.as_ref().and_then(|e| scope.own_vector(e, cx));
         let friction_speed = match &description.friction_speed {
             Some(e) => scope.scalar(e, cx).unwrap_or(graph.one()),
@@ -519,10 +521,15 @@ fn is_angle(kind: JointKind, coordinate: &str) -> bool {
     }
 }
 
-fn check_parameter_names(parameters: &[Name], cx: &mut Diagnostics) {
-    for parameter in parameters {
-        if ["x", "y", "z", "t", "pi"].contains(&parameter.text.as_str()) {
-            cx.error(parameter.place.clone(), format!("the name `{}` is taken", parameter.text))
+/// Reports names that mean something else in expressions.
+fn check_names(description: &Description, cx: &mut Diagnostics) {
+    let written = description.parameters.iter().chain(&description.inputs);
+    let written = written.chain(description.coordinates.iter().map(|c| &c.name));
+    let written = written.chain(description.definitions.iter().map(|d| &d.name));
+    let joints = description.joints.iter().map(|joint| &joint.name);
+    for name in written.chain(joints) {
+        if ["x", "y", "z", "t", "pi"].contains(&name.text.as_str()) && name.place.file.is_none() {
+            cx.error(name.place.clone(), format!("the name `{}` is taken", name.text))
                 .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
         }
     }

@@ -9,6 +9,7 @@ use crate::expr::diff::TINY;
 use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// What names mean where an expression stands.
 pub struct Scope<'a, 'g> {
@@ -36,7 +37,13 @@ pub struct Scope<'a, 'g> {
     pub view: RefCell<View<'g>>,
     /// What is placed so far, and how it moves.
     pub world: RefCell<World<'g>>,
+    /// Definitions that were looked up for the one whose value is asked for: each once, however often the others name it.
+    pub known: RefCell<Known<'g>>,
 }
+
+/// Values of definitions, by name, by what they may depend on, and by whether `x`, `y` and `z` alone are the ground's; `None`
+/// for those with mistakes.
+pub type Known<'g> = BTreeMap<(String, Level, bool), Option<Value<'g>>>;
 
 /// The axes that a vector is given in.
 #[derive(Clone, Debug, PartialEq, Eq)]

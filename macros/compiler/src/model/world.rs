@@ -234,6 +234,23 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
+        let outermost = self.view.borrow().defining.is_empty();
+        let key = {
+            let view = self.view.borrow();
+            (name.clone(), view.level, view.home.is_some())
+        };
+        if outermost {
+            self.known.borrow_mut().clear();
+        } else if let Some(known) = self.known.borrow().get(&key) {
+            return known.clone();
+        }
+        let value = self.define(d, e, cx);
+        self.known.borrow_mut().insert(key, value.clone());
+        value
+    }
+
+    fn define(&self, d: &syntax::Definition, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = &d.name.text;
         if self.view.borrow().defining.contains(name) {
             cx.error(d.name.place.clone(), format!("`{name}` is defined by itself"));
             return None;
