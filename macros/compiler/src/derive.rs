@@ -48,6 +48,11 @@ pub fn derive_with<'g>(
         report_singular(model, &singular, cx);
         return None;
     }
+    if let Some(what) = too_long(model, requests) {
+        cx.error(model.place.clone(), format!("{what} would be too long"))
+            .help("code without loops has a line for each of them: ask for it of a smaller mechanism");
+        return None;
+    }
     let extras = Extras {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| entries(&mass)),
@@ -82,6 +87,22 @@ pub fn derive_with<'g>(
     })
 }
 
+/// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are
+/// velocities.
+const MOST_DERIVATIVES: usize = 300_000;
+
+/// What on request would have more lines than a compiler should be given.
+fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
+    let squared = model.nv() * model.nv();
+    let elements =
+        model.potentials.len() + model.loads.len() + model.inertances.len() + model.dissipations.len();
+    if requests.sensitivities && squared * model.parameters.len() > MOST_DERIVATIVES {
+        return Some("the derivatives by so many parameters");
+    }
+    (requests.derivatives && squared * elements > MOST_DERIVATIVES)
+        .then_some("the derivatives of so many elements")
+}
+
 /// Reports velocities that move nothing, all together: a file may have many.
 fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
     const MOST: usize = 8;
@@ -98,6 +119,12 @@ fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) 
     let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
     let diagnostic = cx.error(place.clone(), message);
     diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
+    let floats = |link: &crate::model::Link<'_>| {
+        matches!(link.motion, crate::model::Motion::Free { .. }) && link.inertia.mass.is_zero()
+    };
+    if model.links.iter().any(floats) {
+        diagnostic.help("the link that moves freely has no mass of its own, so that others are not enough");
+    }
     if place.file.is_some() {
         let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
         joints.dedup();

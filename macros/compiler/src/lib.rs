@@ -146,7 +146,33 @@ const WRITTEN: [&str; 16] = [
     "try_constrained_dynamics",
 ];
 
-/// Reports outputs that would be functions of the same name as others.
+/// Constants of mechanisms.
+const CONSTANTS: [&str; 17] = [
+    "BASE_PARAMETERS",
+    "BODIES",
+    "CONFIGURATION",
+    "CONSTRAINTS",
+    "EQUATIONS",
+    "EQUATIONS_LATEX",
+    "FRAMES",
+    "INPUTS",
+    "MASS_MATRIX_ENTRIES",
+    "NC",
+    "NH",
+    "NP",
+    "NQ",
+    "NS",
+    "NU",
+    "NV",
+    "PARAMETERS",
+];
+
+/// True for names that neither Rust nor what is generated needs.
+fn can_be_a_function(name: &str) -> bool {
+    syn::parse_str::<syn::Ident>(name).is_ok() && !CONSTANTS.contains(&name) && !name.starts_with("__")
+}
+
+/// Reports outputs that would be functions of the same name as others, or of none that a function can have.
 fn check_outputs(
     description: &Description,
     functions: &[emit::Function],
@@ -157,6 +183,14 @@ fn check_outputs(
     let jacobian = |name: &str| format!("{name}_jacobian");
     // Each output brings one function of its name and may bring its Jacobian: what is there besides was there before.
     let is_taken = |name: &str| {
+        let on_request = match name {
+            "prepare" => requests.prepare,
+            "linearize" | "forward_dynamics_derivatives" => requests.derivatives,
+            _ => false,
+        };
+        if on_request {
+            return true;
+        }
         let own = outputs.iter().filter(|o| o.name.text == name || jacobian(&o.name.text) == name).count();
         let one = name.strip_suffix("_lanes").filter(|_| requests.batch);
         let in_lanes =
@@ -169,6 +203,11 @@ fn check_outputs(
             let other = &other.name.text;
             cx.error(name.place.clone(), format!("`{text}` is the Jacobian of the output `{other}`"))
                 .help("each output has a function of its name and one of its name with `_jacobian`");
+        } else if !can_be_a_function(text) {
+            cx.error(name.place.clone(), format!("a function of a mechanism cannot be called `{text}`"))
+                .help(
+                    "keywords, names of its constants and names with two underscores before them are taken",
+                );
         } else if is_taken(text) {
             cx.error(
                 name.place.clone(),
@@ -234,6 +273,7 @@ impl Source {
             nu: outline.inputs.len(),
             time: outline.time,
             velocity_inputs: outline.velocity_inputs,
+            massless: false,
         };
         let mut functions = signatures::always(&sizes);
         let requests = self.mechanism.requests;
@@ -260,7 +300,7 @@ impl Source {
             functions.retain(|f| f.name != "forward_dynamics");
             functions.extend(signatures::constrained(&sizes, 1, 1, 0, false));
         }
-        for output in &outline.outputs {
+        for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
                 // An output may have the wrong name.
                 if !WRITTEN.contains(&f.name.as_str()) && functions.iter().all(|known| known.name != f.name) {

@@ -20,6 +20,8 @@ pub struct Sizes {
     pub time: bool,
     /// Inputs act by way of the velocity.
     pub velocity_inputs: bool,
+    /// Constraints determine coordinates without inertia.
+    pub massless: bool,
 }
 
 impl Sizes {
@@ -31,6 +33,7 @@ impl Sizes {
             nu: model.nu(),
             time: model.time,
             velocity_inputs: model.velocity_inputs,
+            massless: model.constraints.iter().any(|constraint| constraint.determines),
         }
     }
 
@@ -64,14 +67,19 @@ fn dynamics(sizes: &Sizes) -> Vec<Function> {
         constant(
             "neutral",
             Shape::Vector(sizes.nq),
-            &["The configuration with all coordinates zero and unit quaternions."],
+            &["The configuration with all coordinates zero; identity quaternions."],
         ),
         sizes.function(
             "mass_matrix",
             &[Q],
             Shape::Square(sizes.nv),
             &[
-                "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
+                match sizes.massless {
+                    true => {
+                        "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular where coordinates have no inertia and follow from constraints."
+                    }
+                    false => "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
+                },
                 "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
             ],
         ),
@@ -106,7 +114,7 @@ fn dynamics(sizes: &Sizes) -> Vec<Function> {
             "generalized_forces",
             if sizes.velocity_inputs { &[Q, V, U] } else { &[Q, U] },
             vector,
-            &["What the inputs `u` contribute to `τ`, by virtual work."],
+            &["Generalized forces `τ` of the inputs `u`, by virtual work: N for translations, N·m for rotations."],
         ),
     ]
 }
@@ -119,7 +127,12 @@ fn energies(sizes: &Sizes) -> Vec<Function> {
             "kinetic_energy",
             &[Q, V],
             Shape::Scalar,
-            &["Kinetic energy `T = ½ vᵀ M(q) v`, J."],
+            &[match sizes.time {
+                true => {
+                    "Kinetic energy `T`, J. It is `½ vᵀ M v` only where nothing is driven: driven motion adds terms of first degree in `v` and of none."
+                }
+                false => "Kinetic energy `T = ½ vᵀ M(q) v`, J.",
+            }],
         ),
         sizes.function(
             "potential_energy",
@@ -131,14 +144,21 @@ fn energies(sizes: &Sizes) -> Vec<Function> {
             "generalized_momentum",
             &[Q, V],
             vector,
-            &["Generalized momentum `p = M(q) v`."],
+            &[match sizes.time {
+                true => {
+                    "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M v` only where nothing is driven."
+                }
+                false => {
+                    "Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations."
+                }
+            }],
         ),
         sizes.function(
             "momentum_rate",
             &[Q, V],
             vector,
             &[
-                "Rate of the generalized momentum without inputs: `ṗ = momentum_rate(q, v) + τ`.",
+                "Rate of the generalized momentum without inputs, N for translations, N·m for rotations: `ṗ = momentum_rate(q, v) + τ`.",
                 "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
             ],
         ),

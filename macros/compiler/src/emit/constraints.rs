@@ -127,14 +127,26 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             {correction}.0
         }}
         /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::assemble(self, {any}, q, held)
         }}
-        /// The configuration nearest to `q` that fulfils the constraints.
+        /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
+        ///
+        /// # Errors
+        ///
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where Newton's method does not converge.
         pub fn project_configuration(&self, {t}q: &{q}) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_configuration(self, {any}, q)
         }}
-        /// The velocity nearest to `v` that fulfils the constraints.
+        /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
+        ///
+        /// # Errors
+        ///
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where none does.
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",

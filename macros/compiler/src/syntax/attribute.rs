@@ -321,6 +321,9 @@ fn type_name(ty: &Type) -> Option<Ident> {
             let last = p.path.segments.last()?;
             last.arguments.is_empty().then(|| last.ident.clone())
         }
+        // What a macro has put in the place of a fragment.
+        Type::Group(group) => type_name(&group.elem),
+        Type::Paren(group) => type_name(&group.elem),
         _ => None,
     }
 }
