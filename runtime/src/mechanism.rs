@@ -1,6 +1,6 @@
 //! The trait that generic code (integrators, controllers, plotters) is written against.
 
-use crate::constraint::{Configuration, ConstraintError};
+use crate::constraint::{ConstraintError, Projected};
 use nalgebra::{RealField, SMatrix, SVector};
 
 /// The numbers that generated code can run on: every `Copy` real field of nalgebra, so `f64`, `f32`, dual
@@ -11,7 +11,7 @@ impl<T: RealField + Copy> Real for T {}
 
 /// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs, whose equations do not contain time
 /// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`](crate::Rheonomic)
-/// instead, and is a `Mechanism` at every instant: `hoop.at(t)`.
+/// instead, and is a `Mechanism` at every instant: [`at(&hoop, t)`](crate::at).
 ///
 /// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball
 /// or a free joint holds a unit quaternion x y z w), `v` in its tangent space: body-frame velocities for ball and
@@ -36,16 +36,18 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
 
     /// The state nearest to a given one that fulfils the constraints, if there are any.
     ///
-    /// Errors: those of [`Constrained::project_state`](crate::Constrained::project_state).
+    /// # Errors
+    ///
+    /// Those of [`Constrained::project_state`](crate::Constrained::project_state).
     fn project(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Configuration<Self::Scalar, NQ, NV>, ConstraintError> {
+    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         Ok((*q, *v))
     }
 
-    /// The configuration with all coordinates zero and unit quaternions.
+    /// The configuration with all coordinates zero; identity quaternions.
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
     /// `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one unit of time.
@@ -104,7 +106,9 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
 
     /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration: what simulations call.
     ///
-    /// Errors: [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip; others
+    /// # Errors
+    ///
+    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip; others
     /// have none.
     fn try_forward_dynamics(
         &self,
@@ -144,4 +148,140 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
+}
+
+/// A reference to a mechanism is one: a controller may borrow its plant.
+impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for &M
+where
+    M: Mechanism<NQ, NV, NU> + ?Sized,
+{
+    type Scalar = M::Scalar;
+
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
+
+    #[inline]
+    fn project(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
+        (**self).project(q, v)
+    }
+
+    #[inline]
+    fn neutral(&self) -> SVector<Self::Scalar, NQ> {
+        (**self).neutral()
+    }
+
+    #[inline]
+    fn integrate(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NQ> {
+        (**self).integrate(q, dv)
+    }
+
+    #[inline]
+    fn difference(
+        &self,
+        from: &SVector<Self::Scalar, NQ>,
+        to: &SVector<Self::Scalar, NQ>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).difference(from, to)
+    }
+
+    #[inline]
+    fn tangent_rate(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).tangent_rate(dv, v)
+    }
+
+    #[inline]
+    fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV> {
+        (**self).mass_matrix(q)
+    }
+
+    #[inline]
+    fn bias_forces(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).bias_forces(q, v)
+    }
+
+    #[inline]
+    fn inverse_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).inverse_dynamics(q, v, a)
+    }
+
+    #[inline]
+    fn forward_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).forward_dynamics(q, v, tau)
+    }
+
+    #[inline]
+    fn try_forward_dynamics(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        (**self).try_forward_dynamics(q, v, tau)
+    }
+
+    #[inline]
+    fn generalized_forces(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).generalized_forces(q, v, u)
+    }
+
+    #[inline]
+    fn kinetic_energy(&self, q: &SVector<Self::Scalar, NQ>, v: &SVector<Self::Scalar, NV>) -> Self::Scalar {
+        (**self).kinetic_energy(q, v)
+    }
+
+    #[inline]
+    fn potential_energy(&self, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar {
+        (**self).potential_energy(q)
+    }
+
+    #[inline]
+    fn generalized_momentum(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).generalized_momentum(q, v)
+    }
+
+    #[inline]
+    fn momentum_rate(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).momentum_rate(q, v)
+    }
 }
