@@ -101,6 +101,10 @@ macro_rules! check_kinematics {
         let frame = frame!($type, $frame);
         let q = &Random::new(12).configuration(&m);
         let (v, a) = (&Random::new(13).vector(1.0), &Random::new(14).vector(1.0));
+        let u = &Random::new(15).vector(1.0);
+        assert_eq!(heap_calls(|| m.dissipated_power(q, v)), 0, "dissipated_power");
+        assert_eq!(heap_calls(|| m.control_power(q, v, u)), 0, "control_power");
+        assert_eq!(heap_calls(|| m.disturbance_power(q, v)), 0, "disturbance_power");
         assert_eq!(heap_calls(|| m.center_of_mass(q)), 0, "center_of_mass");
         assert_eq!(heap_calls(|| m.total_mass()), 0, "total_mass");
         assert_eq!(heap_calls(|| m.momentum(q, v)), 0, "momentum");

@@ -142,6 +142,7 @@ robot!(kinova, Kinova, "kinova", "j2s6s200_link_finger_tip_2");
 robot!(gen3, Gen3, "gen3", "EndEffector_Link");
 robot!(panda, Panda, "panda", "panda_rightfinger");
 robot!(solo12, Solo12, "solo12", "HR_FOOT");
+robot!(anymal_b, AnymalB, "anymal_b", "RH_FOOT");
 robot!(simple_humanoid, Humanoid, "simple_humanoid", "r_wrist");
 robot!(g1, G1, "g1", "right_rubber_hand");
 

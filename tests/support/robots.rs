@@ -2,7 +2,7 @@
 
 use linkwork::mechanism;
 
-pub use linkwork_models::{Panda as PandaMimic, PandaArm, SimpleHumanoid as Humanoid, Solo12, Ur5};
+pub use linkwork_models::{AnymalB, Panda as PandaMimic, PandaArm, SimpleHumanoid as Humanoid, Solo12, Ur5};
 
 /// A cart on a rail with a slightly asymmetric pole.
 #[mechanism(urdf = "../models/urdf/cartpole.urdf")]
