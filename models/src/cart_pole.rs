@@ -10,7 +10,7 @@ use linkwork::mechanism;
 ///   counter-clockwise seen from +z; y points up. Input: `push`, a force on the cart along x, N.
 /// - Mass matrix (cart `M`, pole `m`, length `l`): `M₁₁ = M + m`, `M₁₂ = −½ m l cos θ`, `M₂₂ = m l²/3`.
 /// - Bias forces, with g = 9.81 m/s²: `h₁ = ½ m l sin θ θ̇² + c ẋ`, `h₂ = −½ m g l sin θ`.
-#[mechanism(gravity = -9.81 * y)]
+#[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CartPole {
     /// Mass of the cart, kg.

@@ -1,6 +1,6 @@
 //! A cart-pole: swung up by its energy, caught and held by a linear–quadratic regulator.
 
-use crate::lqr::{gains, linearise};
+use crate::lqr::gains;
 use crate::plot::{Plot, Series};
 use crate::report::{Check, Section, Table, declaration, figure};
 use crate::scene::{Part, Scene, Tone, View, corners, faces, point};
@@ -31,7 +31,7 @@ struct Controller {
 }
 
 pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
-    let linear = linearise::<_, 2, 1, 4>(&CART_POLE, &State::zeros());
+    let linear = CART_POLE.linearize(&State::zeros(), &State::zeros(), &SVector::zeros());
     let gains = gains(&linear, PERIOD, [20.0, 10.0, 1.0, 1.0], [0.05]).ok_or("no gains")?;
     let mut controller = Controller { gains, caught: None };
     let mut forces = Vec::new();

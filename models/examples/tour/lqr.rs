@@ -1,39 +1,6 @@
-//! A linear–quadratic regulator from the generated equations: linearise, sample, iterate Riccati's equation.
+//! A linear–quadratic regulator of a linear system: sample, iterate Riccati's equation.
 
-use linkwork::Mechanism;
-use linkwork::nalgebra::{SMatrix, SVector};
-
-/// `ẋ = A x + B u` at rest at `q`, in `x = (δq, v)`, by central differences. `NX` is twice `NV`; every coordinate plain.
-pub fn linearise<M, const N: usize, const NU: usize, const NX: usize>(
-    m: &M,
-    q: &SVector<f64, N>,
-) -> (SMatrix<f64, NX, NX>, SMatrix<f64, NX, NU>)
-where
-    M: Mechanism<N, N, NU, Scalar = f64>,
-{
-    const { assert!(NX == 2 * N, "a state is positions and velocities") };
-    let rate = |x: SVector<f64, NX>, u: SVector<f64, NU>| -> SVector<f64, NX> {
-        let q = q + x.fixed_rows::<N>(0);
-        let v = x.fixed_rows::<N>(N).into_owned();
-        let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &v, &u));
-        SVector::from_fn(|k, _| if k < N { v[k] } else { a[k - N] })
-    };
-    let step = 1e-5;
-    let (mut a, mut b) = (SMatrix::<f64, NX, NX>::zeros(), SMatrix::<f64, NX, NU>::zeros());
-    for k in 0..NX {
-        let mut dx = SVector::zeros();
-        dx[k] = step;
-        let column = (rate(dx, SVector::zeros()) - rate(-dx, SVector::zeros())) / (2.0 * step);
-        a.set_column(k, &column);
-    }
-    for k in 0..NU {
-        let mut du = SVector::zeros();
-        du[k] = step;
-        let column = (rate(SVector::zeros(), du) - rate(SVector::zeros(), -du)) / (2.0 * step);
-        b.set_column(k, &column);
-    }
-    (a, b)
-}
+use linkwork::nalgebra::SMatrix;
 
 /// Gains `K` of `u = −K x` for inputs held over `period` seconds: the least sum of `xᵀ Q x + uᵀ R u`, both diagonal.
 ///
