@@ -23,13 +23,15 @@ use std::path::PathBuf;
 /// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them |
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
+/// | `formulation = multipliers` or `speeds` | how constraints are solved: by their forces, or by independent speeds (Kane); multipliers if not given |
+/// | `independent = [velocity, …]` | the speeds that stay, of `formulation = speeds`; chosen if not given |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
-/// | `passive = honour` or `ignore` | damping and friction of the file's joints |
-/// | `mimic = follow` or `independent` | joints with a `mimic` tag |
-/// | `inertia = check` or `trust` | whether an inertia that no body can have is an error |
-/// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input |
+/// | `passive = honour` or `ignore` | damping and friction of the file's joints; honour if not given |
+/// | `mimic = follow` or `independent` | joints with a `mimic` tag; follow if not given |
+/// | `inertia = check` or `trust` | whether an inertia that no body can have is an error; check if not given |
+/// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
 /// | `lock = ["joint", …]` | joints frozen at zero |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 ///

@@ -27,11 +27,13 @@
 /// - a solid with its mass, sizes and axis: `rod(m, length, axis)`, `disk(m, radius, axis)`, `ring(m, radius, axis)`,
 ///   `cylinder(m, radius, height, axis)`, `tube(m, inner, outer, height, axis)`, `cone(m, radius, height, axis)`,
 ///   `capsule(m, radius, height, axis)`, `sphere(m, radius)`, `shell(m, radius)`, `cuboid(m, a, b, c)`,
-///   `ellipsoid(m, a, b, c)`;
+///   `plate(m, a, b)` (in the plane of x and y), `ellipsoid(m, a, b, c)`;
 /// - `diagonal(a, b, c)`, or a symmetric matrix `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`;
 /// - any of these `.rotated(z(angle), …)`.
 ///
-/// The body's frame is placed by the joint that carries it. Also called link.
+/// The body's frame is placed by the joint that carries it; without one by `at = vector` and `frame = f`, expressions of
+/// coordinates and time; `massive` beside them says that it moves so whatever
+/// its mass, which is not asked for. Also called link.
 pub enum Body {}
 
 /// A particle: a mass at a point, without extent.

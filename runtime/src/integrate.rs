@@ -103,7 +103,9 @@ pub trait Method<T: Real> {
     /// One step from `start`, ending at `until` at the latest and exactly there if at all. With `dense` the
     /// [`Step`] interpolates to the method's order (or order 3), without it perhaps only linearly.
     ///
-    /// Errors: [`Error::NotFinite`] where the dynamics are, and the method's own.
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] where the dynamics are, and the method's own.
     fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
         memory: &mut Self::Memory<NV>,
@@ -134,7 +136,9 @@ pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Erro
 
 /// The first of equal steps, none longer than `longest`, that end exactly on `until`: its length and its end.
 ///
-/// Errors: [`Error::StepTooSmall`] if the step is lost in the rounding of `t`.
+/// # Errors
+///
+/// [`Error::StepTooSmall`] if the step is lost in the rounding of `t`.
 fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Error> {
     let (h, end) = match until {
         None => (longest, t + longest),

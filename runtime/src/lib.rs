@@ -9,7 +9,7 @@
 //! - [`lanes`]: numbers of several states side by side, for evaluating a mechanism many times.
 //! - [`simulate()`]: its motion over time; [`integrate`] holds the methods.
 //!
-//! Nothing here allocates or panics, and nothing needs the standard library if the feature `libm` is chosen instead of
+//! Nothing here allocates, nothing panics but indices of [`Lanes`] out of range, and nothing needs the standard library if the feature `libm` is chosen instead of
 //! `std`.
 //!
 //! With `std`, release builds for x86-64 compile large generated functions twice and run them with AVX2 and FMA where the

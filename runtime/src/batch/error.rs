@@ -49,11 +49,5 @@ impl fmt::Display for Error {
     }
 }
 
-impl core::error::Error for Error {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Method(error) | Self::Motion { source: error, .. } => Some(error),
-            _ => None,
-        }
-    }
-}
+// What an error has as its source is part of its text.
+impl core::error::Error for Error {}

@@ -43,7 +43,9 @@ macro_rules! evaluations {
 /// are. Shapes, units and frames as in [`Rheonomic`]; `t` is the same for all states. Results do not depend on `L` or on
 /// how many states there are; nothing allocates.
 ///
-/// Errors: [`Error::Length`] for a slice that does not fit; nothing is written then.
+/// # Errors
+///
+/// [`Error::Length`] for a slice that does not fit; nothing is written then.
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
         /// `q ⊕ dv` ([`Rheonomic::integrate`]).

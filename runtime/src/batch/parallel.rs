@@ -25,7 +25,9 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     /// `control` and `watch` are called by several threads at once; cancelling takes effect after the group of states that
     /// each thread has at hand.
     ///
-    /// Errors: those of [`roll_out`](Self::roll_out); of several failures the first in the order of states.
+    /// # Errors
+    ///
+    /// Those of [`roll_out`](Self::roll_out); of several failures the first in the order of states.
     pub fn roll_out_in_parallel<S, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,

@@ -155,7 +155,9 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     /// What becomes of a state does not depend on the others, on their number or on `L`, as long as `control` keeps
     /// lanes apart.
     ///
-    /// Errors: [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion
+    /// # Errors
+    ///
+    /// [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion
     /// does not stay finite or on its constraints; [`Error::Cancelled`].
     pub fn roll_out<S, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
