@@ -143,8 +143,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ) -> SVector<Self::Scalar, NV>;
 
     /// A configuration near `q` in which the constraints hold, by damped Newton steps with bounded count
-    /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3). The coordinates whose
-    /// velocities have the indices `held` stay as they are.
+    /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be from around `q`. The
+    /// coordinates whose velocities have the indices `held` stay as they are.
     ///
     /// # Errors
     ///

@@ -147,6 +147,18 @@ fn states_off_the_constraints_are_errors() {
     assert_eq!(lost, Err(ConstraintError::NotFinite));
 }
 
+/// A four-bar linkage closes from any guess at the coordinates that are not held, if it closes at all.
+#[test]
+fn linkages_are_assembled_from_afar() {
+    let linkage = FourBar { g: 9.81, density: 1.0, a: 0.2, b: 0.6, c: 0.5, d: 0.6 };
+    for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
+        let angle = |k: i32| f64::from(k) * std::f64::consts::FRAC_PI_4;
+        let guess = SVector::from([0.6, angle(i), angle(j)]);
+        let q = linkage.assemble(&guess, &[0]).expect("it closes at this angle of the crank");
+        assert!(q[0] == 0.6 && linkage.constraint_residuals(&q).amax() < 1e-12, "{guess:?}: {q:?}");
+    }
+}
+
 /// A bob held on a circle, and two coordinates with a given sum, in any precision.
 #[mechanism(gravity = -9.81 * y)]
 struct Held<T: Real> {

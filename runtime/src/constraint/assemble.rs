@@ -7,7 +7,12 @@ use nalgebra::{SMatrix, SVector};
 /// Most steps tried.
 const MOST_STEPS: usize = 200;
 
-/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held.
+/// How often it is tried again from around the guess, ever farther away: the first and the last distance, m or rad.
+const AGAIN: usize = 24;
+const NEAR: f64 = 0.05;
+const FAR: f64 = 3.0;
+
+/// By steps from the guess; where these end in a gap that no small step closes, from around it.
 pub(super) fn assemble<
     M,
     const NQ: usize,
@@ -16,6 +21,41 @@ pub(super) fn assemble<
     const NH: usize,
     const NC: usize,
 >(
+    mechanism: &M,
+    t: M::Scalar,
+    q: &SVector<M::Scalar, NQ>,
+    held: &[usize],
+) -> Result<SVector<M::Scalar, NQ>, ConstraintError>
+where
+    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
+{
+    let first = descend(mechanism, t, q, held);
+    if !matches!(first, Err(ConstraintError::Configuration { .. })) {
+        return first;
+    }
+    // Steele and Vigna, Computationally easy, spectrally good multipliers for congruential generators, 2022.
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(1);
+        (state >> 32) as f64 / f64::from(1_u32 << 31) - 1.0
+    };
+    let mut distance = NEAR;
+    for _ in 0..AGAIN {
+        let step = SVector::<M::Scalar, NV>::from_fn(|k, _| {
+            let part = next();
+            if held.contains(&k) { nalgebra::zero() } else { constant(distance * part) }
+        });
+        let found = descend(mechanism, t, &mechanism.integrate(q, &step), held);
+        if found.is_ok() {
+            return found;
+        }
+        distance += (FAR - NEAR) / AGAIN as f64;
+    }
+    first
+}
+
+/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held.
+fn descend<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     mechanism: &M,
     t: M::Scalar,
     q: &SVector<M::Scalar, NQ>,
