@@ -246,3 +246,39 @@ fn rolling_pair() {
     let a = disk.forward_dynamics(&q, &v, &SVector::zeros());
     assert_close("acceleration", &a.as_slice()[3..], &expected, 1e-12);
 }
+
+/// The smaller and the larger of two, in outputs, and in the law of a spring that only pushes.
+#[mechanism(derivatives)]
+struct Extremes {
+    k: f64,
+    l: f64,
+    #[body(mass = 2)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, energy = k / 2 * pow(min(stretch, 0), 2))]
+    buffer: Spring,
+    #[output(min(k / l, 1))]
+    least: Scalar,
+    #[output(max(k / l, rail))]
+    most: Scalar,
+}
+
+/// Numbers of very different sizes do not wipe each other out.
+#[test]
+fn extremes_are_exact() {
+    for (k, expected) in [(1e17, 1.0), (1e-20, 1e-20), (f64::INFINITY, 1.0), (-1e300, -1e300), (0.3, 0.3)] {
+        let m = Extremes { k, l: 1.0 };
+        assert_eq!(m.least(&[0.0].into()), expected);
+        assert_eq!(m.most(&[-1e-9].into()), if k < 0.0 { -1e-9 } else { k });
+        assert_eq!(m.most(&[1e18].into()), if k == f64::INFINITY { k } else { 1e18 });
+    }
+    let m = Extremes { k: 50.0, l: 1.0 };
+    for (x, force, slope) in [(-0.1, 5.0, -50.0), (0.1, 0.0, 0.0)] {
+        let (q, zero) = ([x].into(), [0.0].into());
+        assert_eq!(m.bias_forces(&q, &zero)[0], -force);
+        let (by_q, _, _) = m.forward_dynamics_derivatives(&q, &zero, &zero);
+        assert_eq!(by_q[0], slope / 2.0);
+    }
+    assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
+}

@@ -36,6 +36,10 @@ macro_rules! elementary_functions {
             ln(x);
             /// The power `x` to `y`; NaN for `x < 0` and a `y` that is no integer.
             powf(x, y);
+            /// The smaller one; the other one if one is NaN.
+            min(x, y);
+            /// The larger one; the other one if one is NaN.
+            max(x, y);
             /// The magnitude.
             abs(x);
             /// 1 or −1 with the sign of `x`, also for zeros.

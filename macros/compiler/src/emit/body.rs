@@ -319,6 +319,7 @@ impl Writer<'_> {
             Op::Call(f, a) => self.call(f.name(), &[a], lanes),
             Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
             Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
+            Op::Extreme(f, a, b) => self.call(f.name(), &[a, b], lanes),
             Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
             Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
             Op::Lane(k, a) => self.suffix(a, &format!(".lane::<{k}>()")),

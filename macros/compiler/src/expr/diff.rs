@@ -1,6 +1,6 @@
 //! Differentiation with respect to a symbol, or along a direction in the space of several.
 
-use super::node::{Function, Id, Node, Symbol};
+use super::node::{Extreme, Function, Id, Node, Symbol};
 use super::{Expr, Graph};
 
 /// Added to a length before it divides: too small to matter, large enough for `f32`.
@@ -76,6 +76,13 @@ impl<'g> Derivative<'g> {
             Node::Call(f, a) if d(a).is_zero() => at(a).call(f).zero(),
             Node::Call(f, a) => self.outer(f, at(a), at(id)) * d(a),
             Node::Atan2(y, x) => (at(x) * d(y) - at(y) * d(x)) / (at(x).square() + at(y).square()),
+            Node::Extreme(_, a, b) if d(a) == d(b) => d(a),
+            Node::Extreme(f, a, b) => {
+                let sign = (at(a) - at(b)).call(Function::Signum);
+                let change = (d(a) - d(b)) * sign;
+                let sum = d(a) + d(b);
+                (if f == Extreme::Max { sum + change } else { sum - change }) * 0.5
+            }
             Node::Pow(a, b) => {
                 let base = if d(a).is_zero() { self.graph.zero() } else { at(b) * d(a) / at(a) };
                 let exponent =

@@ -123,6 +123,7 @@ fn step(node: Node, a: f64, b: f64) -> f64 {
         Node::Call(f, _) => f.apply(a),
         Node::Atan2(..) => a.atan2(b),
         Node::Pow(..) => a.powf(b),
+        Node::Extreme(f, ..) => f.apply(a, b),
         Node::Symbol(_)
         | Node::Tuple(_)
         | Node::Gather(_)

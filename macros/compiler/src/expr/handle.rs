@@ -1,7 +1,7 @@
 //! The handle of an expression, with the arithmetic that it writes into its graph.
 
 use super::graph::{Graph, ZERO};
-use super::node::{Function, Id, Node};
+use super::node::{Extreme, Function, Id, Node};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -95,6 +95,15 @@ impl<'g> Expr<'g> {
             return self.num(y.atan2(x));
         }
         self.graph.expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
+    }
+
+    /// The smaller or the larger of two.
+    pub fn extreme(self, f: Extreme, other: Expr<'g>) -> Expr<'g> {
+        match (self.value(), other.value()) {
+            (Some(a), Some(b)) => self.num(f.apply(a, b)),
+            _ if self == other => self,
+            _ => self.graph.expr(self.graph.intern(Node::Extreme(f, self.id, other.id))),
+        }
     }
 
     /// A power; small whole exponents become products.

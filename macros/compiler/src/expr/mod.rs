@@ -19,5 +19,5 @@ pub mod trigonometry;
 pub use graph::Graph;
 pub use handle::Expr;
 pub use matrix::{Mat3, Sym3, Vec3};
-pub use node::{Function, Id, Node, Symbol};
+pub use node::{Extreme, Function, Id, Node, Symbol};
 pub use rotation::Rotation;

@@ -83,6 +83,32 @@ impl Function {
     }
 }
 
+/// The smaller or the larger of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the names say it all")]
+pub enum Extreme {
+    Min,
+    Max,
+}
+
+impl Extreme {
+    /// The name in the language and in generated code.
+    pub fn name(self) -> &'static str {
+        match self {
+            Extreme::Min => "min",
+            Extreme::Max => "max",
+        }
+    }
+
+    /// The value for two numbers.
+    pub fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Extreme::Min => a.min(b),
+            Extreme::Max => a.max(b),
+        }
+    }
+}
+
 /// A node of the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Node {
@@ -106,6 +132,8 @@ pub enum Node {
     Atan2(Id, Id),
     /// `a` to the power `b`.
     Pow(Id, Id),
+    /// The smaller or the larger of `a` and `b`.
+    Extreme(Extreme, Id, Id),
     /// A constant of each lane: an index of the graph's tuples.
     Tuple(u32),
     /// An input of each lane: an index of the graph's gathers.
@@ -130,6 +158,7 @@ impl Node {
             | Node::Div(a, b)
             | Node::Atan2(a, b)
             | Node::Pow(a, b)
+            | Node::Extreme(_, a, b)
             | Node::Join(_, a, b) => {
                 f(a);
                 f(b);
@@ -148,6 +177,7 @@ impl Node {
             Node::Div(a, b) => (7, a.into(), b.into()),
             Node::Atan2(a, b) => (8, a.into(), b.into()),
             Node::Pow(a, b) => (9, a.into(), b.into()),
+            Node::Extreme(f, a, b) => (30 + f as u64, a.into(), b.into()),
             Node::Tuple(k) => (32, k.into(), 0),
             Node::Gather(k) => (33, k.into(), 0),
             Node::Sum(n, a) => (34, a.into(), n.into()),

@@ -72,6 +72,7 @@ impl<'g> Normal<'g> {
             Node::Symbol(s) => Atom::Symbol(s),
             Node::Call(f, a) => Atom::Call(f, at(a).clone()),
             Node::Atan2(a, b) => Atom::Atan2(at(a).clone(), at(b).clone()),
+            Node::Extreme(f, a, b) => Atom::Extreme(f, at(a).clone(), at(b).clone()),
             Node::Pow(a, b) => Atom::Power(at(a).clone(), at(b).clone()),
             Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..) => {
                 return None;

@@ -3,7 +3,7 @@
 //! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
 //! whatever grows beyond the limits is given up with `None`.
 
-use super::node::{Function, Symbol};
+use super::node::{Extreme, Function, Symbol};
 
 mod monomial;
 #[cfg(test)]
@@ -55,6 +55,7 @@ pub enum Atom {
     Call(Function, Polynomial),
     Atan2(Polynomial, Polynomial),
     Power(Polynomial, Polynomial),
+    Extreme(Extreme, Polynomial, Polynomial),
 }
 
 /// Where an atom stands in a product that is read from left to right.
@@ -231,7 +232,7 @@ impl Ring {
                 angles.filter_map(|(a, _)| of_monomial(a.monomial)).max()
             }
             Atom::Call(_, p) => of(p),
-            Atom::Atan2(p, q) | Atom::Power(p, q) => of(p).max(of(q)),
+            Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => of(p).max(of(q)),
         };
         match argument {
             None | Some(Rank::Parameter) => Rank::Parameter,
@@ -346,6 +347,7 @@ impl Ring {
                 Atom::Call(f, p) => f.apply(of(p)),
                 Atom::Atan2(y, x) => of(y).atan2(of(x)),
                 Atom::Power(a, b) => of(a).powf(of(b)),
+                Atom::Extreme(f, a, b) => f.apply(of(a), of(b)),
             });
         }
         value(p, &values)

@@ -46,6 +46,7 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
         Node::Call(f, a) => (format!("{}({})", f.name(), at(a, 0)), 4),
         Node::Atan2(a, b) => (format!("atan2({}, {})", at(a, 0), at(b, 0)), 4),
         Node::Pow(a, b) => (format!("pow({}, {})", at(a, 0), at(b, 0)), 4),
+        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), at(a, 0), at(b, 0)), 4),
     };
     if own < level { format!("({text})") } else { text }
 }
@@ -138,6 +139,7 @@ impl<'a, S: Style> Writer<'a, S> {
             Atom::Call(f, p) => call(f.name(), &[self.argument(p)]),
             Atom::Atan2(y, x) => call("atan2", &[self.argument(y), self.argument(x)]),
             Atom::Power(a, b) => call("pow", &[self.argument(a), self.argument(b)]),
+            Atom::Extreme(f, a, b) => call(f.name(), &[self.argument(a), self.argument(b)]),
             Atom::Inverse(p) => {
                 let divisor = Factor::Sum(self.polynomial(p));
                 self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)

@@ -63,5 +63,6 @@ fn rebuilt<'g>(
         Node::Call(f, a) => at(a).call(f),
         Node::Atan2(a, b) => at(a).atan2(at(b)),
         Node::Pow(a, b) => at(a).pow(at(b)),
+        Node::Extreme(f, a, b) => at(a).extreme(f, at(b)),
     }
 }

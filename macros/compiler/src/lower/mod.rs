@@ -3,7 +3,7 @@
 
 use crate::expr::eval::joined;
 use crate::expr::lanes::MOST;
-use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
+use crate::expr::{Expr, Extreme, Function, Graph, Id, Node, Symbol};
 
 mod chain;
 mod factor;
@@ -76,6 +76,8 @@ pub enum Op {
     Atan2(Operand, Operand),
     /// `a` to the power `b`
     Pow(Operand, Operand),
+    /// The smaller or the larger of `a` and `b`.
+    Extreme(Extreme, Operand, Operand),
     /// The sum of so many lanes.
     Sum(usize, Operand),
     /// One lane.
@@ -95,6 +97,7 @@ impl Op {
             | Op::Div(a, b)
             | Op::Atan2(a, b)
             | Op::Pow(a, b)
+            | Op::Extreme(_, a, b)
             | Op::Join(_, a, b) => {
                 f(a);
                 f(b);
@@ -206,6 +209,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
             Node::Call(f, a) => Op::Call(f, at(a)),
             Node::Atan2(a, b) => Op::Atan2(at(a), at(b)),
             Node::Pow(a, b) => Op::Pow(at(a), at(b)),
+            Node::Extreme(f, a, b) => Op::Extreme(f, at(a), at(b)),
         };
         values.push(Operand::Value(program.instructions.len()));
         lanes.push(&op);
@@ -349,7 +353,7 @@ impl Program {
         let mut counts = Counts::default();
         for op in &self.instructions {
             match op {
-                Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Sum(..) => counts.add += 1,
+                Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Sum(..) | Op::Extreme(..) => counts.add += 1,
                 Op::Mul(..) => counts.mul += 1,
                 Op::Div(..) => counts.div += 1,
                 Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => {
@@ -425,6 +429,7 @@ impl Op {
             Op::Call(f, _) => f.apply(get(0)),
             Op::Atan2(..) => get(0).atan2(get(1)),
             Op::Pow(..) => get(0).powf(get(1)),
+            Op::Extreme(f, ..) => f.apply(get(0), get(1)),
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
         }
     }
@@ -447,6 +452,7 @@ impl Op {
             Op::Call(f, a) => Op::Call(f, n(a)),
             Op::Atan2(a, b) => Op::Atan2(n(a), n(b)),
             Op::Pow(a, b) => Op::Pow(n(a), n(b)),
+            Op::Extreme(f, a, b) => Op::Extreme(f, n(a), n(b)),
             Op::Sum(count, a) => Op::Sum(count, n(a)),
             Op::Lane(k, a) => Op::Lane(k, n(a)),
             Op::Join(count, a, b) => Op::Join(count, n(a), n(b)),

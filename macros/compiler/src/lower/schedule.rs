@@ -102,6 +102,7 @@ pub(super) fn latency(op: &Op) -> u32 {
             Op::Neg(_) => 1,
             Op::Lane(..) | Op::Join(..) => 2,
             Op::Add(..) | Op::Sub(..) => 3,
+            Op::Extreme(..) => 4,
             Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => 4,
             Op::Sum(lanes, _) => 5 * halvings(*lanes),
             Op::Div(..) => 13,

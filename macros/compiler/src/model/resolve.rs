@@ -6,7 +6,7 @@ use super::world::{Level, View, World};
 use super::{LinkId, Quantity, Rotation};
 use crate::diag::Diagnostics;
 use crate::expr::diff::TINY;
-use crate::expr::{Expr, Function, Graph, Mat3, Vec3};
+use crate::expr::{Expr, Extreme, Function, Graph, Mat3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -431,11 +431,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         match text {
             "atan2" => two_scalars(cx).map(|(y, x)| Value::Scalar(y.atan2(x))),
             "pow" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.pow(b))),
-            "min" | "max" => two_scalars(cx).map(|(a, b)| {
-                let gap = (a - b).call(Function::Abs);
-                let twice = if text == "max" { a + b + gap } else { a + b - gap };
-                Value::Scalar(twice * 0.5)
-            }),
+            "min" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Min, b))),
+            "max" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Max, b))),
             "dot" | "cross" | "project" => {
                 let [a, b] = arguments else {
                     return wrong_count(function, 2, cx);

@@ -43,6 +43,7 @@ pub fn expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g>
                 Atom::Call(f, p) => expression(graph, ring, p).call(*f),
                 Atom::Atan2(y, x) => expression(graph, ring, y).atan2(expression(graph, ring, x)),
                 Atom::Power(a, b) => expression(graph, ring, a).pow(expression(graph, ring, b)),
+                Atom::Extreme(f, a, b) => expression(graph, ring, a).extreme(*f, expression(graph, ring, b)),
             };
             product = (0..power).fold(product, |p, _| p * base);
         }
