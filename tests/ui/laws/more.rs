@@ -495,4 +495,20 @@ mod friction_that_pushes {
     }
 }
 
+mod law_with_a_corner {
+    use linkwork::prelude::*;
+
+    #[mechanism]
+    struct Machine {
+        #[body(mass = 1)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+        #[acts(on = rail, force = 10 * abs(stretch))]
+        spring: Spring,
+        #[acts(on = rail, force = 10 * max(stretch, -100))]
+        buffer: Spring,
+    }
+}
+
 fn main() {}

@@ -9,9 +9,10 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
 use crate::expr::eval::eval;
 use crate::expr::replace::replace;
-use crate::expr::{Expr, Function, Vec3};
+use crate::expr::{Expr, Function, Node, Symbol, Vec3};
 use crate::model::sample;
 use crate::syntax::{self, Definition, ExprKind, Law};
+use std::collections::BTreeSet;
 
 /// Regularisation speed of friction, unless given.
 const FRICTION_SPEED: f64 = 0.01;
@@ -115,12 +116,13 @@ impl<'g> Builder<'_, 'g> {
             energy += at_zero * (1.0 / factorial) * power;
             power = power * x;
             derivative = d.of(derivative);
-            if derivative.is_zero() {
+            // A law with corners is like a polynomial between them.
+            if derivative.is_zero() && !has_corners(force, symbol) {
                 return Some(energy);
             }
         }
         cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
-            .help("give the spring by its energy instead: `energy = …`, and the force follows");
+            .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
         None
     }
 
@@ -328,6 +330,26 @@ impl<'g> Builder<'_, 'g> {
 fn always_zero(r: Vec3<'_>) -> bool {
     r.is_zero()
         || (0..4).all(|seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14))
+}
+
+/// True if a sign, a magnitude or an extreme of what depends on the symbol is in an expression.
+fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
+    let g = e.graph();
+    let mut seen = BTreeSet::from([e.id()]);
+    let mut todo = vec![e.id()];
+    while let Some(id) = todo.pop() {
+        let node = g.node(id);
+        let corner = matches!(node, Node::Call(Function::Abs | Function::Signum, _) | Node::Extreme(..));
+        if corner && symbols_in(&[g.expr(id)]).contains(&symbol) {
+            return true;
+        }
+        node.operands(|a| {
+            if seen.insert(a) {
+                todo.push(a);
+            }
+        });
+    }
+    false
 }
 
 /// The direction of a vector, if it is the same for all coordinates and parameters.
