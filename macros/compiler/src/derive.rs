@@ -9,7 +9,7 @@ use crate::expr::{Expr, Symbol};
 use crate::lower::{Program, lower, lower_without, size};
 use crate::mechanics::{self, Joint, crba, energy, forces, frames, massless, power, reactions};
 use crate::model::kinematics::{symbols_in, time_derivative};
-use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
+use crate::model::{Chart, Link, Model, Motion, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
 use crate::syntax::{ROOT_JOINT, Requests};
 
@@ -119,11 +119,9 @@ fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) 
     let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
     let diagnostic = cx.error(place.clone(), message);
     diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
-    let floats = |link: &crate::model::Link<'_>| {
-        matches!(link.motion, crate::model::Motion::Free { .. }) && link.inertia.mass.is_zero()
-    };
+    let floats = |link: &Link<'_>| matches!(link.motion, Motion::Free { .. }) && link.inertia.mass.is_zero();
     if model.links.iter().any(floats) {
-        diagnostic.help("the link that moves freely has no mass of its own, so that others are not enough");
+        diagnostic.help("a link that moves freely needs a mass of its own, whatever it carries");
     }
     if place.file.is_some() {
         let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();

@@ -120,19 +120,9 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
             list.iter().for_each(|(i, factor)| values[*i] += dependent * *factor);
         }
     }
-    let kept = |k: &usize| parts[*k] == Part::Own;
-    let kept: Vec<usize> = (0..entries.len()).filter(kept).collect();
-    let base = Base {
-        entries: kept.iter().map(|k| entries[*k]).collect(),
-        values: kept.iter().map(|k| values[*k]).collect(),
-        columns: kept.iter().map(|k| columns[*k].clone()).collect(),
-    };
-    without_repeated(model, base)
-}
-
-/// Without values that follow from others: between two axes of a joint there is no body of its own, and what is moved there
-/// from one body may act in two ways.
-fn without_repeated<'g>(model: &Model<'g>, mut base: Base<'g>) -> Base<'g> {
+    let mut base = Base { entries, values, columns };
+    base.keep(&parts);
+    // Between two axes of a joint there is no body of its own, and what is moved there from one body may act in two ways.
     let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
     let parts = independent(model, &alone);
     for (k, part) in parts.iter().enumerate() {
@@ -144,14 +134,20 @@ fn without_repeated<'g>(model: &Model<'g>, mut base: Base<'g>) -> Base<'g> {
             }
         }
     }
-    let kept: Vec<bool> = parts.iter().map(|part| *part == Part::Own).collect();
-    retain(&mut base.entries, &kept);
-    retain(&mut base.values, &kept);
-    retain(&mut base.columns, &kept);
+    base.keep(&parts);
     base
 }
 
-fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
-    let mut kept = kept.iter();
-    list.retain(|_| kept.next().is_some_and(|kept| *kept));
+impl Base<'_> {
+    /// Leaves out what is a combination of others.
+    fn keep(&mut self, parts: &[Part]) {
+        retain(&mut self.entries, parts);
+        retain(&mut self.values, parts);
+        retain(&mut self.columns, parts);
+    }
+}
+
+fn retain<T>(list: &mut Vec<T>, parts: &[Part]) {
+    let mut parts = parts.iter();
+    list.retain(|_| parts.next() == Some(&Part::Own));
 }
