@@ -32,8 +32,8 @@
 /// - any of these `.rotated(z(angle), …)`.
 ///
 /// The body's frame is placed by the joint that carries it; without one by `at = vector` and `frame = f`, expressions of
-/// coordinates and time; `massive` beside them says that it moves so whatever
-/// its mass, which is not asked for. Also called link.
+/// coordinates and time; `massive` beside them says that it moves so whatever its mass, which is not asked for. Also called
+/// link.
 pub enum Body {}
 
 /// A particle: a mass at a point, without extent.

@@ -63,6 +63,18 @@ fn the_defaults_are_rest_in_the_neutral_configuration() {
     assert!(end.u.is_empty());
 }
 
+/// A reference to a mechanism moves as the mechanism.
+#[test]
+fn a_plant_is_borrowed() {
+    struct Controller<P> {
+        plant: P,
+    }
+    let oscillator = oscillator::<f64>();
+    let controller = Controller { plant: &oscillator };
+    let end = simulate(&controller.plant).from([1.0], [0.5]).duration(2.0).finish();
+    assert_eq!(end, simulate(&oscillator).from([1.0], [0.5]).duration(2.0).finish());
+}
+
 #[test]
 fn a_run_can_start_later() {
     let pushed = |start| {
