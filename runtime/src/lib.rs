@@ -1,20 +1,65 @@
 #![cfg_attr(not(feature = "std"), no_std)]
-//! Linkwork compiles mechanisms: annotate a struct with bodies, joints, springs and inputs (or name a URDF file),
-//! and the compiler derives its equations of motion and puts specialised, allocation-free Rust in its place.
+//! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF file: an
+//! attribute macro checks the mechanism, derives its equations of motion, and generates functions for them, specialised
+//! for this one mechanism. They do not allocate, do not panic in release builds, and need no standard library.
+//!
+//! ```
+//! use linkwork::prelude::*;
+//!
+//! /// A rod on a hinge, with a motor.
+//! #[mechanism(gravity = -9.81 * y)]
+//! pub struct Pendulum {
+//!     pub mass: f64,
+//!     pub length: f64,
+//!
+//!     #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+//!     rod: Body,
+//!     #[joint(ground -> rod, about = z)]
+//!     hinge: Pin,
+//!     #[acts(on = hinge)]
+//!     motor: Torque,
+//! }
+//!
+//! fn main() -> Result<(), Error> {
+//!     let pendulum = Pendulum { mass: 2.0, length: 1.5 };
+//!
+//!     // The torque that holds it still, horizontal: weight times half the length.
+//!     let (q, rest) = ([std::f64::consts::FRAC_PI_2].into(), [0.0].into());
+//!     let tau = pendulum.inverse_dynamics(&q, &rest, &rest);
+//!     assert!((tau[0] - 2.0 * 9.81 * 0.75).abs() < 1e-12);
+//!
+//!     // Released there, it swings: after some time it is as high as before, on the other side.
+//!     let run = simulate(&pendulum).from(q, rest);
+//!     let other_side = run.until_crossing(Crossing::Rising, |_t, _q, v| v[0]).finish()?;
+//!     assert!((other_side.q[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
+//!     println!("{:.3} s", other_side.t);
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Where to read on
+//!
+//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), and has chapters on the
+//! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF files,
+//! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
+//! [simulating](guide/simulating/index.html), [batches](guide/batches/index.html) of states,
+//! targets [without std](guide/without_std/index.html), [speed](guide/speed/index.html), and the names of things
+//! [in other tools](guide/from_other_tools/index.html).
 //!
 //! - [`prelude`]: everything that a program with a mechanism needs, in one import.
-//! - [`elements`]: the words in which a mechanism is declared.
-//! - [`Mechanism`]: what every compiled mechanism offers.
-//! - [`Constrained`]: what those with closed loops, rolling or other constraints offer besides.
-//! - [`lanes`]: numbers of several states side by side, for evaluating a mechanism many times.
-//! - [`simulate()`]: its motion over time; [`integrate`] holds the methods.
+//! - [`mechanism`](macro@mechanism): the attribute and its arguments.
+//! - [`elements`]: bodies, joints and forces, the types of a mechanism's fields.
+//! - [`Mechanism`]: what every mechanism offers; [`Constrained`] what those with closed loops or rolling offer besides.
+//! - [`simulate()`]: motion over time; [`integrate`] holds the integrators.
+//! - [`batch`]: many states of a mechanism at once, in [`Lanes`].
+//! - [`rotation`]: Euler angles, quaternions and other parameters of rotations.
 //!
-//! Nothing here allocates, nothing panics but indices of [`Lanes`] out of range, and nothing needs the standard library if the feature `libm` is chosen instead of
-//! `std`.
+//! # Features
 //!
-//! With `std`, release builds for x86-64 compile large generated functions twice and run them with AVX2 and FMA where the
-//! processor has these: results are the same up to rounding. Products of large matrices take AVX-512 where it is.
-//! `#[mechanism(processor = target)]` leaves that out.
+//! - `std` (default): elementary functions of the standard library. Release builds for x86-64 compile large functions
+//!   also for AVX2 and FMA, and choose at run time ([speed](guide/speed/index.html)).
+//! - `libm`: elementary functions of the crate `libm`, for targets without the standard library.
+//! - `rayon`: rollouts of many states on all processors.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("linkwork needs one of its features `std` and `libm` for the elementary functions");
@@ -39,6 +84,8 @@ pub mod batch;
 pub mod constraint;
 pub mod elements;
 mod frame;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod integrate;
 pub mod lanes;
 mod lie;

@@ -1,0 +1,46 @@
+//! The guide, chapter by chapter. All examples are tests, and assert what the text says.
+//!
+//! | chapter | about |
+//! | --- | --- |
+//! | [`first_mechanism`] | a pendulum, from its declaration to its motion; a controller |
+//! | [`language`] | all that can stand in a mechanism's struct |
+//! | [`robots`] | mechanisms from URDF files |
+//! | [`constraints`] | closed loops, gears, rolling and sliding |
+//! | [`functions`] | what is generated |
+//! | [`simulating`] | integrators, inputs, events |
+//! | [`batches`] | many states at once |
+//! | [`without_std`] | microcontrollers |
+//! | [`speed`] | what makes generated code fast, in release and in debug builds; accuracy |
+//! | [`from_other_tools`] | the names of SymPy, Pinocchio, MuJoCo and Drake |
+//!
+//! These modules exist in the documentation only.
+
+#[doc = include_str!("../guide/first_mechanism.md")]
+pub mod first_mechanism {}
+
+#[doc = include_str!("../guide/language.md")]
+pub mod language {}
+
+#[doc = include_str!("../guide/robots.md")]
+pub mod robots {}
+
+#[doc = include_str!("../guide/constraints.md")]
+pub mod constraints {}
+
+#[doc = include_str!("../guide/functions.md")]
+pub mod functions {}
+
+#[doc = include_str!("../guide/simulating.md")]
+pub mod simulating {}
+
+#[doc = include_str!("../guide/batches.md")]
+pub mod batches {}
+
+#[doc = include_str!("../guide/without_std.md")]
+pub mod without_std {}
+
+#[doc = include_str!("../guide/speed.md")]
+pub mod speed {}
+
+#[doc = include_str!("../guide/from_other_tools.md")]
+pub mod from_other_tools {}
