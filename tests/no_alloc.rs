@@ -226,6 +226,7 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
     assert_eq!(heap_calls(|| m.assemble(0.0, near, &[0])), 0, "assemble");
     let q = &m.assemble(0.0, near, &[]).expect("a configuration is near");
     assert_eq!(heap_calls(|| m.project_velocity(0.0, q, &any)), 0, "project_velocity");
+    assert_eq!(heap_calls(|| m.complete_velocity(0.0, q, &any, &[0])), 0, "complete_velocity");
     let v = &m.project_velocity(0.0, q, &any).expect("a velocity is near");
     assert_eq!(heap_calls(|| m.constraint_residuals(0.0, q)), 0, "constraint_residuals");
     assert_eq!(heap_calls(|| m.constraint_rates(0.0, q, v)), 0, "constraint_rates");

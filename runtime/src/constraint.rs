@@ -2,7 +2,7 @@
 //!
 //! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the residuals
 //! `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a configuration near a given
-//! one, [`Constrained::project_velocity`] the nearest velocity, and [`simulate`](crate::simulate()) keeps both, or lets
+//! one, [`Constrained::complete_velocity`] the velocity with given entries, [`Constrained::project_velocity`] the nearest, and [`simulate`](crate::simulate()) keeps both, or lets
 //! violations decay where a mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
@@ -11,6 +11,7 @@ use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
 mod assemble;
+mod complete;
 mod linearize;
 mod slipping;
 mod solve;
@@ -54,6 +55,13 @@ pub enum ConstraintError {
         /// The contact.
         constraint: &'static str,
     },
+    /// An index of a velocity to be held is none: `held` counts the velocities from zero.
+    Held {
+        /// The index.
+        index: usize,
+        /// How many velocities there are.
+        velocities: usize,
+    },
     /// Residuals or rates are infinite or NaN there.
     NotFinite,
 }
@@ -69,6 +77,9 @@ impl fmt::Display for ConstraintError {
             }
             Self::Singular => write!(f, "the constraints lose rank in this configuration"),
             Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
+            Self::Held { index, velocities } => {
+                write!(f, "the velocity {index} cannot be held: expected an index below {velocities}")
+            }
             Self::NotFinite => write!(f, "the constraints are not finite"),
         }
     }
@@ -148,7 +159,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Configuration`] where none is found.
+    /// [`ConstraintError::Configuration`] where none is found, [`ConstraintError::Held`] for an index that is none.
     fn assemble(
         &self,
         t: Self::Scalar,
@@ -215,6 +226,26 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         }
         let constraint = Self::CONSTRAINTS.get(worst).copied().unwrap_or_default();
         Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
+    }
+
+    /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints:
+    /// `J v + … = 0`, [`constraint_rates`](Self::constraint_rates). m/s and rad/s. What the constraints leave open is nearest
+    /// to `v` in the metric of the kinetic energy; with nothing held the whole is, as by
+    /// [`project_velocity`](Self::project_velocity).
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Velocity`] where the held entries contradict the constraints or nothing finite follows from them
+    /// (a piston that is to move while its crank is in line with the rod), [`ConstraintError::Held`] for an index that is
+    /// none.
+    fn complete_velocity(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        held: &[usize],
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        complete::complete(self, t, q, v, held)
     }
 
     /// Both: configuration first.

@@ -20,6 +20,7 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         assert!(m.constraint_rates(0.0, &q, &v).amax() < 1e-12);
         let again = m.project_velocity(0.0, &q, &v).expect("it is one already");
         assert!((again - v).amax() < 1e-11 * v.amax().max(1.0));
+        completion(m, &q, &v, &mut random);
 
         let tau = random.vector(1.0);
         let (a, lambda) = m.constrained_dynamics(0.0, &q, &v, &tau);
@@ -35,6 +36,45 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         assert!((power - tau.dot(&v)).abs() < 1e-5 * energy * scale, "{power} for {}", tau.dot(&v));
         rates(m, &q, &v);
     }
+}
+
+/// What is held stays and the constraints hold; what these leave open takes the least energy.
+fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    random: &mut Random,
+) where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let wanted = random.vector(1.0);
+    let all = m.complete_velocity(0.0, q, &wanted, &[]).expect("a velocity is near");
+    let nearest = m.project_velocity(0.0, q, &wanted).expect("a velocity is near");
+    assert!((all - nearest).amax() < 1e-9 * nearest.amax().max(1.0), "{all} for {nearest}");
+    // Entries of a velocity that fulfils the constraints never contradict them.
+    let mut index = || ((random.uniform(1.0) + 1.0) / 2.0 * NV as f64) as usize;
+    let pair = [index(), index()];
+    for held in [&pair[..1], &pair[..]] {
+        let mut start = wanted;
+        held.iter().for_each(|k| start[*k] = v[*k]);
+        let found = m.complete_velocity(0.0, q, &start, held).expect("they agree");
+        assert!(held.iter().all(|k| found[*k] == v[*k]), "{held:?}");
+        let size = found.amax().max(1.0);
+        assert!(m.constraint_rates(0.0, q, &found).amax() < 1e-10 * size);
+        // The change has no energy in common with what could be moved besides.
+        let change = Mechanism::mass_matrix(m, q) * (found - start);
+        let mut other = random.vector(1.0);
+        held.iter().for_each(|k| other[*k] = v[*k]);
+        if held.len() > 1 {
+            // Two together may nearly depend on each other, and what follows from them is large.
+            continue;
+        }
+        let besides = m.complete_velocity(0.0, q, &other, held).expect("they agree") - found;
+        assert!(change.dot(&besides).abs() < 1e-8 * size * size, "{held:?}: {}", change.dot(&besides));
+    }
+    let outside = Err(ConstraintError::Held { index: NV, velocities: NV });
+    assert_eq!(m.complete_velocity(0.0, q, v, &[0, NV]), outside);
+    assert_eq!(m.assemble(0.0, q, &[0, NV]), outside.map(|_: SVector<f64, NV>| *q));
 }
 
 /// Energy a moment later.
@@ -190,4 +230,25 @@ fn single_precision_knows_what_is_off() {
     }
     check::<f64>(1e-14);
     check::<f32>(1e-6);
+}
+
+/// A crank keeps its rate, whatever that is; at its dead centre the piston cannot be told to move, the crank can.
+#[test]
+fn velocities_are_completed() {
+    let engine = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
+    let q = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]).expect("the crank goes round");
+    let v = engine.complete_velocity(&q, &[100.0, 0.0, 0.0].into(), &[0]).expect("no dead centre");
+    // Norton, Design of Machinery (2004), § 6.7: the rod turns by ω₃ = −ω₂ (r cos θ) / (l cos φ).
+    let turn = q[0] + q[1];
+    let rod = -100.0 * 0.04 * q[0].cos() / (0.13 * turn.cos());
+    let piston = -100.0 * 0.04 * q[0].sin() - rod * 0.13 * turn.sin();
+    assert!(v[0] == 100.0 && (v[1] - (rod - 100.0)).abs() < 1e-12 && (v[2] - piston).abs() < 1e-13, "{v}");
+    let both = engine.complete_velocity(&q, &[100.0, 0.0, piston + 0.1].into(), &[0, 2]);
+    assert!(matches!(both, Err(ConstraintError::Velocity { .. })), "{both:?}");
+
+    let dead = engine.assemble(&[0.0, 0.0, 0.17].into(), &[0]).expect("it is in line");
+    let turned = engine.complete_velocity(&dead, &[100.0, 0.0, 0.0].into(), &[0]).expect("the piston rests");
+    assert!((turned - SVector::from([100.0, -100.0 - 4.0 / 0.13, 0.0])).amax() < 1e-11, "{turned}");
+    let pushed = engine.complete_velocity(&dead, &[0.0, 0.0, 1.0].into(), &[2]);
+    assert!(matches!(pushed, Err(ConstraintError::Velocity { rate, .. }) if rate > 0.01), "{pushed:?}");
 }

@@ -127,8 +127,9 @@ pub fn compile_with<'g>(
 }
 
 /// Functions that are not derived but written as they are, those of mechanisms with constraints included.
-const WRITTEN: [&str; 16] = [
+const WRITTEN: [&str; 17] = [
     "assemble",
+    "complete_velocity",
     "constrained_dynamics",
     "constraint_correction",
     "difference",

@@ -1,6 +1,6 @@
 //! Assembly: from a guess to a configuration that fulfils the constraints.
 
-use super::{Constrained, ConstraintError, largest, near, off};
+use super::{Constrained, ConstraintError, complete, largest, near, off};
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
@@ -29,6 +29,7 @@ pub(super) fn assemble<
 where
     M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
 {
+    complete::check::<NV>(held)?;
     let first = descend(mechanism, t, q, held);
     if !matches!(first, Err(ConstraintError::Configuration { .. })) {
         return first;

@@ -130,7 +130,8 @@ struct Engine {
 fn turns(length: f64) -> bool {
     let engine = Engine { length };
     let Ok(q) = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]) else { return false };
-    let Ok(v) = engine.project_velocity(&q, &[50.0, 0.0, 0.0].into()) else { return false };
+    let Ok(v) = engine.complete_velocity(&q, &[50.0, 0.0, 0.0].into(), &[0]) else { return false };
+    let Ok(v) = engine.project_velocity(&q, &v) else { return false };
     let (a, lambda) = engine.constrained_dynamics(&q, &v, &engine.generalized_forces(&q, &[3.0].into()));
     let Ok(linear) = engine.linearize(&q, &v, &[3.0].into(), &[0]) else { return false };
     let run = simulate(&engine).from(q, v).inputs(|_, _, _| [3.0].into()).duration(0.1);

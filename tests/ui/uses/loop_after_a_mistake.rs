@@ -30,6 +30,7 @@ fn main() {
     let slider = SliderCrank { r: 0.1, l: 0.3 };
     let q = slider.assemble(&SVector::from([0.3, -0.4, 0.4]), &[0]).unwrap();
     let v = slider.project_velocity(&q, &SVector::from([1.0, 0.0, 0.0])).unwrap();
+    let v = slider.complete_velocity(&q, &v, &[0]).unwrap();
     let (a, _) = slider.constrained_dynamics(&q, &v, &SVector::zeros());
     let rates = slider.constraint_rates(&q, &a);
     let load = slider.load(&q, &v, &SVector::from([0.0]));

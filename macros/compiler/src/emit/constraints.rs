@@ -130,9 +130,17 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::assemble(self, {any}, q, held)
+        }}
+        /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints; what these leave open is nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        pub fn complete_velocity(&self, {t}q: &{q}, v: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::complete_velocity(self, {any}, q, v, held)
         }}
         /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
         ///

@@ -1,0 +1,167 @@
+//! Completion of velocities: some entries are given, the others follow from the constraints.
+
+use super::{Constrained, ConstraintError, largest, near, rounding};
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::{SMatrix, SVector};
+
+/// How often what rounding has left of the rates is taken away.
+const MOST_STEPS: usize = 3;
+
+/// An error for the first of the indices `held` that is none of `NV` velocities.
+pub(super) fn check<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
+    let outside = held.iter().copied().find(|index| *index >= NV);
+    outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
+}
+
+/// The velocity with the entries `held` of `v` that fulfils the constraints.
+pub(super) fn complete<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    t: M::Scalar,
+    q: &SVector<M::Scalar, NQ>,
+    v: &SVector<M::Scalar, NV>,
+    held: &[usize],
+) -> Result<SVector<M::Scalar, NV>, ConstraintError>
+where
+    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
+{
+    check::<NV>(held)?;
+    let mut v = *v;
+    let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
+    for _ in 0..MOST_STEPS {
+        let rates = mechanism.constraint_rates(t, q, &v);
+        if largest(&rates)?.1 <= rounding(&v) {
+            return Ok(v);
+        }
+        v += correction(&mass, &jacobian, held, &rates);
+        largest(&v)?;
+    }
+    let (worst, size) = largest(&mechanism.constraint_rates(t, q, &v))?;
+    if near(size, &v) {
+        return Ok(v);
+    }
+    let constraint = M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+    Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
+}
+
+type Row<T, const N: usize> = [T; N];
+
+fn dot<T: Real, const N: usize>(a: &Row<T, N>, b: &Row<T, N>) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
+}
+
+/// `a + factor · b`.
+fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
+}
+
+/// Takes a direction of unit length out of rows; twice is enough (Björck, *Numerical Methods for Least Squares Problems*,
+/// 1996, § 2.4.5).
+fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], direction: &Row<T, N>) {
+    for row in rows {
+        for _ in 0..2 {
+            let along = dot(row, direction);
+            add(row, -along, direction);
+        }
+    }
+}
+
+/// The row that is largest by `size` among those that are not taken.
+fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) -> T) -> Option<(usize, T)> {
+    let mut best = None;
+    for k in (0..K).filter(|k| !taken[*k]) {
+        let size = size(k);
+        if best.is_none_or(|(_, most)| size > most) {
+            best = Some((k, size));
+        }
+    }
+    best
+}
+
+/// `x` with `J x = −gap` and zeros where velocities are held, of the least `xᵀ M x`.
+///
+/// By Gram–Schmidt over the rows of `J`, that one first which is most independent of those before it, and over what is
+/// left of the axes: a solution, and a basis of all motions in which the least is found. Rows that depend on others are left
+/// out; what they say follows, or cannot be. Coordinates are scaled by their inertia.
+fn correction<T: Real, const NV: usize, const NC: usize>(
+    mass: &SMatrix<T, NV, NV>,
+    jacobian: &SMatrix<T, NC, NV>,
+    held: &[usize],
+    gap: &SVector<T, NC>,
+) -> SVector<T, NV> {
+    let mass = mass.data.0;
+    let scale: Row<T, NV> = core::array::from_fn(|i| {
+        let own = mass[i][i];
+        if own > T::zero() { T::one() / own.sqrt() } else { T::one() }
+    });
+    let rows: [Row<T, NV>; NC] =
+        core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k] * scale[i]));
+    // How large a row is as long as nothing is held.
+    let reach: Row<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
+    let rows = rows.map(|row| core::array::from_fn(|i| if held.contains(&i) { T::zero() } else { row[i] }));
+    let mut axes: [Row<T, NV>; NV] = core::array::from_fn(|i| {
+        core::array::from_fn(|j| if i == j && !held.contains(&i) { T::one() } else { T::zero() })
+    });
+    let (mut rest, mut taken, mut y) = (rows, [false; NC], [T::zero(); NV]);
+    // What a velocity would be multiplied by beyond this is no answer.
+    let least = epsilon::<T>().powf(constant(4.0 / 3.0));
+    for _ in 0..NC {
+        let part =
+            |k: usize| if reach[k] > T::zero() { dot(&rest[k], &rest[k]) / reach[k] } else { T::zero() };
+        let Some((k, _)) = largest_row(&taken, part).filter(|(_, part)| *part > least) else { break };
+        taken[k] = true;
+        let size = dot(&rest[k], &rest[k]).sqrt();
+        let direction = rest[k].map(|x| x / size);
+        let missing = (-gap.data.0[0][k] - dot(&rows[k], &y)) / size;
+        add(&mut y, missing, &direction);
+        remove(&mut rest, &direction);
+        remove(&mut axes, &direction);
+    }
+    let scaled = |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
+    least_energy(&core::array::from_fn(scaled), axes, &mut y);
+    SVector::from_fn(|i, _| y[i] * scale[i])
+}
+
+/// Moves `y` along what the `axes` span to where `yᵀ M y` is least.
+fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T, N>; N], y: &mut Row<T, N>) {
+    // The longest remainder of an axis is at least as long as the mean.
+    let some = constant::<T>(0.5 / N.max(1) as f64);
+    let (mut basis, mut taken) = ([[T::zero(); N]; N], [false; N]);
+    for slot in &mut basis {
+        let square = |k: usize| dot(&axes[k], &axes[k]);
+        let Some((k, square)) = largest_row(&taken, square).filter(|(_, square)| *square > some) else {
+            break;
+        };
+        taken[k] = true;
+        *slot = axes[k].map(|x| x / square.sqrt());
+        remove(&mut axes, slot);
+    }
+    let heavy = basis.map(|b| core::array::from_fn(|i| dot(&mass[i], &b)));
+    let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
+    // A = L D Lᵀ. Where a motion has no inertia, what is there stays.
+    let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
+    let over = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
+    for i in 0..N {
+        for j in 0..=i {
+            let own = dot(&heavy[i], &basis[j]);
+            let left = (0..j).fold(own, |sum, k| sum - lower[i][k] * lower[j][k] * pivots[k]);
+            if i == j {
+                pivots[i] = left;
+            } else {
+                lower[i][j] = over(left, pivots[j]);
+            }
+        }
+        rest[i] = (0..i).fold(rest[i], |sum, k| sum - lower[i][k] * rest[k]);
+    }
+    for i in (0..N).rev() {
+        rest[i] = (i + 1..N).fold(over(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
+        add(y, rest[i], &basis[i]);
+    }
+}
