@@ -1,4 +1,5 @@
 mod exact;
+mod large;
 
 use super::*;
 use crate::arithmetic::Compiled as A;
