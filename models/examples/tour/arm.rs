@@ -328,6 +328,7 @@ fn scene(run: &Run) -> Scene {
         speed: 1.0,
         parts,
         frames: run.samples.iter().step_by(every).map(frame).collect(),
+        still: 4.4,
         captions: vec![(0, "drawing".into()), ((DRAWING * RATE) as usize, "at rest: load weighed".into())],
         guides: vec![guide.collect()],
         trail: Some((30, 90)),

@@ -180,6 +180,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         speed: 1.0,
         parts,
         frames: samples.iter().map(frame).collect(),
+        still: 4.6,
         captions: vec![
             (0, "pumping energy".into()),
             (at(caught), "caught: regulator holds".into()),

@@ -1,5 +1,8 @@
 // Plays the scenes of the page: points that move (x right, y away, z up), parts drawn between them from back to front.
 "use strict";
+// With `#picture` behind its address the page is a picture of the scenes, each at one instant.
+const still = location.hash === "#picture";
+document.documentElement.classList.toggle("picture", still);
 for (const figure of document.querySelectorAll(".scene")) play(figure);
 
 function play(figure) {
@@ -9,7 +12,9 @@ function play(figure) {
   const unpack = list => Array.from({ length: list.length / 3 }, (_, k) => [0, 1, 2].map(i => list[3 * k + i] / 1e5));
   const frames = scene.frames.map(unpack), guides = scene.guides.map(unpack);
   const last = frames.length - 1, pause = 1.2 * scene.rate * scene.speed;
-  let now = 0, yaw = scene.yaw, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, before = null, visible = true;
+  let now = still ? scene.still * scene.rate : 0, yaw = scene.yaw;
+  let playing = !still && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  let before = null, visible = true;
   button.textContent = playing ? "Pause" : "Play";
 
   button.onclick = () => { playing = !playing; button.textContent = playing ? "Pause" : "Play"; };
@@ -97,7 +102,7 @@ function play(figure) {
     for (const { part, seen, ends } of parts) paint(part, seen, ends);
 
     const caption = scene.captions.filter(c => c[0] <= at).pop();
-    if (caption) { pen.fillStyle = colour("soft"); pen.font = "13px system-ui, sans-serif"; pen.fillText(caption[1], 0, 16); }
+    if (caption && !still) { pen.fillStyle = colour("soft"); pen.font = "13px system-ui, sans-serif"; pen.fillText(caption[1], 0, 16); }
 
     function paint([kind, ...rest], seen, ends) {
       const tone = tones[rest[rest.length - 1]];

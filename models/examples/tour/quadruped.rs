@@ -232,6 +232,7 @@ fn scene(samples: &[Sample12]) -> Scene {
         speed: 0.25,
         parts,
         frames: samples.iter().map(frame).collect(),
+        still: 0.75,
         captions: vec![
             (0, "take-off".into()),
             (at(TUCKING[0]), "tucking: spins faster".into()),

@@ -18,6 +18,8 @@ pub struct Scene {
     pub parts: Vec<Part>,
     /// Where the points are, picture by picture.
     pub frames: Vec<Vec<Point>>,
+    /// The instant, s, that a picture that does not move shows.
+    pub still: f64,
     /// Words from a picture on.
     pub captions: Vec<(usize, String)>,
     /// Lines that do not move.
@@ -73,9 +75,10 @@ impl Scene {
     /// The scene for `player.js`. Points are in hundredths of millimetres.
     pub fn json(&self) -> String {
         let mut out = format!(
-            "{{\"rate\":{},\"speed\":{},\"target\":{:?},\"size\":{:?},\"yaw\":{},\"pitch\":{},\"turning\":{},",
+            "{{\"rate\":{},\"speed\":{},\"still\":{},\"target\":{:?},\"size\":{:?},\"yaw\":{},\"pitch\":{},\"turning\":{},",
             self.rate,
             self.speed,
+            self.still,
             self.view.target,
             self.view.size,
             self.view.yaw,

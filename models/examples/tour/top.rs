@@ -159,6 +159,7 @@ fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
         speed: 0.25,
         parts,
         frames: samples.iter().map(frame).collect(),
+        still: 1.2,
         captions: Vec::new(),
         guides: Vec::new(),
         trail: Some((2, 1000)),
