@@ -6,10 +6,60 @@ use std::path::PathBuf;
 
 /// Compiles a mechanism: derives the equations of motion of the struct below and implements them for it.
 ///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -g * y, derivatives)]
+/// #[derive(Clone, Copy, Debug)] // below the attribute
+/// pub struct Pendulum {
+///     pub g: f64,
+///     pub mass: f64,
+///     pub length: f64,
+///
+///     #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+///     rod: Body,
+///     #[joint(ground -> rod, about = z)]
+///     hinge: Pin,
+///     #[acts(on = hinge)]
+///     motor: Torque,
+/// }
+///
+/// let pendulum = Pendulum { g: 9.81, mass: 2.0, length: 1.5 };
+/// let (q, v, u) = ([0.5].into(), [0.0].into(), [0.0].into());
+///
+/// // A method that every mechanism has …
+/// let a = pendulum.forward_dynamics(&q, &v, &u);
+/// assert!((a[0] + 1.5 * 9.81 / 1.5 * 0.5_f64.sin()).abs() < 1e-12);
+///
+/// // … and one that `derivatives` asks for: ẋ = A x + B u.
+/// let (by_state, _by_input) = pendulum.linearize(&q, &v, &u);
+/// assert!((by_state[(1, 0)] + 1.5 * 9.81 / 1.5 * 0.5_f64.cos()).abs() < 1e-12);
+/// ```
+///
 /// The struct's fields are parameters (`f64`, `f32` or the struct's own type parameter), which stay, and elements
 /// (`linkwork::elements`), which say what the mechanism is made of and leave no trace in memory. The generated methods,
 /// their shapes, units and conventions are those of the trait `linkwork::Mechanism` (`linkwork::Rheonomic` if something
-/// depends on time) and stand in the rustdoc of the struct.
+/// depends on time) and stand in the rustdoc of the struct. The guide, `linkwork::guide`, explains everything from the
+/// beginning.
+///
+/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its elements. In the
+/// other order they see fields of types that have no values, and rustc reports several errors for each.
+///
+/// **Mistakes** are compile errors at the token, all of them at once; those of a file carry its line and column.
+///
+/// # A robot from a file
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// /// The path is relative to the crate's `Cargo.toml`.
+/// #[mechanism(urdf = "../models/urdf/ur5.urdf", batch)]
+/// pub struct Ur5;
+///
+/// assert_eq!((Ur5::NV, Ur5::INPUTS[0]), (6, "shoulder_pan_joint"));
+/// ```
+///
+/// # Arguments
 ///
 /// | argument | says |
 /// | --- | --- |
@@ -24,7 +74,7 @@ use std::path::PathBuf;
 /// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | generates every function of the state for several states at once too |
 /// | `formulation = multipliers` or `speeds` | how constraints are solved: by their forces, or by independent speeds (Kane); multipliers if not given |
-/// | `independent = [velocity, …]` | the speeds that stay, of `formulation = speeds`; chosen if not given |
+/// | `independent = (velocity, …)` | the speeds that stay, of `formulation = speeds`; chosen if not given |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
@@ -37,7 +87,40 @@ use std::path::PathBuf;
 ///
 /// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`.
 ///
-/// Mistakes are compile errors at the token, all of them at once; those of a file carry its line and column.
+/// # A closed loop in independent speeds
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// /// A four-bar linkage, solved in the speed of its crank.
+/// #[mechanism(gravity = -9.81 * y, formulation = speeds, independent = (first))]
+/// pub struct FourBar {
+///     #[body(mass = 1, com = 0.4 * x, inertia = rod(1, 0.8, x))]
+///     crank: Body,
+///     #[body(mass = 2, com = 0.95 * x, inertia = rod(2, 1.9, x))]
+///     coupler: Body,
+///     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+///     rocker: Body,
+///     #[joint(ground -> crank, about = z)]
+///     first: Pin,
+///     #[joint(crank.at(0.8 * x) -> coupler, about = z)]
+///     second: Pin,
+///     #[joint(ground.at(2 * x) -> rocker, about = z)]
+///     third: Pin,
+///     #[joint(rocker.at(x) -> coupler.at(1.9 * x), about = z)]
+///     closing: Pin,
+/// }
+///
+/// # fn main() -> Result<(), ConstraintError> {
+/// let linkage = FourBar {};
+/// let q = linkage.assemble(&[1.2, -1.0, 1.4].into(), &[0])?;
+/// let v = linkage.project_velocity(&q, &[2.0, 0.0, 0.0].into())?;
+/// let a = linkage.forward_dynamics(&q, &v, &SVector::zeros());
+/// let closed = linkage.constraint_jacobian(&q) * a + linkage.constraint_bias(&q, &v);
+/// assert!(closed.amax() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
