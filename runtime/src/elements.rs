@@ -1,26 +1,46 @@
-//! The words of the language: the types of the fields of a `#[mechanism]` struct.
+//! Bodies, joints and forces: the types of the fields of a `#[mechanism]` struct.
 //!
-//! A field's type says what it is, its attribute how it is placed; see [`mechanism`](macro@crate::mechanism) for the whole.
-//! The compiler reads these types and removes the fields, so values of them do not exist.
+//! A field's type says what it is, its attribute how it is placed; [`mechanism`](macro@crate::mechanism) shows an example.
+//! The compiler reads these types and removes the fields: there are no values of them.
 //!
-//! In the attributes, vectors are written with the axes `x`, `y`, `z` of the frame at hand (the body's own in
-//! `#[body(…)]` and `.at(…)`, the parent's for a joint's axis, the ground's for gravity), or of another one:
-//! `cart.x`. Endpoints of joints and force elements are bodies, `ground`, or points and orientations fixed in them:
-//! `body.at(l / 2 * y)`, `body.at(l * x).rotated(z(angle), x(tilt))`, the rotations in order about carried axes.
-//! Units are SI, angles in radians.
+//! | | |
+//! | --- | --- |
+//! | bodies | [`Body`], [`Particle`] |
+//! | joints with one degree of freedom | [`Pin`] (revolute), [`Sleeve`] (prismatic), [`Screw`] (helical) |
+//! | with two | [`Collar`] (cylindrical), [`Slot`], [`Universal`], [`Stage`] |
+//! | with three | [`Ball`] (spherical), [`Planar`], [`Stage`] |
+//! | with six, with none | [`Free`] (floating), [`Weld`] (fixed) |
+//! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
+//! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
+//! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |
+//! | places | [`Point`], [`Frame`], [`Coordinate`] |
+//! | expressions | [`Scalar`], [`Vector`], [`Potential`], [`Rayleigh`] |
 //!
-//! A joint holds its child. Where an earlier joint does that already, it closes a loop: it has no coordinate, and its
-//! constraints are kept by multipliers, or with `#[mechanism(formulation = speeds)]` (or `independent = (joint, …)`) by
+//! # Vectors and places
+//!
+//! In the attributes, vectors are written with the axes `x`, `y`, `z` of the frame that the attribute belongs to: the
+//! body's own in `#[body(…)]` and `.at(…)`, the parent's for a joint's axis, the ground's for gravity. `cart.x` is an axis
+//! of `cart`. Joints and force elements are attached to bodies, to the `ground`, or to places on them:
+//! `body.at(l / 2 * y)`, or with axes of its own `body.at(l * x).rotated(z(angle), x(tilt))`; rotations are carried out in
+//! order, each about an axis that the earlier ones have turned.
+//!
+//! # Joints
+//!
+//! A joint carries its child. A joint to a body that another one carries already closes a loop: it has no coordinate, and its
+//! constraints are solved with multipliers, or with `#[mechanism(formulation = speeds)]` (or `independent = (joint, …)`) in
 //! independent speeds. In a plane, a Pin that closes a loop between two bodies on Pins, or on a Pin and a Sleeve, may
-//! say `branch = 1` or `branch = -1`: then their coordinates are solved for in closed form and drop out.
+//! say `branch = 1` or `branch = -1`: then its loop is solved in closed form, and the dependent coordinates drop out.
 //! `reaction_force(joint)` and `reaction_torque(joint)` in an output are what the joint's parent exerts on its child.
 //!
-//! Units are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes `l` a length, and a parameter that would have
-//! to be two things at once is a compile error. A number has any unit: `-9.81 * y` is an acceleration, `l + 0.1` a
-//! length; but ½, 2 or π beside a parameter are plain numbers, and an expression without parameters is held to nothing.
-//! `#[unit(N * m / rad)]` on a parameter says its unit where nothing else does. The struct's documentation lists all.
+//! # Units
+//!
+//! Units are SI, angles in radians. Units of parameters are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes
+//! `l` a length, and a parameter that would have to be two things at once is a compile error. A number has any unit:
+//! `-9.81 * y` is an acceleration, `l + 0.1` a length. But ½, 2 or π beside a parameter are plain factors, and an expression
+//! without parameters is held to nothing. `#[unit(N * m / rad)]` on a parameter says its unit where nothing else does. The
+//! struct's documentation lists all.
 
-/// A rigid body.
+/// Rigid body (link).
 ///
 /// `#[body(mass = m, com = vector, inertia = …)]`: mass, kg; centre of mass in the body's frame, m, its origin if
 /// not given; inertia about the centre of mass in the body's axes, kg·m², none if not given. The inertia is
@@ -32,94 +52,126 @@
 /// - any of these `.rotated(z(angle), …)`.
 ///
 /// The body's frame is placed by the joint that carries it; without one by `at = vector` and `frame = f`, expressions of
-/// coordinates and time; `massive` beside them says that it moves so whatever its mass, which is not asked for. Also called
-/// link.
+/// coordinates and time; `massive` beside them says that it moves so whatever its mass, which is not asked for.
+///
+/// Errors: an inertia that no body can have (a principal moment that is negative or larger than the sum of the others) does
+/// not compile if it is given by numbers; a body that nothing carries does not either.
+#[doc(alias = "link")]
+#[doc(alias = "inertia")]
 pub enum Body {}
 
-/// A particle: a mass at a point, without extent.
+/// Point mass: a mass at a point, without extent.
 ///
 /// `#[particle(mass = m, at = body.at(vector))]`: mass, kg, and the point that carries it, m. It adds its mass and
-/// inertia to the body and brings no degree of freedom. Also called point mass.
+/// inertia to the body and brings no degree of freedom. With a joint, `#[joint(ground -> bob, …)]`, it is carried by that
+/// instead of `at`.
+#[doc(alias = "point mass")]
 pub enum Particle {}
 
-/// A joint about one axis: one degree of freedom.
+/// Revolute joint (hinge) about one axis: one degree of freedom.
 ///
 /// `#[joint(parent -> child, about = z)]`: the child turns about the axis, given in the parent's frame, through the
 /// origins of both endpoints. The coordinate has the joint's name: the angle, rad; its velocity is the rate, rad/s,
-/// positive by the right-hand rule. At zero both frames agree. Also called revolute, hinge or continuous joint.
+/// positive by the right-hand rule. At zero both frames agree. Its generalized force is the torque about the axis, N·m. In URDF
+/// files: `revolute` and `continuous`.
+#[doc(alias = "revolute")]
+#[doc(alias = "hinge")]
+#[doc(alias = "continuous")]
 pub enum Pin {}
 
-/// A joint along one axis: one degree of freedom.
+/// Prismatic joint (slider) along one axis: one degree of freedom.
 ///
 /// `#[joint(parent -> child, along = x)]`: the child moves along the axis, given in the parent's frame, without
-/// turning. The coordinate has the joint's name: the displacement, m; its velocity, m/s. Also called prismatic or
-/// sliding joint, or slider.
+/// turning. The coordinate has the joint's name: the displacement, m; its velocity, m/s. Its generalized force is the force
+/// along the axis, N. In URDF files: `prismatic`.
+#[doc(alias = "prismatic")]
+#[doc(alias = "slider")]
+#[doc(alias = "sliding")]
 pub enum Sleeve {}
 
-/// A screw joint: one degree of freedom.
+/// Helical joint (screw): one degree of freedom.
 ///
 /// `#[joint(parent -> child, about = z, lead = d)]`: the child turns about the axis and advances along it by `lead`
 /// per turn, m, or by `pitch` per radian, m/rad; give one of the two, negative for a left-hand thread. The
-/// coordinate has the joint's name: the angle, rad; its velocity, rad/s. Also called helical joint.
+/// coordinate has the joint's name: the angle, rad; its velocity, rad/s. Its generalized force is torque about the axis plus
+/// pitch times force along it, N·m.
+#[doc(alias = "helical")]
 pub enum Screw {}
 
-/// A joint along and about the same axis: two degrees of freedom.
+/// Cylindrical joint, along and about one axis: two degrees of freedom.
 ///
 /// `#[joint(parent -> child, along = z)]`: the child slides along the axis and turns about it. Coordinates
-/// `joint.slide`, m, and `joint.turn`, rad; velocities m/s and rad/s. Also called cylindrical joint.
+/// `joint.slide`, m, and `joint.turn`, rad; velocities m/s and rad/s.
+#[doc(alias = "cylindrical")]
 pub enum Collar {}
 
-/// A pin in a slot: two degrees of freedom.
+/// Pin in a slot (half joint): two degrees of freedom.
 ///
 /// `#[joint(parent -> child, along = x, about = z)]`: the child slides along one axis of the parent and turns about
 /// another, perpendicular one that slides along. Coordinates `joint.slide`, m, and `joint.turn`, rad; velocities m/s
-/// and rad/s. Also called pin-in-slot joint; in the plane, a half joint.
+/// and rad/s.
+#[doc(alias = "half joint")]
+#[doc(alias = "pin in slot")]
 pub enum Slot {}
 
-/// A universal joint: two degrees of freedom.
+/// Universal joint (Cardan, Hooke): two degrees of freedom.
 ///
 /// `#[joint(parent -> child, about = (x, y))]`: the child turns about the first axis, fixed in the parent, then about
 /// the second, carried by the first; the axes are perpendicular and intersect. Coordinates `joint.first` and
-/// `joint.second`, rad; velocities are their rates, rad/s. Also called Cardan or Hooke's joint.
+/// `joint.second`, rad; velocities are their rates, rad/s.
+#[doc(alias = "Cardan")]
+#[doc(alias = "Hooke")]
 pub enum Universal {}
 
-/// A joint about a point: three degrees of freedom.
+/// Spherical joint (ball and socket) about a point: three degrees of freedom.
 ///
 /// `#[joint(parent -> child)]`: the origins of the endpoints coincide and the child turns freely. Configuration
 /// `joint.qx`, `.qy`, `.qz`, `.qw`: the unit quaternion that turns child components into parent components. Velocity
 /// `joint.wx`, `.wy`, `.wz`: the child's angular velocity relative to the parent, resolved in the child, rad/s, so
-/// that NQ is one more than NV. Also called spherical joint or ball-and-socket.
+/// that NQ is one more than NV. Generalized forces are the torque on the child, resolved in the child, N·m.
+#[doc(alias = "spherical")]
+#[doc(alias = "ball and socket")]
+#[doc(alias = "quaternion")]
 pub enum Ball {}
 
-/// A joint in a plane: three degrees of freedom.
+/// Planar joint: two displacements and a turn in a plane, three degrees of freedom.
 ///
 /// `#[joint(parent -> child, about = z)]`: the child slides in the plane perpendicular to the axis and turns about
 /// it; or `along = (x, y)` names the two directions in the plane. Coordinates `joint.x` and `joint.y`, m, along the
 /// parent's axes, and `joint.angle`, rad; velocities are their rates, m/s and rad/s.
+#[doc(alias = "dual sleeve-pin")]
 pub enum Planar {}
 
-/// Displacement along two or three axes, without turning: two or three degrees of freedom.
+/// Cartesian joint (gantry), along two or three axes without turning: two or three degrees of freedom.
 ///
 /// `#[joint(parent -> child, along = (x, y))]` or `along = (x, y, z)`. Coordinates `joint.x`, `joint.y` (and
-/// `joint.z`), m, along the given axes of the parent; velocities are their rates, m/s. Also called Cartesian or
-/// gantry joint, or translational joint.
+/// `joint.z`), m, along the given axes of the parent; velocities are their rates, m/s.
+#[doc(alias = "Cartesian")]
+#[doc(alias = "gantry")]
+#[doc(alias = "translational")]
 pub enum Stage {}
 
-/// No constraint between two bodies: six degrees of freedom.
+/// Floating joint: no constraint between two bodies, six degrees of freedom.
 ///
 /// `#[joint(ground -> body)]`. Configuration `joint.x`, `.y`, `.z`: the position in the parent's frame, m, then
 /// `joint.qx`, `.qy`, `.qz`, `.qw`: the unit quaternion that turns child components into parent components. Velocity
 /// `joint.vx`, `.vy`, `.vz`, m/s, then `joint.wx`, `.wy`, `.wz`, rad/s: linear velocity of the child's origin and
-/// angular velocity relative to the parent, both resolved in the child. Also called free-flyer or floating joint.
+/// angular velocity relative to the parent, both resolved in the child. Generalized forces are force (N) and torque (N·m) on
+/// the child at its origin, resolved in the child. In URDF files: `floating`, or the option `base = free`.
+#[doc(alias = "floating")]
+#[doc(alias = "free-flyer")]
+#[doc(alias = "floating base")]
+#[doc(alias = "quaternion")]
 pub enum Free {}
 
-/// A rigid connection: no degree of freedom.
+/// Fixed joint, a rigid connection: no degree of freedom.
 ///
 /// `#[joint(parent.at(vector).rotated(z(angle)) -> child)]`: the frames of both endpoints coincide, so the child's
-/// mass and inertia add to the parent's. Also called fixed joint.
+/// mass and inertia add to the parent's.
+#[doc(alias = "fixed")]
 pub enum Weld {}
 
-/// A spring.
+/// Spring, linear or by any law, on a coordinate or between two points.
 ///
 /// `#[acts(on = joint, stiffness = k, free_length = l0)]` on one coordinate of a joint: force `−k (q − l0)`. The
 /// stiffness is in N/m along a [`Sleeve`], in N·m/rad about a [`Pin`], where the free length is `free_angle = a0`;
@@ -130,49 +182,66 @@ pub enum Weld {}
 /// direction and is zero. Conservative.
 pub enum Spring {}
 
-/// A damper.
+/// Damper (viscous friction) on a coordinate or between two points.
 ///
 /// `#[acts(on = joint, damping = c)]` on one coordinate of a joint: force `−c v`, with `c` in N·s/m along a
 /// [`Sleeve`], in N·m·s/rad about a [`Pin`]. One coordinate of a larger joint is named: `on = collar.turn`.
 /// `#[acts(between = (a, b), damping = c)]` between two points of bodies: it resists the rate of their distance. Instead
-/// of `damping` any law `force = …` of `speed`. Dissipative. Also called viscous friction.
+/// of `damping` any law `force = …` of `speed`. Dissipative.
+#[doc(alias = "damper")]
+#[doc(alias = "viscous")]
+#[doc(alias = "damping")]
 pub enum Dashpot {}
 
-/// An inerter: a force in proportion to the relative acceleration of its ends, by `inertance = b`, kg (on an angle
-/// kg·m²).
+/// Inerter: a force in proportion to the relative acceleration of its ends; also the rotor of a geared motor.
 ///
+/// `inertance = b`, kg, on an angle kg·m²: the force `−b v̇` on a coordinate, or along the distance of two points.
 /// `#[acts(on = joint, inertance = b)]` on a coordinate: `b` adds to its entry of the mass matrix. A motor's rotor behind
 /// a gear is `inertance = rotor_inertia * ratio * ratio`. `#[acts(between = (a, b), inertance = b)]` between two points
 /// of bodies. Stores the kinetic energy `½ b v²`. Source: Smith, *Synthesis of Mechanical Networks: The Inerter* (2002).
+#[doc(alias = "rotor inertia")]
+#[doc(alias = "reflected inertia")]
+#[doc(alias = "armature")]
 pub enum Inerter {}
 
-/// A force from outside: an input, one entry of `u`, N.
+/// Force (actuator, thruster) from outside: an input, one entry of `u`, N; or a force with a given value.
 ///
 /// - `#[acts(on = sleeve)]`: along a joint's coordinate, on the child, and opposite on the parent.
 /// - `#[acts(on = body.at(point), along = direction)]`: at a point of a body (its origin if none is named) along a
 ///   unit vector.
 ///
 /// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
-/// scalar on a coordinate, a vector on a body or point. Also called actuator or thruster.
+/// scalar on a coordinate, a vector on a body or point.
+#[doc(alias = "actuator")]
+#[doc(alias = "thruster")]
+#[doc(alias = "input")]
 pub enum Force {}
 
-/// A torque from outside: an input, one entry of `u`, N·m.
+/// Torque (motor, couple) from outside: an input, one entry of `u`, N·m; or a torque with a given value.
 ///
 /// - `#[acts(on = pin)]`: about a joint's axis, on the child, and opposite on the parent: a motor.
 /// - `#[acts(on = body, about = direction)]`: on a body about a unit vector.
 ///
 /// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
-/// scalar on a coordinate, a vector on a body. Also called motor or couple.
+/// scalar on a coordinate, a vector on a body.
+#[doc(alias = "motor")]
+#[doc(alias = "couple")]
+#[doc(alias = "input")]
 pub enum Torque {}
 
-/// Dry and viscous friction on a coordinate.
+/// Dry (Coulomb, Stribeck) and viscous friction on a coordinate.
 ///
 /// `#[acts(on = joint, coulomb = fc, stiction = fs, stribeck_speed = vs, viscous = c, speed = v0)]`: the force
 /// `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v` against the rate `v`; N, on an angle N·m. Only `coulomb` must be
 /// given; `speed` is the regularisation, 0.01 m/s or rad/s if not given. Dissipative.
+#[doc(alias = "Coulomb")]
+#[doc(alias = "Stribeck")]
+#[doc(alias = "stiction")]
 pub enum Friction {}
 
-/// Attraction of masses. Uniform gravity is `#[mechanism(gravity = …)]` instead.
+/// Attraction of masses, as of planets.
+///
+/// Uniform gravity is an argument of the attribute instead: `#[mechanism(gravity = -9.81 * y)]`.
 ///
 /// - `#[acts(between = (a, b), constant = G)]`: between two particles or bodies, with `G` in m³/(kg·s²).
 /// - `#[acts(between = (center, body), mu = mu)]`: towards a point, with the gravitational parameter in m³/s².
@@ -188,14 +257,18 @@ pub enum Gravity {}
 /// Infinite where they meet.
 pub enum Attraction {}
 
-/// A generalized coordinate of its own: a field `theta: Coordinate` without attribute. Frames, points, particles and
+/// Generalized coordinate that belongs to no joint.
+///
+/// A field `theta: Coordinate` without attribute. Frames, points, particles and
 /// bodies may be placed by expressions of it; its rate is `rate(theta)`. Its unit follows from its use.
 pub enum Coordinate {}
 
-/// An entry of `u` of its own: a field `elevator: Input` without attribute, for use in the values of forces and torques.
+/// Input for use in expressions: one entry of `u`.
+///
+/// A field `elevator: Input` without attribute, for use in the values of forces and torques. Its unit follows from its use.
 pub enum Input {}
 
-/// A frame: axes without a place.
+/// Axes without a place, turned by expressions.
 ///
 /// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or `ground`
 /// and turns about carried axes, by expressions of coordinates, parameters and time. `name.x` is one of its axes.
@@ -203,32 +276,43 @@ pub enum Input {}
 /// singular there, and accelerations are not finite.
 pub enum Frame {}
 
-/// A point.
+/// Point on a body, or placed by an expression.
 ///
 /// `#[point(on = body, at = vector)]`: fixed in a body, or at a vector from another point; without `on`, from the ground's
 /// origin. The vector may contain coordinates and time. Joints and force elements may act there, and it has a
 /// placement, velocity and Jacobian under its name. Its axes are those of what it is placed from.
 pub enum Point {}
 
-/// A potential energy given as an expression of coordinates and time, `#[energy(k / 2 * theta * theta)]`, J.
+/// Potential energy given as an expression.
+///
+/// `#[energy(k / 2 * theta * theta)]`, J: an expression of coordinates and time. Its derivatives by the coordinates, with
+/// opposite sign, are the forces.
 pub enum Potential {}
 
-/// A Rayleigh dissipation function `R` given as an expression of coordinates and rates, `#[dissipation(…)]`, W: its
-/// derivatives by the velocities resist the motion. A quadratic one dissipates `2 R`.
+/// Rayleigh dissipation function given as an expression.
+///
+/// `#[dissipation(c / 2 * rate(theta) * rate(theta))]`, W: an expression `R` of coordinates and rates, whose derivatives by
+/// the velocities resist the motion. A quadratic one dissipates `2 R`.
+#[doc(alias = "dissipation")]
 pub enum Rayleigh {}
 
-/// A constraint on configurations: an expression of coordinates and time that stays zero, `#[constraint(expression)]`, or
+/// Constraint on coordinates.
+///
+/// An expression of coordinates and time that stays zero, `#[constraint(expression)]`, or
 /// two that stay equal, `#[constraint(norm(r(tip / base)) = length)]`. Scalars or vectors: rods, gears
 /// (`#[constraint(small = -ratio * large)]`), points on curves and surfaces.
 ///
 /// A joint whose child has its place already closes a loop and needs no constraint of this kind.
 pub enum Holonomic {}
 
-/// A constraint on velocities: an expression, linear in them, that stays zero, or two that stay equal:
+/// Constraint on velocities, such as of a skate or a knife edge.
+///
+/// An expression, linear in the velocities, that stays zero, or two that stay equal:
 /// `#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]`. Terms of coordinates and time alone may be added.
 pub enum Nonholonomic {}
 
-/// A pair of surfaces that touch and roll on each other without slip:
+/// Rolling without slip of two surfaces that touch.
+///
 /// `#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]`.
 ///
 /// A surface belongs to a body or to one of its points, `body.at(vector).plane(normal)`, which is its centre, its apex or a
@@ -266,7 +350,8 @@ pub enum Nonholonomic {}
 /// negative and bodies would part.
 pub enum Rolling {}
 
-/// A pair of surfaces that touch and slip on each other with dry friction:
+/// Sliding with dry friction of two surfaces that touch.
+///
 /// `#[constraint(slips(ball.sphere(radius), lane.plane(z)), friction = mu, speed = v0)]`.
 ///
 /// The surfaces are those of [`Rolling`] that touch at a point, and are held together in the same way: the one
@@ -283,11 +368,15 @@ pub enum Rolling {}
 /// `dissipated_power`, which does not know the multipliers.
 pub enum Slipping {}
 
-/// A scalar expression with a name. `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
+/// Scalar expression with a name.
+///
+/// `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
 /// that name, with `name_jacobian`, its derivatives by the velocities (those of its rate if it contains none).
 pub enum Scalar {}
 
-/// A physical vector with a name. `#[define(…)]`: for use in other expressions. `#[output(…, resolved_in = frame)]`: a
+/// Vector expression with a name.
+///
+/// `#[define(…)]`: for use in other expressions. `#[output(…, resolved_in = frame)]`: a
 /// generated function of that name, its components in the axes of a body or frame (the ground's if not given), with
 /// `name_jacobian`.
 pub enum Vector {}
