@@ -1,7 +1,7 @@
 //! Differentiation with respect to a symbol, or along a direction in the space of several.
 
 use super::node::{Extreme, Function, Id, Node, Symbol};
-use super::{Expr, Graph};
+use super::{Expr, Graph, Memo};
 
 /// Added to a length before it divides: too small to matter, large enough for `f32`.
 pub const TINY: f64 = 1e-37;
@@ -11,8 +11,8 @@ pub struct Derivative<'g> {
     graph: &'g Graph,
     /// Rates of the symbols; those of all others are zero.
     rates: Vec<(Symbol, Expr<'g>)>,
-    /// By node; `None` where not yet known.
-    known: Vec<Option<Id>>,
+    /// By node.
+    known: Memo<'g>,
 }
 
 impl<'g> Derivative<'g> {
@@ -23,27 +23,27 @@ impl<'g> Derivative<'g> {
 
     /// Derivatives where the symbols change with the given rates, all others not at all.
     pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
-        Derivative { graph, rates, known: Vec::new() }
+        Derivative { graph, rates, known: Memo::new(graph) }
     }
 
     /// The derivative of `e`.
     pub fn of(&mut self, e: Expr<'g>) -> Expr<'g> {
-        self.known.resize(self.known.len().max(e.id() as usize + 1), None);
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
         while let Some(&id) = todo.last() {
-            if self.known[id as usize].is_some() {
+            if self.known.get(id).is_some() {
                 todo.pop();
                 continue;
             }
             let before = todo.len();
             self.graph.node(id).operands(|a| {
-                if self.known[a as usize].is_none() {
+                if self.known.get(a).is_none() {
                     todo.push(a);
                 }
             });
             if todo.len() == before {
-                self.known[id as usize] = Some(self.rule(id).id());
+                let derivative = self.rule(id).id();
+                self.known.set(id, derivative);
                 todo.pop();
             }
         }
@@ -51,7 +51,7 @@ impl<'g> Derivative<'g> {
     }
 
     fn derived(&self, id: Id) -> Expr<'g> {
-        self.known[id as usize].map_or(self.graph.zero(), |d| self.graph.expr(d))
+        self.known.get(id).map_or(self.graph.zero(), |d| self.graph.expr(d))
     }
 
     fn rule(&self, id: Id) -> Expr<'g> {

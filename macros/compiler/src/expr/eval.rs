@@ -2,7 +2,7 @@
 
 use super::lanes::MOST;
 use super::node::{Id, Node, Symbol};
-use super::{Expr, Graph};
+use super::{Expr, Graph, Memo};
 
 /// The values of several expressions of one graph, given the value of every symbol.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
@@ -31,20 +31,18 @@ impl<'g> Tape<'g> {
         let mut tape = Tape { graph: None, steps: Vec::new(), roots: Vec::new(), in_lanes: false };
         let Some(first) = roots.first() else { return tape };
         let graph = first.graph();
-        let nodes = graph.nodes();
-        let needed = needed(&nodes, roots);
-        let mut places = vec![0; nodes.len()];
-        for id in (0..nodes.len()).filter(|id| needed[*id]) {
-            let (mut operands, mut count) = ([0; 2], 0);
-            nodes[id].operands(|a| {
-                operands[count] = places[a as usize];
+        let mut places = Memo::new(graph);
+        for id in needed(graph, roots) {
+            let (node, mut operands, mut count) = (graph.node(id), [0; 2], 0);
+            node.operands(|a| {
+                operands[count] = places.get(a).unwrap_or(0);
                 count += 1;
             });
-            places[id] = tape.steps.len() as u32;
-            tape.in_lanes |= is_of_lanes(nodes[id]);
-            tape.steps.push((nodes[id], operands));
+            places.set(id, tape.steps.len() as u32);
+            tape.in_lanes |= is_of_lanes(node);
+            tape.steps.push((node, operands));
         }
-        tape.roots = roots.iter().map(|r| places[r.id() as usize]).collect();
+        tape.roots = roots.iter().map(|r| places.get(r.id()).unwrap_or(0)).collect();
         tape.graph = Some(graph);
         tape
     }
@@ -86,15 +84,20 @@ impl<'g> Tape<'g> {
     }
 }
 
-/// Which nodes the expressions depend on, by their numbers.
-fn needed(nodes: &[Node], roots: &[Expr<'_>]) -> Vec<bool> {
-    let mut needed = vec![false; nodes.len()];
+/// The nodes that the expressions depend on, operands first.
+pub fn needed(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
+    let mut seen = Memo::new(graph);
+    let mut needed = Vec::new();
     let mut todo: Vec<Id> = roots.iter().map(|r| r.id()).collect();
     while let Some(id) = todo.pop() {
-        if !std::mem::replace(&mut needed[id as usize], true) {
-            nodes[id as usize].operands(|a| todo.push(a));
+        if seen.get(id).is_none() {
+            seen.set(id, 0);
+            needed.push(id);
+            graph.node(id).operands(|a| todo.push(a));
         }
     }
+    // Operands are made before operations.
+    needed.sort_unstable();
     needed
 }
 

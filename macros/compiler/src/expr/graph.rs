@@ -62,6 +62,8 @@ pub struct Graph {
     store: RefCell<Store>,
     /// A number for every node, zero between uses.
     table: RefCell<Vec<u32>>,
+    /// Tables of zeros that are not in use, see [`Memo`](super::Memo).
+    tables: RefCell<Vec<Vec<u32>>>,
     /// What the lanes of nodes hold.
     pub(super) lanes: RefCell<Tables>,
 }
@@ -87,7 +89,12 @@ impl Graph {
         let mut store = Store { nodes: Vec::new(), table: vec![EMPTY; 1024] };
         store.intern(Node::Const(0.0));
         store.intern(Node::Const(1.0));
-        Graph { store: RefCell::new(store), table: RefCell::default(), lanes: RefCell::default() }
+        Graph {
+            store: RefCell::new(store),
+            table: RefCell::default(),
+            tables: RefCell::default(),
+            lanes: RefCell::default(),
+        }
     }
 
     /// Number of nodes made so far.
@@ -115,6 +122,16 @@ impl Graph {
         let mut table = self.table.borrow_mut();
         table.resize(self.len(), 0);
         table
+    }
+
+    /// A table of zeros, of any length.
+    pub(super) fn take_table(&self) -> Vec<u32> {
+        self.tables.borrow_mut().pop().unwrap_or_default()
+    }
+
+    /// Keeps a table that has zeros alone again.
+    pub(super) fn keep_table(&self, table: Vec<u32>) {
+        self.tables.borrow_mut().push(table);
     }
 
     /// The expression with an id.

@@ -1,7 +1,7 @@
 //! Replacement of symbols by expressions.
 
 use super::node::{Id, Node, Symbol};
-use super::{Expr, Graph};
+use super::{Expr, Graph, Memo};
 
 /// An expression with symbols replaced where `by` says so.
 pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
@@ -10,45 +10,42 @@ pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr
 
 /// Expressions with symbols replaced where `by` says so.
 pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
-    let size = e.iter().map(|e| e.id() as usize + 1).max().unwrap_or(0);
-    let mut known: Vec<Option<Id>> = vec![None; size];
+    let Some(first) = e.first() else { return Vec::new() };
+    let mut known = Memo::new(first.graph());
     e.iter().map(|e| replace_one(*e, &mut known, by)).collect()
 }
 
-fn replace_one<'g>(
-    e: Expr<'g>,
-    known: &mut [Option<Id>],
-    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
-) -> Expr<'g> {
+fn replace_one<'g>(e: Expr<'g>, known: &mut Memo<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
     let graph = e.graph();
     // Operands before operations, without recursion.
     let mut todo = vec![e.id()];
     while let Some(&id) = todo.last() {
-        if known[id as usize].is_some() {
+        if known.get(id).is_some() {
             todo.pop();
             continue;
         }
         let before = todo.len();
         graph.node(id).operands(|a| {
-            if known[a as usize].is_none() {
+            if known.get(a).is_none() {
                 todo.push(a);
             }
         });
         if todo.len() == before {
-            known[id as usize] = Some(rebuilt(graph, id, known, by).id());
+            let new = rebuilt(graph, id, known, by).id();
+            known.set(id, new);
             todo.pop();
         }
     }
-    known[e.id() as usize].map_or(e, |id| graph.expr(id))
+    known.get(e.id()).map_or(e, |id| graph.expr(id))
 }
 
 fn rebuilt<'g>(
     graph: &'g Graph,
     id: Id,
-    known: &[Option<Id>],
+    known: &Memo<'g>,
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
 ) -> Expr<'g> {
-    let at = |a: Id| graph.expr(known[a as usize].unwrap_or(a));
+    let at = |a: Id| graph.expr(known.get(a).unwrap_or(a));
     match graph.node(id) {
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
         Node::Sum(n, a) => at(a).lane_sum(n.into()),

@@ -1,7 +1,7 @@
 //! Generalized forces of the inputs: by virtual work, `τ = Σ Sᵀ W` over the links that a wrench's link hangs from.
 
 use super::Spatial;
-use super::kinematics::{Joint, change_axes, velocity_gradient};
+use super::kinematics::{Joint, change_axes};
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Vec3};
 use crate::model::{Direction, Input, LinkId, Model, Quantity};
@@ -32,7 +32,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         let alone = replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
-            for (k, d) in velocity_gradient(load.rate) {
+            for (k, d) in model.gradients.by_velocity(load.rate) {
                 tau[k] += by_inputs * d;
             }
         }

@@ -1,6 +1,7 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
 use super::embed;
+use super::gradients::Gradients;
 use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
 use super::masses::MassProperties;
@@ -152,6 +153,7 @@ fn empty_model<'g>(
         time: false,
         velocity_inputs: false,
         charts: Vec::new(),
+        gradients: Gradients::default(),
         configuration: Vec::new(),
         velocities: Vec::new(),
         inputs: Vec::new(),

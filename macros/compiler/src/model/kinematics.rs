@@ -3,6 +3,7 @@
 
 use super::{Chart, Coordinate, Inertia, LinkId, Model, Motion, Quantity};
 use crate::expr::diff::Derivative;
+use crate::expr::eval::needed;
 use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
 
 /// A spatial vector: linear part, angular part. A twist (velocity of the link's origin, angular velocity), or a wrench
@@ -270,19 +271,11 @@ pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
 pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     let Some(first) = e.first() else { return Vec::new() };
     let graph = first.graph();
-    let mut seen = vec![false; graph.len()];
-    let mut symbols = Vec::new();
-    let mut todo: Vec<u32> = e.iter().map(|e| e.id()).collect();
-    while let Some(id) = todo.pop() {
-        if std::mem::replace(&mut seen[id as usize], true) {
-            continue;
-        }
-        let node = graph.node(id);
-        if let Node::Symbol(s) = node {
-            symbols.push(s);
-        }
-        node.operands(|a| todo.push(a));
-    }
+    let symbol = |id| match graph.node(id) {
+        Node::Symbol(s) => Some(s),
+        _ => None,
+    };
+    let mut symbols: Vec<Symbol> = needed(graph, e).into_iter().filter_map(symbol).collect();
     symbols.sort_unstable();
     symbols
 }
@@ -371,7 +364,7 @@ pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
     }
     for energy in &model.potentials {
         // ∂U/∂q along the velocities, at a given time: time itself does no work on the coordinates.
-        for (k, d) in velocity_gradient(time_derivative(model.space(), *energy)) {
+        for (k, d) in model.gradients.of_energy(model.space(), *energy) {
             h[k] += d;
         }
     }
@@ -384,14 +377,14 @@ pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
             h[dry.on.v] += dry.friction * slip * g.num(dry.on.ratio);
         }
         for function in &model.dissipations {
-            for (k, d) in velocity_gradient(*function) {
+            for (k, d) in model.gradients.by_velocity(*function) {
                 h[k] += d;
             }
         }
         for load in &model.loads {
             let no_input = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
             let force = crate::expr::replace::replace(load.force, &no_input);
-            for (k, d) in velocity_gradient(load.rate) {
+            for (k, d) in model.gradients.by_velocity(load.rate) {
                 h[k] -= force * d;
             }
         }

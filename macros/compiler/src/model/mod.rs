@@ -14,6 +14,7 @@ mod carriers;
 mod constraint;
 mod contact;
 mod embed;
+pub mod gradients;
 mod inertia;
 mod joint;
 pub mod kinematics;
@@ -367,6 +368,8 @@ pub struct Model<'g> {
     pub velocity_inputs: bool,
     /// Parts of the configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
+    /// Forces of elements that were found so far.
+    pub gradients: gradients::Gradients,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
     /// Name of every entry of `v`, and where the joint stands.

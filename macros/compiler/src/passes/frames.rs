@@ -128,6 +128,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         time: _,
         velocity_inputs: _,
         charts: _,
+        gradients: _,
         configuration: _,
         velocities: _,
         inputs,
