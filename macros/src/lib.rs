@@ -66,17 +66,17 @@ use std::path::PathBuf;
 /// | `gravity = -9.81 * y` | uniform gravity, a vector in ground axes, m/s²; none if not given, −9.81 z with a file |
 /// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
 /// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
-/// | `derivatives` | generates the first derivatives of the dynamics too, also into given matrices |
-/// | `centroidal` | generates the centroidal momentum matrix and its bias too |
-/// | `regressor` | generates the dynamics as linear functions of the mass properties, and their base parameters |
-/// | `sensitivities` | generates the derivatives of the dynamics by the struct's parameters |
-/// | `packed` | generates the mass matrix without its zeros too, and into a matrix that keeps them |
-/// | `prepare` | generates `prepare()`, which computes once what depends on the parameters alone |
-/// | `batch` | generates every function of the state for several states at once too |
-/// | `formulation = multipliers` or `speeds` | how constraints are solved: by their forces, or by independent speeds (Kane); multipliers if not given |
-/// | `independent = (velocity, …)` | the speeds that stay, of `formulation = speeds`; chosen if not given |
+/// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
+/// | `centroidal` | adds the centroidal momentum matrix and its bias |
+/// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
+/// | `sensitivities` | adds derivatives of the dynamics by the struct's parameters |
+/// | `packed` | adds the mass matrix without entries that are always zero, and into a matrix of the caller |
+/// | `prepare` | adds `prepare()`, which computes once what depends on the parameters alone |
+/// | `batch` | adds a twin of every function of the state for several states at once |
+/// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
+/// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
-/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; a change of it recompiles |
+/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; when it changes, the crate is compiled again |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
 /// | `passive = honour` or `ignore` | damping and friction of the file's joints; honour if not given |
 /// | `mimic = follow` or `independent` | joints with a `mimic` tag; follow if not given |

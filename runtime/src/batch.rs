@@ -1,4 +1,4 @@
-//! Many states of one mechanism: the same functions for the states in the lanes of vector registers.
+//! Many states of one mechanism at once, in the lanes of vector registers ([guide](crate::guide::batches)).
 //!
 //! The word `batch` among the arguments of `#[mechanism]` asks for them. Every method of the state then has a twin with
 //! `_lanes` behind its name, on vectors of [`Lanes`]; parameters are the same in all lanes. [`Batch`] is the trait for

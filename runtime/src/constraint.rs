@@ -1,4 +1,4 @@
-//! Constrained mechanisms: closed loops, rolling and other constraints, by Lagrange multipliers.
+//! Constrained mechanisms: closed loops, rolling and other constraints ([guide](crate::guide::constraints)).
 //!
 //! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the residuals
 //! `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a configuration near a given

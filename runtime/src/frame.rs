@@ -9,8 +9,9 @@ use nalgebra::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameIndex<const I: usize>;
 
-/// Names a frame of a mechanism: `frame!(Panda, "panda_link8")`. A name that the mechanism does not have does not
-/// compile. For a generic mechanism any scalar type will do: `frame!(Arm<f64>, "hand")`.
+/// Names a frame of a mechanism, checked at compile time: `frame!(Panda, "panda_link8")`.
+///
+/// Bodies, particles and points are frames; a name that the mechanism does not have does not compile. For a generic mechanism any scalar type will do: `frame!(Arm<f64>, "hand")`.
 #[macro_export]
 macro_rules! frame {
     ($mechanism:ty, $name:expr) => {

@@ -1,4 +1,4 @@
-//! Integrators: one step of the equations of motion after another, without allocation.
+//! Integrators: [`DormandPrince`], [`Rk4`], [`ImplicitMidpoint`], [`Rosenbrock`], [`SemiImplicitEuler`].
 //!
 //! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with
 //! `q = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore stay unit

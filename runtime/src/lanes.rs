@@ -1,4 +1,4 @@
-//! Several numbers that go through the same arithmetic side by side: the lanes of vector registers.
+//! Numbers of several states side by side: the lanes of vector registers.
 //!
 //! A mechanism whose scalars are [`Lanes`] is evaluated for several states (or several equal limbs) at once. Each lane
 //! holds, bit for bit, what the same operations give for its numbers alone: nothing is reassociated, fused
@@ -28,8 +28,7 @@ pub(crate) use registers::{Registers, Work};
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///
-/// It is a [`Real`], so that a generic mechanism can be instantiated with it. These are not from lane to
-/// lane:
+/// It is a [`Real`], so that a generic mechanism can be instantiated with it. Three things are not done lane by lane:
 ///
 /// - Comparisons ask for all lanes: `a < b` where it is so in every lane, and neither `a < b` nor `b < a` where lanes
 ///   differ. Algorithms that branch (factorisations with pivots, adaptive steps) are therefore not meant for lanes;

@@ -28,11 +28,11 @@
 //!     let tau = pendulum.inverse_dynamics(&q, &rest, &rest);
 //!     assert!((tau[0] - 2.0 * 9.81 * 0.75).abs() < 1e-12);
 //!
-//!     // Released there, it swings: after some time it is as high as before, on the other side.
+//!     // Released there, it swings until its velocity is zero again: on the other side, as high as before.
 //!     let run = simulate(&pendulum).from(q, rest);
-//!     let other_side = run.until_crossing(Crossing::Rising, |_t, _q, v| v[0]).finish()?;
-//!     assert!((other_side.q[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
-//!     println!("{:.3} s", other_side.t);
+//!     let end = run.until_crossing(Crossing::Rising, |_t, _q, v| v[0]).finish()?;
+//!     assert!((end.q[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
+//!     println!("{:.3} s", end.t);
 //!     Ok(())
 //! }
 //! ```
@@ -69,14 +69,18 @@ extern crate self as linkwork;
 #[cfg(test)]
 extern crate std;
 
+#[doc(inline)]
 pub use batch::Batch;
+#[doc(inline)]
 pub use constraint::{Constrained, ConstraintError};
 pub use frame::{FrameIndex, NamedFrame};
+#[doc(inline)]
 pub use lanes::Lanes;
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
 pub use rheonomic::{At, Rheonomic, at};
+#[doc(inline)]
 pub use simulate::simulate;
 
 mod arithmetic;

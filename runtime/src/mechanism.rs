@@ -9,8 +9,10 @@ pub trait Real: RealField + Copy {}
 
 impl<T: RealField + Copy> Real for T {}
 
-/// A mechanism with `NQ` configuration numbers, `NV` velocities and `NU` inputs, whose equations do not contain time
-/// (scleronomic): what `#[mechanism]` implements. One that is driven in time implements [`Rheonomic`](crate::Rheonomic)
+/// What every mechanism offers, for generic code.
+///
+/// It has `NQ` configuration numbers, `NV` velocities and `NU` inputs, and its equations do not contain time
+/// (scleronomic). `#[mechanism]` implements the trait. A mechanism that is driven in time implements [`Rheonomic`](crate::Rheonomic)
 /// instead, and is a `Mechanism` at every instant: [`at(&hoop, t)`](crate::at).
 ///
 /// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball

@@ -5,7 +5,9 @@ use crate::constraint::{ConstraintError, Projected};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// A mechanism whose functions may depend on time `t`, s. Shapes, units and conventions are those of [`Mechanism`]; with
+/// What mechanisms offer whose functions may depend on time `t`, s: those with a driven crank or a moving pivot.
+///
+/// `#[mechanism]` implements it where something depends on time; every [`Mechanism`] is one too. Shapes, units and conventions are those of [`Mechanism`]; with
 /// driven motion the kinetic energy is no longer `½ vᵀ M v`, nor the momentum `M v`.
 pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// The scalar type.

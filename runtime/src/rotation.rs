@@ -1,6 +1,8 @@
-//! Rotations: Euler angles of all 24 kinds, rotation vectors, Euler parameters, Gibbs and modified Rodrigues vectors,
-//! their conversions and their rate kinematics, on nalgebra's [`Rotation3`](nalgebra::Rotation3) and
-//! [`UnitQuaternion`](nalgebra::UnitQuaternion). No dynamics here.
+//! Rotations and their rates: Euler angles, quaternions, rotation vectors and other parameters.
+//!
+//! Euler angles of all 24 sequences, rotation vectors, Euler parameters, Gibbs and modified Rodrigues vectors, their
+//! conversions and their rate kinematics, on nalgebra's [`Rotation3`](nalgebra::Rotation3) and
+//! [`UnitQuaternion`](nalgebra::UnitQuaternion). For your own code: mechanisms need none of it.
 //!
 //! | parameters | type | cannot represent | rates fail |
 //! | --- | --- | --- | --- |

@@ -1,4 +1,7 @@
-//! Simulation of a mechanism: from an initial state to samples of its motion.
+//! Simulation of a mechanism: from an initial state to samples of its motion ([guide](crate::guide::simulating)).
+//!
+//! [`simulate`] begins, the methods of [`Simulation`] say the rest, and iterating yields [`Sample`]s. All other types here
+//! belong to events: they appear in the type of a simulation, and programs need not name them.
 
 mod event;
 mod run;

@@ -21,7 +21,7 @@ const MOST_ITERATIONS: usize = 100;
 ///
 /// The equation is solved by fixed-point iteration to rounding, which converges while `h ω < 2` for the stiffest
 /// frequency `ω` (in the same way `h c / m < 2` for damping).
-/// [`Error::NotConverged`] tells that the step is too long.
+/// [`Error::NotConverged`] means that the step is too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImplicitMidpoint<T> {
     step: T,

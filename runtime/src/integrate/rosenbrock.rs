@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 /// Source: Verwer, Spee, Blom and Hundsdorfer, *A second-order Rosenbrock method applied to photochemical dispersion
 /// problems*, SIAM J. Sci. Comput. 20 (1999).
 ///
-/// [`Error::NotConverged`] tells that the matrix of a step is singular.
+/// [`Error::NotConverged`] means that the matrix of a step is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rosenbrock<T> {
     step: T,
