@@ -153,6 +153,42 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
+    /// The change of velocity `x` by the generalized impulse `p`, N·s and N·m·s, and by impulses of the constraints that take
+    /// `gap` away: `M x = p + Jᵀ λ`, `J x = −gap`. Dry friction of contacts that slip is left out.
+    fn constraint_response(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        p: &SVector<Self::Scalar, NV>,
+        gap: &SVector<Self::Scalar, NC>,
+    ) -> SVector<Self::Scalar, NV>;
+
+    /// [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Those on configurations are looked
+    /// at where `v` leads in `h` seconds, those on velocities half-way there (a discrete constraint that reads the same
+    /// forwards and backwards: McLachlan and Perlmutter, *Integrators for nonholonomic mechanical systems*, J. Nonlinear
+    /// Sci. 16, 2006).
+    fn constrained_impulse(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        let half = h * constant(0.5);
+        let within = if NC > NH { self.integrate(q, &(v * half)) } else { *q };
+        let mut gap = if NC > NH || h == nalgebra::zero() {
+            self.constraint_rates(t + half, &within, v)
+        } else {
+            SVector::zeros()
+        };
+        if h != nalgebra::zero() {
+            let residuals = self.constraint_residuals(t + h, &self.integrate(q, &(v * h)));
+            gap.iter_mut().zip(residuals.iter()).for_each(|(gap, residual)| *gap = *residual / h);
+        }
+        self.constraint_response(t, q, p, &gap)
+    }
+
     /// A configuration near `q` in which the constraints hold, by damped Newton steps with bounded count
     /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be from around `q`. The
     /// coordinates whose velocities have the indices `held` stay as they are.

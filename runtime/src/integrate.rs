@@ -15,6 +15,7 @@
 //!
 //! [`simulate`](crate::simulate()) is the way to use them; [`Method`] is what it needs of one.
 
+mod constrained;
 mod dormand_prince;
 mod error;
 mod implicit_midpoint;

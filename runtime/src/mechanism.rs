@@ -36,6 +36,9 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// The coordinates are restricted by constraints ([`Constrained`](crate::Constrained)).
     const CONSTRAINED: bool = false;
 
+    /// Contacts slip with friction ([`Slipping`](crate::elements::Slipping)): forces depend on multipliers.
+    const SLIPPING: bool = false;
+
     /// The state nearest to a given one that fulfils the constraints, if there are any.
     ///
     /// # Errors
@@ -47,6 +50,19 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         Ok((*q, *v))
+    }
+
+    /// The change of the velocity `v` by the generalized impulse `p`, N·s and N·m·s: `x` of `M x = p`. Where there are
+    /// constraints, `M x = p + Jᵀ λ` with such impulses `λ` of theirs that they hold, to first order in `x`, when the new
+    /// velocity has lasted for `h` seconds; with `h = 0` that their rates are zero. What implicit methods solve with.
+    fn impulse(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        _h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        self.forward_dynamics(q, v, &(self.bias_forces(q, v) + p))
     }
 
     /// The configuration with all coordinates zero; identity quaternions.
@@ -163,6 +179,7 @@ where
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
 
     #[inline]
     fn project(
@@ -171,6 +188,17 @@ where
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         (**self).project(q, v)
+    }
+
+    #[inline]
+    fn impulse(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (**self).impulse(q, v, h, p)
     }
 
     #[inline]

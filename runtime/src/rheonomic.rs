@@ -23,6 +23,13 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// The coordinates are restricted by constraints ([`Mechanism::CONSTRAINED`]).
     const CONSTRAINED: bool = false;
 
+    /// Contacts slip with friction ([`Mechanism::SLIPPING`]).
+    const SLIPPING: bool = false;
+
+    /// Constraints are kept by feedback ([`Stabilized`](crate::constraint::Stabilized)): `forward_dynamics` holds their
+    /// forces, and states need not fulfil them.
+    const FEEDBACK: bool = false;
+
     /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
     ///
     /// # Errors
@@ -35,6 +42,19 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         Ok((*q, *v))
+    }
+
+    /// The change of the velocity `v` by the generalized impulse `p`, N·s and N·m·s, and by those of the constraints
+    /// ([`Mechanism::impulse`]): these hold, to first order, when the new velocity has lasted for `h` seconds.
+    fn impulse(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        _h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
     }
 
     /// The configuration with all coordinates zero; identity quaternions ([`Mechanism::neutral`]).
@@ -226,8 +246,21 @@ where
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
     timeless!(pass);
     timed!(drop);
+
+    #[inline(always)]
+    fn impulse(
+        &self,
+        _t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        Mechanism::impulse(self, q, v, h, p)
+    }
 
     #[inline(always)]
     fn project(
@@ -250,8 +283,14 @@ where
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
     timeless!(inner);
     timed!(bind);
+
+    #[inline(always)]
+    fn impulse(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>, h: T, p: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.impulse(self.t, q, v, h, p)
+    }
 
     #[inline(always)]
     fn project(

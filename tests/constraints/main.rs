@@ -5,6 +5,7 @@ mod counts;
 mod embedded;
 mod formulations;
 mod invariants;
+mod long_runs;
 mod overdetermined;
 mod reactions;
 mod slipping;

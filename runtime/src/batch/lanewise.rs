@@ -48,6 +48,7 @@ where
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
 
     #[inline(always)]
     fn neutral(&self) -> SVector<Self::Scalar, NQ> {
@@ -74,6 +75,23 @@ where
             Err(_) => (SVector::repeat(nothing), SVector::repeat(nothing)),
         };
         Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
+    }
+
+    /// Lane by lane where there are constraints.
+    fn impulse(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        h: Self::Scalar,
+        p: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        if M::CONSTRAINED {
+            let one =
+                |k: usize| self.mechanism.impulse(t.0[k], &lane(q, k), &lane(v, k), h.0[k], &lane(p, k));
+            return lane_by_lane(one);
+        }
+        self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
     }
 
     lanewise! {

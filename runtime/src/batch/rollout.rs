@@ -3,6 +3,7 @@
 use super::columns::{Output, count};
 use super::{Batch, Error, Lanewise};
 use crate::integrate::{self, Method, Rk4, SemiImplicitEuler, State, Steered, System};
+use crate::lanes::{lane, lane_by_lane};
 use crate::private::to_f64;
 use crate::{Lanes, Real};
 use core::ops::ControlFlow;
@@ -11,6 +12,9 @@ use nalgebra::{ComplexField, SVector};
 /// A method that does the same operations whatever the numbers are, so that states can go through it side by side: one
 /// with fixed steps and nothing that is iterated.
 pub trait Lockstep<T: Real>: Method<T> {
+    /// Steps of constrained mechanisms are iterated: their states go one by one.
+    const ITERATES_CONSTRAINTS: bool = false;
+
     /// The method with lanes for scalars.
     type Wide<const L: usize>: Method<Lanes<T, L>>;
 
@@ -27,6 +31,8 @@ impl<T: Real> Lockstep<T> for Rk4<T> {
 }
 
 impl<T: Real> Lockstep<T> for SemiImplicitEuler<T> {
+    const ITERATES_CONSTRAINTS: bool = true;
+
     type Wide<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
 
     fn wide<const L: usize>(&self) -> Self::Wide<L> {
@@ -244,6 +250,9 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             &SVector<Lanes<M::Scalar, L>, NV>,
         ) -> SVector<Lanes<M::Scalar, L>, NU>,
     {
+        if M::CONSTRAINED && S::ITERATES_CONSTRAINTS {
+            return self.one_by_one(rollout, first, start, control);
+        }
         let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
         let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
         let method = rollout.method.wide::<L>();
@@ -267,6 +276,52 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             }
         }
         group
+    }
+
+    /// A group whose states go one after another.
+    fn one_by_one<S, C, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        rollout: &Rollout<M::Scalar, S>,
+        first: usize,
+        start: State<Lanes<M::Scalar, L>, NQ, NV>,
+        control: &C,
+    ) -> Group<M::Scalar, L, NQ, NV>
+    where
+        M: Batch<NQ, NV, NU>,
+        S: Lockstep<M::Scalar>,
+        C: Fn(
+            usize,
+            Lanes<M::Scalar, L>,
+            &SVector<Lanes<M::Scalar, L>, NQ>,
+            &SVector<Lanes<M::Scalar, L>, NV>,
+        ) -> SVector<Lanes<M::Scalar, L>, NU>,
+    {
+        let mut failures = [None; L];
+        let ends: [_; L] = core::array::from_fn(|k| {
+            // `control` keeps lanes apart, so that what stands in the others does not matter.
+            let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| {
+                lane(&control(first, Lanes::splat(t), &q.map(Lanes::splat), &v.map(Lanes::splat)), k)
+            });
+            let mut system: System<'_, M, _, NU> = System::new(self.mechanism, inputs);
+            let mut memory = rollout.method.memory();
+            let mut state = State { t: start.t.0[k], q: lane(&start.q, k), v: lane(&start.v, k) };
+            for _ in 0..rollout.steps {
+                match system.advance(&rollout.method, &mut memory, &state, None, false) {
+                    Ok(step) => state = step.end,
+                    Err(error) => {
+                        failures[k] = Some(error);
+                        break;
+                    }
+                }
+            }
+            state
+        });
+        let end = State {
+            t: Lanes(core::array::from_fn(|k| ends[k].t)),
+            q: lane_by_lane(|k| ends[k].q),
+            v: lane_by_lane(|k| ends[k].v),
+        };
+        Group { end, failures }
     }
 }
 

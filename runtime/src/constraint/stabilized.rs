@@ -75,6 +75,7 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const FEEDBACK: bool = true;
 
     fn neutral(&self) -> V<M, NQ, NQ, NV, NU> {
         self.mechanism.neutral()

@@ -1,12 +1,10 @@
 //! The implicit midpoint rule in momenta.
 
+use super::constrained::{MOST_ITERATIONS, Settling, lost, midpoint};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive, settled};
 use crate::Real;
-use crate::private::{constant, epsilon, to_f64};
+use crate::private::{constant, to_f64};
 use nalgebra::SVector;
-
-/// Iterations allowed for one step; a step well inside the region of convergence takes about ten.
-const MOST_ITERATIONS: usize = 100;
 
 /// The implicit midpoint rule, order 2, with fixed steps.
 ///
@@ -22,6 +20,12 @@ const MOST_ITERATIONS: usize = 100;
 /// The equation is solved by fixed-point iteration to rounding, which converges while `h ω < 2` for the stiffest
 /// frequency `ω` (in the same way `h c / m < 2` for damping).
 /// [`Error::NotConverged`] means that the step is too long.
+///
+/// Under constraints their pushes `Jᵀ(q₀) λ` and `Jᵀ(q₁) μ` are added to the momentum at both ends of the step, such that
+/// the configuration `q₁` and the velocity there fulfil them: order 2 and symplectic or reversible as without. Constraints
+/// on velocities alone (rolling) hold at the midpoint and at the ends; the energy then oscillates by symmetry. Sources:
+/// Andersen, J. Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); Hairer, Lubich and Wanner (2006), VII.1;
+/// McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImplicitMidpoint<T> {
     step: T,
@@ -52,38 +56,22 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     half: T,
     mut v: SVector<T, NV>,
 ) -> Result<Midpoint<T, NQ, NV>, Error> {
-    let t = to_f64(start.t);
-    let mut last: Option<T> = None;
+    let mut settling = Settling::new(half);
     for iterations in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &(v * half));
         let rate = system.momentum_rate(start.t + half, &q, &v);
         let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
         if !is_finite(&next) {
-            let diverged = Error::NotConverged { t, iterations };
-            return Err(if iterations == 0 { Error::NotFinite { t } } else { diverged });
+            return Err(lost(start.t, iterations));
         }
         let change = largest(&(next - v));
-        let settled = last.is_some_and(|last| change >= last) && negligible(change, half, &q, &next);
         v = next;
-        if change <= epsilon::<T>() * largest(&v) || settled {
+        if settling.is_done(change, &q, &v) {
             let q = system.integrate(&start.q, &(v * half));
             return Ok((q, v, system.momentum_rate(start.t + half, &q, &v)));
         }
-        last = Some(change);
     }
-    Err(Error::NotConverged { t, iterations: MOST_ITERATIONS })
-}
-
-/// Whether a change of the velocity that has ceased to shrink is rounding: small beside the velocity, or too small
-/// to move anything. The second holds at rest, where the velocity itself is rounding.
-fn negligible<T: Real, const NQ: usize, const NV: usize>(
-    change: T,
-    half: T,
-    q: &SVector<T, NQ>,
-    v: &SVector<T, NV>,
-) -> bool {
-    let moves = constant::<T>(64.0) * epsilon::<T>() * largest(q).max(T::one());
-    change <= epsilon::<T>().sqrt() * largest(v) || change * half <= moves
+    Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })
 }
 
 impl<T: Real> Method<T> for ImplicitMidpoint<T> {
@@ -116,13 +104,19 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let half = h * constant(0.5);
         let p = memory.momentum.unwrap_or_else(|| system.momentum(start.t, &start.q, &start.v));
-        let (q, v, rate) = solve(system, start, &p, half, start.v + memory.change)?;
-        let change = v - start.v;
-        let p = p + rate * h;
-        let q = system.integrate(&q, &(v * half));
-        let end = State { t, q, v: system.velocity(t, &q, &p, &(v + change)) };
+        let guess = start.v + memory.change;
+        let (v, q, p) = if system.is_constrained() {
+            let (v, p) = midpoint(system, D::momentum_rate, start, &p, h, guess)?;
+            (v, system.integrate(&start.q, &(v * h)), p)
+        } else {
+            let (q, v, rate) = solve(system, start, &p, half, guess)?;
+            (v, system.integrate(&q, &(v * half)), p + rate * h)
+        };
+        let end = State { t, q, v: system.velocity(t, &q, &p, &(v + v - start.v)) };
         let end = settled(system, end, start.t)?;
-        *memory = MidpointMemory { momentum: Some(p), change: end.v - v };
+        // The push at the end changes the momentum.
+        let momentum = (!system.is_constrained()).then_some(p);
+        *memory = MidpointMemory { momentum, change: end.v - v };
         let displacement = v * h;
         let step = Step::linear(*start, end, displacement);
         if !dense {

@@ -1,13 +1,24 @@
 //! The semi-implicit (symplectic) Euler method.
 
+use super::constrained::midpoint;
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
+use nalgebra::SVector;
 
 /// The semi-implicit Euler method, order 1: velocity first, then configuration with the new velocity.
 ///
 /// `v₁ = v₀ + h v̇(t₀, q₀, v₀)`, `q₁ = q₀ ⊕ h v₁`. One evaluation of the dynamics per step. Symplectic for constant
 /// mass matrices and forces that depend on the configuration only; Coriolis and gyroscopic terms are explicit, so that
 /// fast spins gain energy. Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), I.1.2.
+///
+/// Under constraints forces that do not depend on velocities, and inputs, push at the start of a step, and the motion goes
+/// on under inertia, dashpots and constraints alone, by one step of the constrained
+/// [`ImplicitMidpoint`](super::ImplicitMidpoint). For plain coordinates and constant mass matrices this is SHAKE with
+/// velocities that fulfil the constraints. It is symplectic as that method is, and what a time-reversible method shows
+/// half a push earlier: the energy of loops, ball joints and rolling bodies oscillates and does not drift. A step takes
+/// some ten evaluations of momenta. Sources: Ryckaert, Ciccotti and Berendsen, J. Comput. Phys. 23 (1977); Andersen, J.
+/// Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006).
+/// [`Error::NotConverged`] means that the step is too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SemiImplicitEuler<T> {
     step: T,
@@ -47,10 +58,26 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
-        let before = system.acceleration(start.t, &start.q, &start.v);
-        let v = start.v + before * h;
+        let constrained = system.is_constrained();
+        let before = if dense || !constrained {
+            system.acceleration(start.t, &start.q, &start.v)
+        } else {
+            SVector::zeros()
+        };
+        let (v, after) = if constrained {
+            let force = system.momentum_rate(start.t, &start.q, &start.v)
+                - system.inertial_rate(start.t, &start.q, &start.v);
+            let p = system.momentum(start.t, &start.q, &start.v) + force * h;
+            let rate = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
+            let (v, p) = midpoint(system, rate, start, &p, h, start.v)?;
+            let q = system.integrate(&start.q, &(v * h));
+            (v, system.velocity(t, &q, &p, &v))
+        } else {
+            let v = start.v + before * h;
+            (v, v)
+        };
         let displacement = v * h;
-        let end = State { t, q: system.integrate(&start.q, &displacement), v };
+        let end = State { t, q: system.integrate(&start.q, &displacement), v: after };
         let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);
         if !dense {

@@ -107,15 +107,29 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         v: &SVector<T, NV>,
     ) -> Result<Projected<T, NQ, NV>, ConstraintError>;
 
-    /// Generalized momentum `p`; of a constrained mechanism the velocity itself stands for it.
+    /// Generalized momentum `p`; where constraints are kept by feedback the velocity itself stands for it.
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// `ṗ` under the inputs at time `t`.
+    /// `ṗ` under the inputs at time `t`, without the forces of constraints but where friction follows from them.
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
+    /// What the velocity contributes to `ṗ`, inputs apart: inertia and dashpots.
+    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
     /// The velocity with the generalized momentum `p`, improved from the estimate `v`: exact up to rounding for any
-    /// `v`, best for a near one.
+    /// `v`, best for a near one. Where there are constraints it fulfils them, and their impulses have made it so.
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// The change of the velocity `v` by the generalized impulse `p` and by those of the constraints, which hold, to first
+    /// order, when the new velocity has lasted for `h` seconds ([`Mechanism::impulse`](crate::Mechanism::impulse)).
+    fn impulse(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        h: T,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV>;
 }
 
 /// A mechanism and its inputs.
@@ -222,24 +236,44 @@ where
     }
 
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::CONSTRAINED { *v } else { self.mechanism.generalized_momentum(t, q, v) }
+        if M::FEEDBACK { *v } else { self.mechanism.generalized_momentum(t, q, v) }
     }
 
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::CONSTRAINED {
+        if M::FEEDBACK {
             return self.acceleration(t, q, v);
         }
-        self.mechanism.momentum_rate(t, q, v) + self.forces(t, q, v)
+        let rate = self.mechanism.momentum_rate(t, q, v);
+        if M::SLIPPING {
+            // The forces at this acceleration: inputs, constraints, and the friction that follows from these.
+            let acceleration = self.acceleration(t, q, v);
+            return rate + self.mechanism.inverse_dynamics(t, q, v, &acceleration);
+        }
+        rate + self.forces(t, q, v)
+    }
+
+    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.momentum_rate(t, q, v) - self.mechanism.momentum_rate(t, q, &SVector::zeros())
     }
 
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::CONSTRAINED {
+        if M::FEEDBACK {
             return *p;
         }
         // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the solution
         // a = M⁻¹ (p − b) − v.
         let missing = p - self.mechanism.generalized_momentum(t, q, v);
-        let tau = self.mechanism.bias_forces(t, q, v) + missing;
-        v + self.mechanism.forward_dynamics(t, q, v, &tau)
+        v + self.mechanism.impulse(t, q, v, T::zero(), &missing)
+    }
+
+    fn impulse(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        h: T,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.mechanism.impulse(t, q, v, h, p)
     }
 }

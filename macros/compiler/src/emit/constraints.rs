@@ -306,12 +306,17 @@ pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         "const CONSTRAINED: bool = true;
         #[inline]\nfn project(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_state(self, {any}, q, v)
-        }}"
+        }}
+        #[inline]\nfn impulse(&self, {t}q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
+            ::linkwork::Constrained::constrained_impulse(self, {any}, q, v, h, p)
+        }}",
+        scalar = s.scalar.name(),
     );
     if !c.slipping.is_empty() {
         let _ = writeln!(
             out,
-            "#[inline]\nfn try_forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+            "const SLIPPING: bool = true;
+            #[inline]\nfn try_forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
                 self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
             }}"
         );
@@ -331,6 +336,7 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         #[inline]\nfn constraint_jacobian(&self, {t}: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {nc}, {nv}> {{ Self::constraint_jacobian(self, {pass}q) }}
         #[inline]\nfn constraint_bias(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_bias(self, {pass}q, v) }}
         #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
-        #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}"
+        #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}
+        #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}"
     );
 }
