@@ -234,3 +234,120 @@ fn rounded_numbers_are_documented() {
     let docs = linkwork_compiler::expand(arguments(""), tokens("struct Robot;"), folder).tokens.to_string();
     assert!(!docs.contains("Rounded numbers"));
 }
+
+/// Without inertia there are frames, their Jacobians, the configuration space and what inputs do, as they follow from the
+/// file: polar coordinates, and a ball at the end.
+#[test]
+fn kinematics_need_no_inertia() {
+    #[mechanism(urdf = "data/urdf/bare.urdf", inertia = none)]
+    struct Bare;
+
+    assert_eq!(Bare::FRAMES, ["world", "arm", "wrist", "hand"]);
+    assert_eq!(Bare::VELOCITIES, ["shoulder", "reach", "grip.wx", "grip.wy", "grip.wz"]);
+    assert_eq!(Bare::INPUTS, ["shoulder", "reach"]);
+    assert_eq!(Bare::EQUATIONS, "");
+    let (angle, length) = (0.7_f64, 0.3);
+    let q = Bare.integrate(&Bare.neutral(), &[angle, length, 0.1, -0.2, 0.3].into());
+    let hand = frame!(Bare, "hand");
+    let radius = length + 0.5;
+    let place = [radius * angle.cos(), radius * angle.sin(), 1.0];
+    let found = Bare.frame_placement(hand, &q);
+    assert_close("place", found.translation.vector.as_slice(), &place, TOLERANCE);
+    let (turn, stretch) = (1.1, -0.4);
+    let v = [turn, stretch, 0.0, 0.0, 0.0].into();
+    let velocity = [
+        stretch * angle.cos() - turn * radius * angle.sin(),
+        stretch * angle.sin() + turn * radius * angle.cos(),
+        0.0,
+        0.0,
+        0.0,
+        turn,
+    ];
+    assert_close("velocity", Bare.frame_velocity(hand, &q, &v).as_slice(), &velocity, TOLERANCE);
+    assert_close("Jacobian", (Bare.frame_jacobian(hand, &q) * v).as_slice(), &velocity, TOLERANCE);
+    let forces = Bare.generalized_forces(&q, &[2.0, 3.0].into());
+    assert_close("inputs", forces.as_slice(), &[2.0, 3.0, 0.0, 0.0, 0.0], 0.0);
+    assert_close("difference", Bare.difference(&q, &q).as_slice(), &[0.0; 5], TOLERANCE);
+}
+
+/// What is left of a file with inertia is the same.
+#[test]
+fn kinematics_are_those_of_the_whole_robot() {
+    #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
+    struct Outside;
+
+    assert_eq!(Outside::FRAMES, Everything::FRAMES);
+    let mut random = Random::new(24);
+    for _ in 0..10 {
+        let q = random.configuration(&Everything);
+        let (v, a) = (random.vector(1.0), random.vector(1.0));
+        for (one, other) in Outside.frame_placements(&q).iter().zip(Everything.frame_placements(&q)) {
+            let expected = other.to_homogeneous();
+            assert_close("placement", one.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);
+        }
+        let (one, other) = (frame!(Outside, "plate"), frame!(Everything, "plate"));
+        let (jacobian, expected) = (Outside.frame_jacobian(one, &q), Everything.frame_jacobian(other, &q));
+        assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
+        let acceleration = Outside.frame_acceleration(one, &q, &v, &a);
+        let expected = Everything.frame_acceleration(other, &q, &v, &a);
+        assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
+        assert_eq!(Outside.integrate(&q, &v), Everything.integrate(&q, &v));
+    }
+}
+
+/// A linkage by its lengths: constraints and outputs need no inertia either.
+#[test]
+fn a_linkage_without_inertia() {
+    #[mechanism(inertia = none)]
+    struct Linkage {
+        pub crank: f64,
+        pub rod: f64,
+        #[body]
+        wheel: Body,
+        #[body]
+        coupler: Body,
+        #[body]
+        piston: Body,
+        #[joint(ground -> wheel, about = z)]
+        main: Pin,
+        #[joint(wheel.at(crank * x) -> coupler, about = z)]
+        big_end: Pin,
+        #[joint(ground -> piston, along = x)]
+        cylinder: Sleeve,
+        #[joint(coupler.at(rod * x) -> piston, about = z)]
+        small_end: Pin,
+        #[output(dot(v(coupler.at(rod / 2 * x) / ground / ground), ground.y))]
+        rise: Scalar,
+    }
+
+    let linkage = Linkage { crank: 0.3, rod: 0.5 };
+    // Crank, rod and line of the piston make a right angle of 0.3, 0.4, 0.5.
+    let upright = std::f64::consts::FRAC_PI_2;
+    let q = [upright, -upright - (0.3_f64).atan2(0.4), 0.4].into();
+    assert_eq!((Linkage::NC, Linkage::NH, Linkage::NS), (2, 2, 1));
+    assert_close("closed", linkage.constraint_residuals(&q).as_slice(), &[0.0; 2], TOLERANCE);
+    // The pin of the crank moves along x, so do all points of the rod.
+    let v: SVector<f64, 3> = [1.0, -1.0, -0.3].into();
+    assert_close("rates", (linkage.constraint_jacobian(&q) * v).as_slice(), &[0.0; 2], TOLERANCE);
+    assert_close("rise", &[linkage.rise(&q, &v)], &[0.0], TOLERANCE);
+}
+
+/// A fixed root of the name `ground` is the ground, and a frame like other links.
+#[test]
+fn the_ground_may_be_a_link() {
+    #[mechanism(urdf = "data/urdf/grounded.urdf")]
+    struct Grounded;
+
+    assert_eq!(Grounded::FRAMES, ["ground", "hand"]);
+    let q = [0.4].into();
+    let placement = Grounded.frame_placement(frame!(Grounded, "ground"), &q);
+    assert_eq!(placement.to_homogeneous(), SMatrix::identity());
+    assert_close(
+        "hand",
+        Grounded.frame_placements(&q)[1].translation.vector.as_slice(),
+        &[0.4, 0.0, 0.0],
+        0.0,
+    );
+    // Whatever is fixed to the ground has no part in the motion.
+    assert_eq!((Grounded.total_mass(), Grounded.mass_matrix(&q)[0]), (2.0, 2.0));
+}

@@ -80,12 +80,19 @@ use std::path::PathBuf;
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
 /// | `passive = honour` or `ignore` | damping and friction of the file's joints; honour if not given |
 /// | `mimic = follow` or `independent` | joints with a `mimic` tag; follow if not given |
-/// | `inertia = check` or `trust` | whether an inertia that no body can have is an error; check if not given |
+/// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
 /// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
 /// | `lock = ["joint", …]` | joints frozen at zero |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 ///
-/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`.
+/// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the configuration
+/// space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of constraints, outputs and
+/// `generalized_forces` are generated, the dynamics and the trait `Mechanism` are not. Files that describe shapes and joints
+/// alone are read so; what such a file says of masses is skipped.
+///
+/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`. A fixed root of this
+/// name is the ground, and one of the frames. A link `world` that joints name and the file does not declare is its root.
+/// What fixed joints hold to a fixed root enters no equation: its mass properties are not checked.
 ///
 /// # A closed loop in independent speeds
 ///

@@ -1,17 +1,17 @@
 //! Model → everything that is generated: the mechanics of each function, lowered.
 
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::Diagnostics;
 use crate::emit::frames::{FrameSteps, LinkSteps};
 use crate::emit::{Function, Output, Shape};
 use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
 use crate::expr::{Expr, Symbol};
 use crate::lower::{Program, lower, lower_without, size};
-use crate::mechanics::{self, Joint, crba, energy, forces, frames, massless, power, reactions};
+use crate::mechanics::{self, Joint, crba, energy, forces, frames, power, reactions};
 use crate::model::kinematics::{symbols_in, time_derivative};
-use crate::model::{Chart, Link, Model, Motion, OutputValue, Quantity, Uses};
+use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
-use crate::syntax::{ROOT_JOINT, Requests};
+use crate::syntax::Requests;
 
 mod constraints;
 mod derivatives;
@@ -21,6 +21,7 @@ mod prepared;
 mod regressor;
 mod sensitivities;
 pub mod signatures;
+mod singular;
 
 use regressor::Identification;
 use signatures::Sizes;
@@ -41,11 +42,11 @@ pub fn derive_with<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Output> {
     let joints = mechanics::joints(model);
+    if model.kinematic {
+        return finite(model, kinematics(model, &joints), cx);
+    }
     let mass = crba::mass_matrix(model, &joints);
-    let loaded = massless::loaded_mass(model, &joints, mass.clone());
-    let singular = mechanics::regularity::singular_velocities(model, &joints, &loaded);
-    if !singular.is_empty() {
-        report_singular(model, &singular, cx);
+    if !singular::check(model, &joints, &mass, cx) {
         return None;
     }
     if let Some(what) = too_long(model, requests) {
@@ -65,26 +66,60 @@ pub fn derive_with<'g>(
         return None;
     }
     let functions = all(Stage::Whole);
-    if functions.iter().any(|f| !f.program.is_finite()) {
-        cx.error(model.place.clone(), "the figures of this mechanism are too large")
-            .help("a product of masses, lengths or forces in its equations is not a finite number");
-        return None;
-    }
     let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
     let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
     constants.extend(extras.entries.map(|entries| signatures::entries(&entries)));
     if requests.sensitivities {
         constants.push(signatures::parameters(&model.parameters));
     }
-    Some(Output {
+    let output =
+        Output { equations: written(model), prepared, constants, ..steps(model, &joints, functions) };
+    finite(model, output, cx)
+}
+
+/// What is left without dynamics: the configuration space, frames, constraints, the forces of inputs, and outputs.
+fn kinematics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Output {
+    let mut functions = signatures::kinematic(&Sizes::of(model));
+    if !model.constraints.is_empty() {
+        let (nh, nc) = (model.holonomic(), model.constraints.len());
+        functions.extend(signatures::constraints(&Sizes::of(model), nh, nc));
+    }
+    for f in &mut functions {
+        let outputs = match f.name.as_str() {
+            "neutral" => neutral(model),
+            "generalized_forces" => forces::generalized_forces(model, joints),
+            name => constraints::outputs(name, model).unwrap_or_default(),
+        };
+        f.program = Stage::Whole.program(&outputs);
+    }
+    // A reaction would need the motion.
+    let outputs = model.outputs.iter().filter(|output| !reactions::names_one(&output.values));
+    functions.extend(outputs.flat_map(|output| output_functions(model, output, Stage::Whole)));
+    finish(&mut functions);
+    steps(model, joints, functions)
+}
+
+/// Functions, with what leads to the frames.
+fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) -> Output {
+    Output {
         functions,
-        links: model.links.iter().zip(&joints).map(|(_, joint)| link_steps(model, joint)).collect(),
+        links: joints.iter().map(|joint| link_steps(model, joint)).collect(),
         frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
         charts: model.charts.clone(),
-        equations: written(model),
-        prepared,
-        constants,
-    })
+        equations: Written::default(),
+        prepared: None,
+        constants: Vec::new(),
+    }
+}
+
+/// What was derived, if its figures are finite.
+fn finite(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
+    if output.functions.iter().all(|f| f.program.is_finite()) {
+        return Some(output);
+    }
+    cx.error(model.place.clone(), "the figures of this mechanism are too large")
+        .help("a product of masses, lengths or forces in its equations is not a finite number");
+    None
 }
 
 /// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are
@@ -101,46 +136,6 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
     }
     (requests.derivatives && squared * elements > MOST_DERIVATIVES)
         .then_some("the derivatives of so many elements")
-}
-
-/// Reports velocities that move nothing, all together: a file may have many.
-fn report_singular(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
-    const MOST: usize = 8;
-    let place = &model.velocities[singular[0]].1;
-    let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
-    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
-    if names.len() > MOST {
-        list.push(format!("{} more", names.len() - MOST));
-    }
-    let (subject, verb, joints) = match names.len() {
-        1 => ("coordinate", "moves", "the joint carries"),
-        _ => ("coordinates", "move", "the joints carry"),
-    };
-    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
-    let diagnostic = cx.error(place.clone(), message);
-    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
-    let floats = |link: &Link<'_>| matches!(link.motion, Motion::Free { .. }) && link.inertia.mass.is_zero();
-    if model.links.iter().any(floats) {
-        diagnostic.help("a link that moves freely needs a mass of its own, whatever it carries");
-    }
-    if place.file.is_some() {
-        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
-        joints.dedup();
-        // The root's is not the file's.
-        joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
-        match joints.as_slice() {
-            [] => {}
-            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
-            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
-        }
-    }
-}
-
-/// The name of a velocity's joint. Those of a joint with several stand at the same place, each with a word of its own.
-fn joint_of<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
-    let (name, place) = &model.velocities[velocity];
-    let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;
-    name.rsplit_once('.').filter(|_| !alone).map_or(name, |(joint, _)| joint)
 }
 
 /// What some words need beside the model.
@@ -282,10 +277,15 @@ fn functions<'g>(
             functions.push(Function { program: program.clone().unwrap_or_default(), ..f });
         }
     }
-    for f in &mut functions {
+    finish(&mut functions);
+    functions
+}
+
+/// The last steps of lowering, which look at whole programs.
+fn finish(functions: &mut [Function]) {
+    for f in functions {
         f.program = std::mem::take(&mut f.program).with_shared_sums().with_late_terms_last().scheduled();
     }
-    functions
 }
 
 /// The equations of motion in a line each; empty for mechanisms that are too large to be read.

@@ -94,6 +94,7 @@ fn merge(description: &mut Description, imported: import::Imported, cx: &mut Dia
     description.bodies.extend(own_bodies);
     description.joints.extend(own_joints);
     description.snapped = imported.snapped;
+    description.ground_frame = imported.is_ground;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
         description.gravity = Some(syntax::Expr::vector([0.0, 0.0, -9.81], &place));
@@ -204,6 +205,13 @@ fn check_outputs(
             let other = &other.name.text;
             cx.error(name.place.clone(), format!("`{text}` is the Jacobian of the output `{other}`"))
                 .help("each output has a function of its name and one of its name with `_jacobian`");
+        } else if description.inertias == syntax::Inertias::None && functions.iter().all(|f| f.name != *text)
+        {
+            cx.error(
+                name.place.clone(),
+                format!("the output `{text}` names a reaction, which needs inertia"),
+            )
+            .help("remove it, or `inertia = none`: without inertia there are no dynamics");
         } else if !can_be_a_function(text) {
             cx.error(name.place.clone(), format!("a function of a mechanism cannot be called `{text}`"))
                 .help(
@@ -256,6 +264,7 @@ impl Source {
             constraints: Constraints::default(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: model::units::Units::default(),
+            kinematic: d.inertias == syntax::Inertias::None,
             time: false,
             velocity_inputs: false,
             batch: self.mechanism.requests.batch,
@@ -276,8 +285,11 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
             massless: false,
         };
-        let mut functions = signatures::always(&sizes);
-        let requests = self.mechanism.requests;
+        let kinematic = self.mechanism.description.inertias == syntax::Inertias::None;
+        let (mut functions, requests) = match kinematic {
+            true => (signatures::kinematic(&sizes), syntax::Requests::default()),
+            false => (signatures::always(&sizes), self.mechanism.requests),
+        };
         functions.extend(signatures::requested(&sizes, requests));
         let mut constants = Vec::new();
         if requests.regressor {
@@ -297,7 +309,9 @@ impl Source {
             functions.extend(signatures::packed(&sizes, &entries));
             constants.push(signatures::entries(&entries));
         }
-        if outline.constrained {
+        if outline.constrained && kinematic {
+            functions.extend(signatures::constraints(&sizes, 1, 1));
+        } else if outline.constrained {
             functions.retain(|f| f.name != "forward_dynamics");
             functions.extend(signatures::constrained(&sizes, 1, 1, 0, false));
         }

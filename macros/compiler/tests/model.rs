@@ -4,7 +4,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::model::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity, build_model};
-use linkwork_compiler::syntax::{Base, Name, UrdfOptions};
+use linkwork_compiler::syntax::{Base, Inertias, Name, UrdfOptions};
 use linkwork_compiler::{import, read};
 use std::path::Path;
 
@@ -38,7 +38,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             base: Base::Fixed,
             honour_passive: true,
             follow_mimic: true,
-            trust_inertia: false,
+            inertias: Inertias::Check,
             inputs: false,
             lock: Vec::new(),
             snap: None,

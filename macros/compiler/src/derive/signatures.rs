@@ -60,6 +60,12 @@ pub fn always(sizes: &Sizes) -> Vec<Function> {
     [dynamics(sizes), energies(sizes), whole(sizes)].into_iter().flatten().collect()
 }
 
+/// The functions of a mechanism without dynamics.
+pub fn kinematic(sizes: &Sizes) -> Vec<Function> {
+    let is_kinematic = |f: &Function| ["neutral", "generalized_forces"].contains(&f.name.as_str());
+    dynamics(sizes).into_iter().filter(is_kinematic).collect()
+}
+
 /// Equations of motion.
 fn dynamics(sizes: &Sizes) -> Vec<Function> {
     let vector = Shape::Vector(sizes.nv);
@@ -473,7 +479,21 @@ pub fn constrained(
     let nv = sizes.nv;
     let (force, bias) = (Argument::Given("force", 0, nv), Argument::Given("bias", nv, nc));
     let solution = Shape::Array(if overdetermined { (nv + nc) * (1 + nc) } else { nv + 3 * nc });
-    let mut functions = vec![
+    let mut functions = constraints(sizes, nh, nc);
+    functions.push(sizes.function("__constraint_correction", &[Q, force, bias], solution, &[]));
+    let sides = Argument::Given("sides", nv + nc, slipping);
+    if slipping == 0 {
+        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau], solution, &[]));
+    } else {
+        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau, sides], solution, &[]));
+        functions.push(sizes.function("__slipping_response", &[Q, V, force, bias, sides], solution, &[]));
+    }
+    functions
+}
+
+/// What `nc` constraints, of which `nh` are on configurations, say of a state.
+pub fn constraints(sizes: &Sizes, nh: usize, nc: usize) -> Vec<Function> {
+    vec![
         sizes.function(
             "constraint_residuals",
             &[Q],
@@ -489,7 +509,7 @@ pub fn constrained(
         sizes.function(
             "constraint_jacobian",
             &[Q],
-            Shape::Matrix(nc, nv),
+            Shape::Matrix(nc, sizes.nv),
             &["Jacobian `J(q)` of the constraints: how their rates change with the velocities."],
         ),
         sizes.function(
@@ -498,16 +518,7 @@ pub fn constrained(
             Shape::Vector(nc),
             &["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
         ),
-        sizes.function("__constraint_correction", &[Q, force, bias], solution, &[]),
-    ];
-    let sides = Argument::Given("sides", nv + nc, slipping);
-    if slipping == 0 {
-        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau], solution, &[]));
-    } else {
-        functions.push(sizes.function("__constrained_dynamics", &[Q, V, Tau, sides], solution, &[]));
-        functions.push(sizes.function("__slipping_response", &[Q, V, force, bias, sides], solution, &[]));
-    }
-    functions
+    ]
 }
 
 /// What a mechanism with `nc` constraints needs for the derivatives of its motion, all hidden.

@@ -93,22 +93,38 @@ impl Words {
     }
 }
 
+/// Sizes and names.
+pub fn write_constants(out: &mut String, c: &Constraints) {
+    if c.names.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "/// Number of scalar constraints.\npub const NC: usize = {};
+        /// Number of constraints on configurations: the first of all.\npub const NH: usize = {};
+        /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {}] = {:?};
+        /// Degrees of freedom: independent coordinates.\npub const NP: usize = {};
+        /// Degrees of freedom: independent velocities.\npub const NS: usize = {};",
+        c.names.len(),
+        c.holonomic,
+        c.names.len(),
+        c.names,
+        c.freedom[0],
+        c.freedom[1],
+    );
+}
+
 /// The inherent functions.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
-    let (nv, nc, nh) = (s.nv, c.names.len(), c.holonomic);
+    let (nv, nc) = (s.nv, c.names.len());
     let scalar = s.scalar.name();
     let _ = writeln!(
         out,
-        "/// Number of scalar constraints.\npub const NC: usize = {nc};
-        /// Number of constraints on configurations: the first of all.\npub const NH: usize = {nh};
-        /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {nc}] = {:?};
-        /// Degrees of freedom: independent coordinates.\npub const NP: usize = {np};
-        /// Degrees of freedom: independent velocities.\npub const NS: usize = {ns};
-        /// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
+        "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
         /// Lagrange multipliers by a sparse elimination; where the configuration is singular or constraints are redundant, by least squares.
         #[inline]\n#[must_use]
@@ -158,10 +174,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
-        c.names,
         correction = solution(c, s, "(*force).into()", "(*bias).into()"),
-        np = c.freedom[0],
-        ns = c.freedom[1],
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
     );
     if functions.iter().any(|f| f.name == "__motion_derivatives") {

@@ -34,7 +34,13 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         }
     }
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
-        let _ = writeln!(text, "\n# Structure\n\n`M(q) v̇ + h(q, v) = τ`, too long to be written out.\n");
+        let about = match interface.kinematic {
+            true => {
+                "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
+            }
+            false => "`M(q) v̇ + h(q, v) = τ`, too long to be written out.",
+        };
+        let _ = writeln!(text, "\n# Structure\n\n{about}\n");
         for joint in &interface.structure {
             let _ = writeln!(text, "- {joint}");
         }

@@ -43,6 +43,8 @@ pub struct Interface<'a> {
     pub units: Units,
     /// A file whose change asks for another expansion.
     pub file: Option<String>,
+    /// There are no dynamics.
+    pub kinematic: bool,
     /// The mechanism contains time: its functions take it first.
     pub time: bool,
     /// Inputs act by way of the velocity.
@@ -130,8 +132,11 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     for f in &output.functions {
         bodies.write_function(&mut methods, f, &s);
     }
-    constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
-    reactions::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
+    constraints::write_constants(&mut methods, &interface.constraints);
+    if !interface.kinematic {
+        constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
+        reactions::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
+    }
     write_manifold(&mut methods, Some(&output.charts), &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
@@ -179,7 +184,10 @@ pub fn emit_failed(
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
-    constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
+    constraints::write_constants(&mut methods, &interface.constraints);
+    if !interface.kinematic {
+        constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
+    }
     write_manifold(&mut methods, None, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
@@ -332,6 +340,9 @@ impl Head {
     ) {
         let Head { generics, arguments, bounds } = self;
         let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
+        if i.kinematic {
+            return;
+        }
         let _ = writeln!(
             out,
             "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",

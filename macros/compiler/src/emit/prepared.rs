@@ -53,6 +53,7 @@ pub fn write_prepared(
             None => write_function(&mut methods, f, s, true),
         }
     }
+    constraints::write_constants(&mut methods, &i.constraints);
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     reactions::write_methods(&mut methods, &i.constraints, functions, s);
     write_manifold(&mut methods, content.charts, s);

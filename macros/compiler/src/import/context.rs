@@ -19,6 +19,8 @@ pub(super) struct Cx<'a> {
     span: Span,
     /// Line and column at the start of every block: without them, each place would cost a pass over the file.
     blocks: Vec<(u32, u32)>,
+    /// What the parsed text has that the file has not: where it begins, its bytes, its characters.
+    added: (usize, usize, u32),
     diagnostics: &'a mut Diagnostics,
     mistakes: usize,
 }
@@ -33,32 +35,59 @@ impl<'a> Cx<'a> {
             blocks.push(position);
         }
         let (path, span) = (Rc::from(path.text.as_str()), path.place.span);
-        Cx { text, path, span, blocks, diagnostics, mistakes: 0 }
+        Cx { text, path, span, blocks, added: (0, 0, 0), diagnostics, mistakes: 0 }
+    }
+
+    /// Places are from now on those of a text that has `more` than the file, in a line, from the byte at `offset` on.
+    pub(super) fn add(&mut self, offset: usize, more: &str) {
+        self.added = (offset, more.len(), more.chars().count() as u32);
+    }
+
+    /// The offset in the file of an offset in the parsed text.
+    fn in_file(&self, offset: usize) -> usize {
+        let (start, bytes, _) = self.added;
+        if offset <= start { offset } else { offset.saturating_sub(bytes).max(start) }
     }
 
     /// The place of the byte at `offset`.
     pub(super) fn place(&self, offset: usize) -> Place {
-        let offset = offset.min(self.text.len());
-        let block = offset / BLOCK;
-        let start = self.blocks.get(block).copied().unwrap_or((1, 1));
-        let (line, column) = self.text.as_bytes()[block * BLOCK..offset].iter().fold(start, advance);
+        let offset = self.in_file(offset).min(self.text.len());
+        let (line, column) = self.position(offset);
         self.place_at(line, column)
     }
 
-    /// The place at a line and a column, both from one.
-    pub(super) fn place_at(&self, line: u32, column: u32) -> Place {
+    /// Line and column of a byte of the file.
+    fn position(&self, offset: usize) -> (u32, u32) {
+        let block = offset / BLOCK;
+        let start = self.blocks.get(block).copied().unwrap_or((1, 1));
+        self.text.as_bytes()[block * BLOCK..offset].iter().fold(start, advance)
+    }
+
+    /// The place at a line and a column of the parsed text, both from one.
+    pub(super) fn parsed_at(&self, line: u32, column: u32) -> Place {
+        let (start, _, characters) = self.added;
+        let (first, from) = self.position(start);
+        if line != first || column <= from {
+            return self.place_at(line, column);
+        }
+        self.place_at(line, column.saturating_sub(characters).max(from))
+    }
+
+    /// The place at a line and a column of the file, both from one.
+    fn place_at(&self, line: u32, column: u32) -> Place {
         let file = Some(FilePosition { file: self.path.clone(), line, column });
         Place { span: self.span, end: self.span, file }
     }
 
     /// The place of the end of the file.
     pub(super) fn end(&self) -> Place {
-        self.place(self.text.len())
+        let (line, column) = self.position(self.text.len());
+        self.place_at(line, column)
     }
 
-    /// The bytes of a range, if they are whole characters.
+    /// The file's bytes in a range of the parsed text, if they are whole characters.
     pub(super) fn slice(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
-        self.text.get(range)
+        self.text.get(self.in_file(range.start)..self.in_file(range.end))
     }
 
     /// Reports a mistake; `mend` adds the help.

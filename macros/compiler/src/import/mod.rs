@@ -7,6 +7,7 @@
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::UrdfOptions;
 use crate::syntax::{Body, Joint};
+use std::cell::OnceCell;
 
 mod context;
 mod element;
@@ -29,6 +30,8 @@ pub struct Imported {
     pub bodies: Vec<Body>,
     /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
     pub joints: Vec<Joint>,
+    /// The file's root is the ground itself.
+    pub is_ground: bool,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
     pub snapped: Vec<String>,
 }
@@ -45,7 +48,8 @@ pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> O
     }
     let text = &*xml::without_late_declaration(text);
     let cx = &mut context::Cx::new(text, &options.path, cx);
-    let document = xml::parse(text, cx)?;
+    let declared = OnceCell::new();
+    let document = xml::parse(text, &declared, cx)?;
     urdf::read(document.root_element(), options, cx)
 }
 

@@ -5,6 +5,7 @@ use super::context::{Cx, quote};
 use crate::diag::Place;
 use roxmltree::{Document, Error, Node, ParsingOptions};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// Elements inside one another. URDF needs six.
 const DEEPEST: usize = 64;
@@ -34,36 +35,95 @@ pub(super) fn without_late_declaration(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{}{blank}  {rest}", &text[..start]))
 }
 
-/// Parses the file; `None` if it is not XML or is a template.
-pub(super) fn parse<'t>(text: &'t str, cx: &mut Cx<'_>) -> Option<Document<'t>> {
-    let unclosed = match scan(text) {
-        Ok(unclosed) => unclosed,
+/// Prefixes without a declaration that are declared for the file.
+const MOST_PREFIXES: usize = 16;
+
+/// Parses the file; `None` if it is not XML or is a template. `declared` holds its text where that lacks declarations.
+///
+/// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) and keep what bears them. All of that is
+/// skipped, so it is no mistake: the prefixes are declared in the root element.
+pub(super) fn parse<'t>(
+    text: &'t str,
+    declared: &'t OnceCell<String>,
+    cx: &mut Cx<'_>,
+) -> Option<Document<'t>> {
+    let Scan { root, unclosed } = match scan(text) {
+        Ok(found) => found,
         Err((offset, message)) => {
             cx.error(&cx.place(offset), message, |d| d);
             return None;
         }
     };
-    let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
-    match Document::parse_with_options(text, options) {
-        Ok(document) => refuse_template(&document, cx).then_some(document),
-        Err(error) => {
-            report(&error, text, unclosed, cx);
-            None
-        }
-    }
+    let error = match parse_plain(text) {
+        Ok(document) => return refuse_template(&document, cx).then_some(document),
+        Err(error) => error,
+    };
+    let at = behind_name(text, root);
+    let (declarations, error) = declare_prefixes(text, at, error);
+    cx.add(at, &declarations);
+    let Some(error) = error else {
+        let whole = declared.get_or_init(|| with(text, at, &declarations));
+        return parse_plain(whole).ok().filter(|document| refuse_template(document, cx));
+    };
+    let unclosed = unclosed.map(|start| if start > at { start + declarations.len() } else { start });
+    report(&error, text, unclosed, cx);
+    None
 }
 
-/// Checks the limits without building a tree. Returns the innermost element that is never closed.
+/// The end of an element's name.
+fn behind_name(text: &str, element: usize) -> usize {
+    let name = text.get(element + 1..).unwrap_or_default();
+    let end = name.find(|c: char| c.is_whitespace() || matches!(c, '/' | '>' | '='));
+    end.map_or(text.len(), |length| element + 1 + length)
+}
+
+fn with(text: &str, at: usize, more: &str) -> String {
+    let (before, after) = text.split_at(at);
+    [before, more, after].concat()
+}
+
+/// Declarations of the prefixes for which parsing fails, and the error that is left with them.
+fn declare_prefixes(text: &str, at: usize, mut error: Error) -> (String, Option<Error>) {
+    let mut declarations = String::new();
+    // The root's own prefix would make all that is in it foreign.
+    let is_root = |prefix: &str| text[..at].contains(&format!("<{prefix}:"));
+    for _ in 0..MOST_PREFIXES {
+        let Error::UnknownNamespace(prefix, _) = &error else { break };
+        if ["xacro", "xml", "xmlns"].contains(&prefix.as_str()) || is_root(prefix) {
+            break;
+        }
+        declarations += &format!(" xmlns:{prefix}=\"undeclared:{prefix}\"");
+        match parse_plain(&with(text, at, &declarations)) {
+            Ok(_) => return (declarations, None),
+            Err(next) => error = next,
+        }
+    }
+    (declarations, Some(error))
+}
+
+fn parse_plain(text: &str) -> Result<Document<'_>, Error> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: false, ..ParsingOptions::default() })
+}
+
+/// What a look at the marks of a file tells.
+struct Scan {
+    /// Where the first element begins.
+    root: usize,
+    /// Where the innermost element begins that is never closed.
+    unclosed: Option<usize>,
+}
+
+/// Checks the limits without building a tree.
 ///
 /// It follows the parser's own reading of the text up to the first mistake of the text; behind that it may
 /// err, because the parser stops there.
-fn scan(text: &str) -> Result<Option<usize>, (usize, String)> {
+fn scan(text: &str) -> Result<Scan, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
     let mut open = Vec::new();
-    let mut at = 0;
+    let (mut at, mut root) = (0, None);
     while let Some(start) = text[at..].find('<').map(|k| at + k) {
         let rest = &text[start..];
         at = start
@@ -82,10 +142,11 @@ fn scan(text: &str) -> Result<Option<usize>, (usize, String)> {
                 open.pop();
                 end_behind(rest, 2, ">")
             } else {
+                root.get_or_insert(start);
                 scan_tag(rest, start, &mut open)?
             };
     }
-    Ok(open.pop())
+    Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop() })
 }
 
 /// Length of a piece of markup that ends with `end`.
@@ -182,6 +243,6 @@ fn place_of(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
     match (error, unclosed) {
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.place(offset),
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end(),
-        _ => cx.place_at(error.pos().row, error.pos().col),
+        _ => cx.parsed_at(error.pos().row, error.pos().col),
     }
 }

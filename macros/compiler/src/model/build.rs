@@ -15,7 +15,9 @@ use super::{
 };
 use crate::diag::Diagnostics;
 use crate::expr::{Graph, Rotation, Vec3};
-use crate::syntax::{Action, ActionKind, Description, Endpoint, ExprKind, Joint, JointKind, Target};
+use crate::syntax::{
+    Action, ActionKind, Description, Endpoint, ExprKind, Inertias, Joint, JointKind, Target,
+};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -146,6 +148,7 @@ fn empty_model<'g>(
         place: description.name.place.clone(),
         scalar: description.scalar.clone(),
         parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
+        kinematic: description.inertias == Inertias::None,
         gravity,
         friction_speed,
         links: Vec::new(),
@@ -468,6 +471,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         let d = self.description;
         let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
         let massive = massive.map(|name| (name, true));
+        if d.ground_frame {
+            let (name, pose) = (GROUND.to_string(), Pose::identity(self.scope.graph));
+            self.model.frames.push(NamedFrame { name, massive: false, link: None, pose });
+        }
         let world = self.scope.world.borrow();
         for (name, massive) in massive.chain(d.points.iter().map(|p| (&p.name, false))) {
             if let Some(p) = world.places.get(&name.text) {

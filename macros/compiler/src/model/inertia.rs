@@ -220,7 +220,7 @@ pub fn check_inertia(
     mass: Option<f64>,
     inertia: &Sym3<'_>,
     place: &Place,
-    hint: Option<&str>,
+    hint: &str,
     cx: &mut Diagnostics,
 ) {
     let Some(m) = inertia.full().values() else { return };
@@ -230,17 +230,14 @@ pub fn check_inertia(
     if scale <= NOTHING.max(SMALLEST * mass.unwrap_or(0.0)) {
         return;
     }
-    let diagnostic = if moments[0] < -TOLERANCE * scale {
+    if moments[0] < -TOLERANCE * scale {
         cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
             .help(format!("its principal moments are {list}"))
+            .help(hint);
     } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
         cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
             .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
-    } else {
-        return;
-    };
-    if let Some(hint) = hint {
-        diagnostic.help(hint);
+            .help(hint);
     }
 }
 

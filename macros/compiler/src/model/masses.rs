@@ -6,7 +6,7 @@ use super::world::Placed;
 use super::{Inertia, LinkId, Pose};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::syntax::{Body, Particle};
+use crate::syntax::{Body, Inertias, Particle};
 
 /// Mass, centre of mass in body axes, inertia about it.
 pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
@@ -15,7 +15,11 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
     pub fn add_masses(&mut self, cx: &mut Diagnostics) {
         for (k, body) in self.description.bodies.iter().enumerate() {
-            let inertia = self.body_inertia(body, cx);
+            // What a file fixes to the ground enters no equation, whatever figures it has.
+            let is_fixed = matches!(self.places[k], Some((None, _)));
+            let from_file = body.name.place.file.is_some();
+            let mut silent = Diagnostics::new();
+            let inertia = self.body_inertia(body, if is_fixed && from_file { &mut silent } else { cx });
             self.masses.push(inertia);
             if let Some(inertia) = inertia
                 && let Some((Some(link), pose)) = self.places[k].clone()
@@ -41,11 +45,14 @@ impl<'g> Builder<'_, 'g> {
             cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"));
         }
         if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
-            && !body.trust_inertia
+            && self.description.inertias == Inertias::Check
         {
-            let hint = e.place.file.as_ref().map(|_| {
-                "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
-            });
+            let hint = match e.place.file {
+                Some(_) => {
+                    "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+                }
+                None => "to take it as it is, write `#[mechanism(…, inertia = trust)]`",
+            };
             check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
         }
         Some((mass?, com?, inertia?))

@@ -354,6 +354,8 @@ pub struct Model<'g> {
     pub scalar: ScalarType,
     /// Names of the parameters.
     pub parameters: Vec<String>,
+    /// There are no dynamics, as the user asked for: nothing needs inertia.
+    pub kinematic: bool,
     /// Uniform gravity, in ground axes.
     pub gravity: Vec3<'g>,
     /// Speed at which friction is regularised.

@@ -4,7 +4,9 @@
 use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
 use crate::diag::Diagnostics;
-use crate::syntax::{Action, ActionKind, Definition, Description, Expr, ExprKind, Joint, JointKind, Law};
+use crate::syntax::{
+    Action, ActionKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind, Law,
+};
 use std::collections::BTreeSet;
 
 /// A guess at the interface of a mechanism.
@@ -101,7 +103,8 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
 /// Names of everything that has a frame, in the order of the model.
 fn frames(d: &Description) -> Vec<String> {
     let bodies = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
-    bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone()).collect()
+    let names = bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone());
+    d.ground_frame.then(|| GROUND.to_string()).into_iter().chain(names).collect()
 }
 
 /// Names of the bodies and particles that are not welded to others.

@@ -117,6 +117,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     // as those of loads and outputs, are complete by now: they do not know the frames.
     let Model {
         graph: _,
+        kinematic: _,
         name: _,
         place: _,
         scalar: _,

@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
-use super::{Base, Description, Expr, ExprKind, Formulation, Name, ScalarType, guard};
+use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, guard};
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
@@ -76,8 +76,8 @@ pub struct UrdfOptions {
     pub honour_passive: bool,
     /// Mimic joints follow their masters.
     pub follow_mimic: bool,
-    /// Impossible inertias are taken as they are.
-    pub trust_inertia: bool,
+    /// What is made of mass properties.
+    pub inertias: Inertias,
     /// Every moving joint with one degree of freedom is an input.
     pub inputs: bool,
     /// Joints frozen at zero.
@@ -237,6 +237,8 @@ fn empty_description(item: &ItemStruct) -> Description {
         constraints: Vec::new(),
         formulation: Formulation::default(),
         snapped: Vec::new(),
+        inertias: Inertias::Check,
+        ground_frame: false,
     }
 }
 
@@ -363,7 +365,8 @@ fn read_options(
     cx: &mut Diagnostics,
 ) -> Option<UrdfOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    *requests = read_requests(&mut arguments, description, cx);
+    let asked = words_given(&mut arguments);
+    *requests = read_requests(&asked, &mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
@@ -372,7 +375,7 @@ fn read_options(
         unify_scalar(scalar, found, place, cx);
     }
     let path = arguments.take_text("urdf", cx);
-    let file_only = ["base", "passive", "mimic", "inertia", "inputs", "lock", "snap"];
+    let file_only = ["base", "passive", "mimic", "inputs", "lock", "snap"];
     if path.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -387,9 +390,9 @@ fn read_options(
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
-    let trust_inertia = choice("inertia", ["check", "trust"]).unwrap_or(false);
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
+    description.inertias = read_inertias(&mut arguments, &asked, description, cx);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
@@ -398,11 +401,36 @@ fn read_options(
         base: if base { Base::Free } else { Base::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
-        trust_inertia,
+        inertias: description.inertias,
         inputs: !no_inputs,
         lock,
         snap,
     })
+}
+
+/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of them.
+fn read_inertias(
+    arguments: &mut Arguments,
+    asked: &[(&str, Place)],
+    description: &Description,
+    cx: &mut Diagnostics,
+) -> Inertias {
+    match arguments.take_word("inertia", &["check", "trust", "none"], cx) {
+        Some((word, _)) if word == "trust" => Inertias::Trust,
+        Some((word, _)) if word == "none" => {
+            for (word, place) in asked {
+                cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
+                    "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
+                ));
+            }
+            if let Formulation::Speeds(_, place) = &description.formulation {
+                cx.error(place.clone(), "a formulation of the dynamics needs inertia")
+                    .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+            }
+            Inertias::None
+        }
+        _ => Inertias::Check,
+    }
 }
 
 /// The tolerance of `snap`: a positive number, small beside an angle that is meant.
@@ -434,24 +462,36 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     }
 }
 
-/// The words among the arguments.
-fn read_requests(arguments: &mut Arguments, description: &Description, cx: &mut Diagnostics) -> Requests {
-    let mut asked = |word| arguments.word_given(word);
-    let (sensitivities, prepare) = (asked("sensitivities"), asked("prepare"));
+/// The words of [`Requests`] among the arguments.
+fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
+    REQUESTS.iter().filter_map(|word| Some((*word, arguments.word_given(word)?))).collect()
+}
+
+/// What the words among the arguments ask for.
+fn read_requests(
+    asked: &[(&str, Place)],
+    arguments: &mut Arguments,
+    description: &Description,
+    cx: &mut Diagnostics,
+) -> Requests {
+    let is_asked = |word| asked.iter().any(|(known, _)| *known == word);
     let requests = Requests {
-        derivatives: asked("derivatives").is_some(),
-        centroidal: asked("centroidal").is_some(),
-        regressor: asked("regressor").is_some(),
-        sensitivities: sensitivities.is_some(),
-        packed: asked("packed").is_some(),
-        prepare: prepare.is_some(),
-        batch: asked("batch").is_some(),
+        derivatives: is_asked("derivatives"),
+        centroidal: is_asked("centroidal"),
+        regressor: is_asked("regressor"),
+        sensitivities: is_asked("sensitivities"),
+        packed: is_asked("packed"),
+        prepare: is_asked("prepare"),
+        batch: is_asked("batch"),
         target_only: false,
     };
-    for (place, word) in [(sensitivities, "sensitivities"), (prepare, "prepare")] {
-        if let Some(place) = place.filter(|_| description.parameters.is_empty()) {
-            cx.error(place, format!("`{word}` has no meaning here: this mechanism has no parameters"))
-                .help(format!("remove `{word}`: all numbers are known at compile time"));
+    for (word, place) in asked {
+        if description.parameters.is_empty() && ["sensitivities", "prepare"].contains(word) {
+            cx.error(
+                place.clone(),
+                format!("`{word}` has no meaning here: this mechanism has no parameters"),
+            )
+            .help(format!("remove `{word}`: all numbers are known at compile time"));
         }
     }
     for e in arguments.take_plain() {

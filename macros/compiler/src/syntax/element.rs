@@ -263,7 +263,6 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         mass: arguments.take_expr("mass", cx),
         com: arguments.take_expr("com", cx),
         inertia: arguments.take_expr("inertia", cx),
-        trust_inertia: false,
         at: arguments.take_expr("at", cx),
         frame: arguments.take_expr("frame", cx),
     };

@@ -177,6 +177,22 @@ pub struct Description {
     pub formulation: Formulation,
     /// Numbers of a file that were rounded, as the user asked for.
     pub snapped: Vec<String>,
+    /// What is made of mass properties.
+    pub inertias: Inertias,
+    /// The file's root is the ground: it is a frame as other links are.
+    pub ground_frame: bool,
+}
+
+/// What is made of mass properties.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Inertias {
+    /// They are those of real bodies.
+    #[default]
+    Check,
+    /// They are taken as they are.
+    Trust,
+    /// There are none: the mechanism has no dynamics.
+    None,
 }
 
 /// How the accelerations of a mechanism with constraints are found.
@@ -288,8 +304,6 @@ pub struct Body {
     pub com: Option<Expr>,
     /// Inertia about the centre of mass, in body axes; zero if absent.
     pub inertia: Option<Expr>,
-    /// The inertia is taken as it is, though no real body can have it.
-    pub trust_inertia: bool,
     /// Where its origin is, for a body placed by expressions.
     pub at: Option<Expr>,
     /// The frame whose axes it has, for a body placed by expressions.

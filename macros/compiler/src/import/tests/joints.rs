@@ -10,7 +10,7 @@ fn check_chain(options: &UrdfOptions, joints: &[(&str, &str)], expected: &str) {
 #[test]
 fn every_type_has_its_joint() {
     let axis = "<axis xyz='0 0 2'/>";
-    let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar"];
+    let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
     check_chain(
         &UrdfOptions { inputs: true, ..defaults() },
         &kinds.map(|kind| (kind, axis)),
@@ -19,7 +19,8 @@ fn every_type_has_its_joint() {
          Sleeve j3: l2 -> l3 along [0, 0, 2] driven
          Weld j4: l3 -> l4
          Free j5: l4 -> l5
-         Planar j6: l5 -> l6 about [0, 0, 2]",
+         Planar j6: l5 -> l6 about [0, 0, 2]
+         Ball j7: l6 -> l7",
     );
 }
 
@@ -297,7 +298,7 @@ fn a_joint_says_what_it_joins_and_how() {
     check(
         &chain(&[("ball", "<axes xyz='0 0 1'/>"), ("revolute", "<mimic joint='j1' multipler='2'/>")]),
         "r.urdf:3:24: unknown joint type `ball`
-         = help: expected `revolute`, `continuous`, `prismatic`, `fixed`, `floating` or `planar`
+         = help: expected `revolute`, `continuous`, `prismatic`, `fixed`, `floating`, `planar` or `spherical`
          r.urdf:3:67: unknown element `<axes>`
          = help: did you mean `<axis>`?
          r.urdf:5:89: unknown attribute `multipler` of `<mimic>`

@@ -54,17 +54,19 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
     assert_eq!(at.map(|at| (at.file.to_string(), at.line, at.column)), Some(("r.urdf".to_string(), 2, 25)));
 }
 
+/// Where nothing needs inertia, mistakes in it are none.
 #[test]
-fn an_inertia_may_be_trusted() {
-    let options = UrdfOptions { trust_inertia: true, ..defaults() };
-    let expected = "body a trusted\nWeld root_joint: ground -> a";
-    check_with(&options, "<robot><link name='a'/></robot>", expected);
+fn inertia_may_be_left_out() {
+    let options = UrdfOptions { inertias: Inertias::None, ..defaults() };
+    let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
+    check_with(&options, text, "body a\nWeld root_joint: ground -> a");
 }
 
 #[test]
 fn what_is_missing_is_shown() {
-    check_inertial(
-        "",
+    check_with(
+        &UrdfOptions { base: Base::Free, ..defaults() },
+        "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
            = help: expected `<mass value="…"/>`
            r.urdf:2:16: `<inertial>` without `<inertia>`
@@ -115,11 +117,7 @@ fn an_element_stands_once() {
     check_robot(
         "<link name='a'><inertial/>\n<inertial/></link>",
         r#"r.urdf:3:1: second `<inertial>` of one element
-           = help: the first is at r.urdf:2:16
-           r.urdf:2:16: `<inertial>` without `<mass>`
-           = help: expected `<mass value="…"/>`
-           r.urdf:2:16: `<inertial>` without `<inertia>`
-           = help: expected `<inertia ixx="…" ixy="…" ixz="…" iyy="…" iyz="…" izz="…"/>`"#,
+           = help: the first is at r.urdf:2:16"#,
     );
 }
 
@@ -173,4 +171,28 @@ fn every_bad_number_has_its_own_place() {
 fn long_nonsense_is_shortened() {
     let expected = format!("r.urdf:2:39: `{}`… is not a number", "x".repeat(60));
     check_inertial(&format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)), &expected.replace("`…", "…`"));
+}
+
+/// What stands on the ground enters no equation, whatever the file says of its mass.
+#[test]
+fn links_on_the_ground_need_no_inertia() {
+    let bad = |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
+    let links = [bad("base"), bad("arms"), bad("hand")].join("\n");
+    let joints = [joint("a", "fixed", "base", "arms", ""), joint("b", "revolute", "arms", "hand", "")];
+    let text = format!("<robot>\n{links}\n{}</robot>", joints.concat());
+    let missing = |line: u32| {
+        format!(
+            "r.urdf:{line}:19: `<inertial>` without `<inertia>`
+                 = help: expected `<inertia ixx=\"…\" ixy=\"…\" ixz=\"…\" iyy=\"…\" iyz=\"…\" izz=\"…\"/>`\n"
+        )
+    };
+    check(&text, &missing(4));
+    let free = UrdfOptions { base: Base::Free, ..defaults() };
+    check_with(&free, &text, &[2, 3, 4].map(missing).concat());
+    check_with(
+        &locked(&["b"]),
+        &text,
+        "body base mass=1\nbody arms mass=1\nbody hand mass=1
+         Weld root_joint: ground -> base\nWeld a: base -> arms\nWeld b: arms -> hand",
+    );
 }

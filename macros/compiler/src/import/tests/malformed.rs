@@ -19,13 +19,54 @@ fn malformed_xml_has_a_place() {
             "<robot a='& b'/>",
             "r.urdf:1:11: malformed XML: this `&` begins no entity\n= help: write `&amp;` for `&`",
         ),
-        ("<robot a:b='1'/>", "r.urdf:1:8: malformed XML: unknown namespace prefix `a`"),
+        ("<a:robot b:c='1'/>", "r.urdf:1:2: malformed XML: unknown namespace prefix `a`"),
         ("<robot a='<'/>", "r.urdf:1:11: malformed XML: expected ``` not `<`"),
         ("<robot/><robot/>", "r.urdf:1:9: malformed XML: unknown token"),
         ("<robot><!-- -- --></robot>", "r.urdf:1:8: malformed XML: comment contains `--`"),
     ] {
         check(text, expected);
     }
+}
+
+/// What bears the prefix of a simulator is skipped, declared or not; all else keeps its place, and its mistakes.
+#[test]
+fn prefixes_need_no_declaration() {
+    let extensions = "<drake:joint x='1'/><gazebo xsi:y='2'>\n<sensor:camera><ö:b/></sensor:camera></gazebo>";
+    let robot = |inside: &str| {
+        format!("<?xml version='1.0'?>\n<!-- <r> --> <robot name='r'>{extensions}{inside}</robot>")
+    };
+    check(&robot("<link name='a'/>"), "body a\nWeld root_joint: ground -> a");
+    check(&robot("<link name='a'/>").replace(" name='r'", ""), "body a\nWeld root_joint: ground -> a");
+    for (inside, expected) in [
+        ("<link name='a'/><lnk/>", "r.urdf:3:63: unknown element `<lnk>`\n= help: did you mean `<link>`?"),
+        (
+            "<link nmae='a'/>",
+            "r.urdf:3:53: unknown attribute `nmae` of `<link>`\n= help: did you mean `name`?",
+        ),
+        ("<link>", "r.urdf:3:53: malformed XML: expected `</link>`, found `</robot>`"),
+        ("<a b='&x;'/>", "r.urdf:3:53: malformed XML: unknown entity `&x;`"),
+        (
+            "<a:link xacro:b='1'/>",
+            "r.urdf:3:55: malformed XML: unknown namespace prefix `xacro`
+             = help: expand the file first: `xacro robot.urdf.xacro > robot.urdf`",
+        ),
+    ] {
+        check(&robot(inside), expected);
+    }
+    // On the line of the root, where the declarations were put, and before them.
+    check(
+        "<robot><d:x/><link name='a'/><link name='b' name='c'/></robot>",
+        "r.urdf:1:45: malformed XML: attribute `name` is given twice",
+    );
+    check(
+        "<robot><d:x/><link name='a'><mass value='1 2'/>",
+        "r.urdf:1:14: malformed XML: this element is never closed",
+    );
+    check(
+        "<robot><d:x/><link name='a'><inertial><mass value='0 0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='z'/></inertial></link></robot>",
+        "r.urdf:1:52: expected a number in `value`, found `0 0`
+         r.urdf:1:112: `z` is not a number",
+    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{Imported, UrdfOptions, import_urdf};
 use crate::diag::Diagnostics;
-use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Joint, Name};
+use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Inertias, Joint, Name};
 use proc_macro2::Span;
 
 mod files;
@@ -23,7 +23,7 @@ fn defaults() -> UrdfOptions {
         base: Base::Fixed,
         honour_passive: true,
         follow_mimic: true,
-        trust_inertia: false,
+        inertias: Inertias::Check,
         inputs: false,
         lock: Vec::new(),
         snap: None,
@@ -68,7 +68,8 @@ fn render(imported: &Imported) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
     let rounded = imported.snapped.iter().map(|line| format!("rounded {line}"));
-    bodies.chain(joints).chain(rounded).map(|line| line + "\n").collect()
+    let ground = imported.is_ground.then(|| "the root is the ground".to_string());
+    ground.into_iter().chain(bodies).chain(joints).chain(rounded).map(|line| line + "\n").collect()
 }
 
 fn render_body(body: &Body) -> String {
@@ -78,7 +79,7 @@ fn render_body(body: &Body) -> String {
             line += &format!(" {word}={}", render_expr(value));
         }
     }
-    line + if body.trust_inertia { " trusted" } else { "" }
+    line
 }
 
 fn render_joint(joint: &Joint) -> String {

@@ -95,7 +95,7 @@ fn names_are_given_once() {
     // A fixed root of this name is the ground.
     check_robot(
         &format!("{links}\n{}", joint("j", "fixed", "ground", "a", "")),
-        "body a\nWeld j: ground -> a",
+        "the root is the ground\nbody a\nWeld j: ground -> a",
     );
     check_robot(
         "<link name=' '/><link/><link nmae='a'/>",
@@ -117,6 +117,27 @@ fn joints_join_links_that_are_there() {
          r.urdf:4:63: joint `k` joins a link to itself",
     );
     check("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
+}
+
+/// Files that hang a robot from `world` need not declare it.
+#[test]
+fn the_world_is_known() {
+    let links = link("a") + &link("b");
+    let joints = [joint("j", "fixed", "world", "a", ""), joint("k", "fixed", "world", "b", "")].concat();
+    check_robot(
+        &(links.clone() + &joints),
+        "body world
+         body a
+         body b
+         Weld root_joint: ground -> world
+         Weld j: world -> a
+         Weld k: world -> b",
+    );
+    check_robot(
+        &format!("{links}\n{}", joint("j", "fixed", "a", "world", "")),
+        "r.urdf:3:61: unknown link `world`
+         = help: expected `a` or `b`",
+    );
 }
 
 #[test]

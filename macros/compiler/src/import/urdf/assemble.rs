@@ -28,7 +28,7 @@ pub(super) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints, snapped: robot.snapped }
+    Imported { bodies, joints, is_ground, snapped: robot.snapped }
 }
 
 /// The joint that holds the root, which no URDF file names.

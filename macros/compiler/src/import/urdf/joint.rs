@@ -7,14 +7,15 @@ use crate::import::element::{Node, check_attributes, children, name, number, num
 use crate::import::{Placed, UrdfOptions};
 use crate::syntax::{Expr, JointKind, Mimic, Name};
 
-/// URDF's words for the joints.
-const TYPES: [(&str, JointKind); 6] = [
+/// URDF's words for the joints, and `spherical`, which simulators take as well.
+const TYPES: [(&str, JointKind); 7] = [
     ("revolute", JointKind::Pin),
     ("continuous", JointKind::Pin),
     ("prismatic", JointKind::Sleeve),
     ("fixed", JointKind::Weld),
     ("floating", JointKind::Free),
     ("planar", JointKind::Planar),
+    ("spherical", JointKind::Ball),
 ];
 
 /// A joint as the file gives it.
@@ -49,8 +50,13 @@ impl FileJoint {
 
     /// True if it moves about or along its axis.
     pub(super) fn has_axis(&self) -> bool {
-        !matches!(self.kind, JointKind::Weld | JointKind::Free)
+        has_axis(self.kind)
     }
+}
+
+/// True if joints of the kind move about or along an axis.
+fn has_axis(kind: JointKind) -> bool {
+    !matches!(kind, JointKind::Weld | JointKind::Free | JointKind::Ball)
 }
 
 /// Reads a joint; `None` if it does not say what it joins.
@@ -66,8 +72,7 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     // Exporters write an axis of zeros and a damping into fixed joints.
     let (word, kind) = kind.unwrap_or(("fixed", JointKind::Weld));
     let moves = kind != JointKind::Weld;
-    let has_axis = moves && kind != JointKind::Free;
-    let axis = read_axis(axis.filter(|_| has_axis), node, cx);
+    let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
     let [damping, friction] =
         read_dynamics(dynamics.filter(|_| moves && options.honour_passive), word, kind, cx);
     let mimic = mimic.filter(|_| moves && options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));

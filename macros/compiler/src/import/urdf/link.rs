@@ -4,40 +4,52 @@ use super::origin::{Origin, read_origin};
 use crate::import::UrdfOptions;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, name, number, place, required};
-use crate::syntax::{Body, Expr, ExprKind, Name};
+use crate::syntax::{Body, Expr, ExprKind, Inertias, Name};
 
 /// The entries of the inertia matrix, as URDF names them.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
-/// Reads a link; `None` if it has no name.
-pub(super) fn read_link(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Body> {
+/// Reads a link; `None` if it has no name. Where nothing needs inertia, it is not read; what `stands` on the ground may lack
+/// some.
+pub(super) fn read_link(
+    node: Node<'_>,
+    stands: impl FnOnce(&str) -> bool,
+    options: &UrdfOptions,
+    cx: &mut Cx<'_>,
+) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
     let name = name(node, "name", cx);
-    let [inertial] = children(node, ["inertial"], cx);
-    let mut body = Body {
-        name: name?,
-        mass: None,
-        com: None,
-        inertia: None,
-        trust_inertia: options.trust_inertia,
-        at: None,
-        frame: None,
+    let [inertial] = match options.inertias {
+        Inertias::None => [None],
+        _ => children(node, ["inertial"], cx),
     };
+    let stands = name.as_ref().is_some_and(|name| stands(&name.text));
+    let mut body = bare(name?);
     if let Some(inertial) = inertial {
-        read_inertial(inertial, &mut body, cx);
+        read_inertial(inertial, stands, &mut body, cx);
     }
     Some(body)
 }
 
+/// A link without mass.
+pub(super) fn bare(name: Name) -> Body {
+    Body { name, mass: None, com: None, inertia: None, at: None, frame: None }
+}
+
 /// Reads mass, centre of mass and inertia. A link that says that all are zero is one that says nothing.
-fn read_inertial(node: Node<'_>, body: &mut Body, cx: &mut Cx<'_>) {
+fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
     let [origin, mass, inertia] = children(node, ["origin", "mass", "inertia"], cx);
     let origin = read_origin(origin, node, cx);
-    if let Some(mass) = required(mass, node, "mass", &["value"], cx) {
+    let mut found = |child, element, attributes: &[&str]| match stands {
+        true => child,
+        false => required(child, node, element, attributes, cx),
+    };
+    let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
+    if let Some(mass) = mass {
         check_attributes(mass, &["value"], &[], cx);
         body.mass = number(mass, "value", cx).map(|m| Expr::number(m.value, &m.place));
     }
-    if let Some(inertia) = required(inertia, node, "inertia", &INERTIA, cx) {
+    if let Some(inertia) = inertia {
         body.inertia = read_inertia(inertia, &origin, cx);
     }
     body.com = origin.at();

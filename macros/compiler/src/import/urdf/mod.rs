@@ -17,6 +17,7 @@ mod motion;
 mod names;
 mod origin;
 mod snap;
+mod standing;
 mod tree;
 
 /// Links or joints of one file.
@@ -37,6 +38,7 @@ pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Op
     }
     let mut robot = read_robot(node, options, cx)?;
     names::check_names(&robot, cx);
+    names::declare_world(&mut robot);
     names::rename_ground(&mut robot, options.base);
     names::check_ends(&robot, cx);
     names::check_locks(&robot.joints, &options.lock, cx);
@@ -69,6 +71,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
 
 fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
+    let standing = standing::links(node, options);
     let mut robot = Robot { links: Vec::new(), joints: Vec::new(), snapped: Vec::new() };
     for child in elements(node) {
         let kind = match child.tag_name().name() {
@@ -85,7 +88,7 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
             return None;
         }
         match kind {
-            0 => robot.links.extend(link::read_link(child, options, cx)),
+            0 => robot.links.extend(link::read_link(child, |link| standing.contains(link), options, cx)),
             _ => robot.joints.extend(joint::read_joint(child, options, cx)),
         }
     }

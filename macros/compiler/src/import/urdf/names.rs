@@ -1,7 +1,7 @@
 //! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file leaves open.
 
-use super::Robot;
 use super::joint::FileJoint;
+use super::{Robot, link};
 use crate::import::context::{Cx, position, quote};
 use crate::syntax::{Base, GROUND, Name};
 use std::collections::BTreeMap;
@@ -10,6 +10,19 @@ use std::collections::BTreeMap;
 pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
     check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
+}
+
+/// The link that files hang from without declaring it.
+const WORLD: &str = "world";
+
+/// Declares the link `world` if joints begin there and nothing says what it is: it is what the root is held by elsewhere.
+pub(super) fn declare_world(robot: &mut Robot) {
+    let is_known = robot.links.iter().any(|link| link.name.text == WORLD)
+        || robot.joints.iter().any(|joint| joint.child.text == WORLD);
+    let used = robot.joints.iter().find(|joint| joint.parent.text == WORLD);
+    if let Some(world) = used.filter(|_| !is_known).map(|joint| joint.parent.clone()) {
+        robot.links.push(link::bare(world));
+    }
 }
 
 /// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called so: it is the ground.

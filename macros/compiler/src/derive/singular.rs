@@ -1,0 +1,120 @@
+//! Mass matrices that cannot be inverted: what lacks inertia is a mistake of the user's, told by its cause.
+
+use crate::diag::{Diagnostics, all_of};
+use crate::expr::{Graph, Sym3, Vec3};
+use crate::mechanics::{Joint, crba, massless, regularity};
+use crate::model::{Inertia, LinkId, Model, Motion};
+use crate::syntax::ROOT_JOINT;
+
+/// What to write for a mechanism without inertia.
+const LEAVE_OUT: &str = "or leave the dynamics out, which need inertia: with `inertia = none` frames, their Jacobians, constraints and outputs remain";
+
+/// True if the mass matrix can be inverted; reports why not.
+pub fn check<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+    cx: &mut Diagnostics,
+) -> bool {
+    let loaded = massless::loaded_mass(model, joints, mass.clone());
+    let mut singular = regularity::singular_velocities(model, joints, &loaded);
+    if singular.is_empty() {
+        return true;
+    }
+    if model.inertances.is_empty()
+        && model.links.iter().all(|link| link.inertia == Inertia::zero(model.graph))
+    {
+        report_nothing(model, singular[0], cx);
+        return false;
+    }
+    if let Some(bare) = bare_base(model) {
+        // Only what would remain with a base that has mass is another mistake.
+        let mut with_mass = model.clone();
+        with_mass.links[bare].inertia = unit(model.graph);
+        let mass = crba::mass_matrix(&with_mass, joints);
+        let loaded = massless::loaded_mass(&with_mass, joints, mass);
+        let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
+        if rest.len() < singular.len() {
+            report_base(model, bare, cx);
+            singular = rest;
+        }
+    }
+    if !singular.is_empty() {
+        report_velocities(model, &singular, cx);
+    }
+    false
+}
+
+/// Some mass with some inertia.
+fn unit(graph: &Graph) -> Inertia<'_> {
+    Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::scalar(graph.one()))
+}
+
+/// A link that moves freely and has neither mass nor inertia.
+fn bare_base(model: &Model<'_>) -> Option<usize> {
+    let nothing = Inertia::zero(model.graph);
+    model.links.iter().position(|l| matches!(l.motion, Motion::Free { .. }) && l.inertia == nothing)
+}
+
+/// Reports a mechanism of which no part has inertia.
+fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
+    let place = &model.velocities[velocity].1;
+    let (what, mend) = match place.file {
+        Some(_) => ("no link that moves has inertia", "add `<inertial>` elements to the file"),
+        None => ("nothing that moves has inertia", "give mass or inertia to the bodies"),
+    };
+    cx.error(place.clone(), what).help(mend).help(LEAVE_OUT);
+}
+
+/// Reports a free base without mass.
+fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
+    let Motion::Free { v, .. } = model.links[link].motion else { return };
+    let place = &model.velocities[v].1;
+    let body = model.frames.iter().find(|frame| frame.massive && frame.link == Some(LinkId(link)));
+    let name = body.map_or("the base", |body| body.name.as_str());
+    let diagnostic = cx.error(place.clone(), format!("`{name}` moves freely and has no mass of its own"));
+    diagnostic.help(format!(
+        "whatever a free base carries by joints, it needs mass and inertia: give them to `{name}`"
+    ));
+    if place.file.is_some() {
+        diagnostic.help("or hold it: leave out `base = free`");
+    }
+}
+
+/// Reports velocities that move nothing, all together: a file may have many.
+fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
+    const MOST: usize = 8;
+    let place = &model.velocities[singular[0]].1;
+    let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
+    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    if names.len() > MOST {
+        list.push(format!("{} more", names.len() - MOST));
+    }
+    let (subject, verb, joints) = match names.len() {
+        1 => ("coordinate", "moves", "the joint carries"),
+        _ => ("coordinates", "move", "the joints carry"),
+    };
+    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
+    let diagnostic = cx.error(place.clone(), message);
+    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
+    if place.file.is_some() {
+        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
+        joints.dedup();
+        // The root's is not the file's.
+        joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
+        match joints.as_slice() {
+            [] => {}
+            _ if singular.len() == model.nv() => {}
+            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
+            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
+        }
+        diagnostic.help(LEAVE_OUT);
+    }
+}
+
+/// The name of a velocity's joint. Those of a joint with several stand at the same place, each with a word of its own.
+fn joint_of<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
+    let (name, place) = &model.velocities[velocity];
+    let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;
+    name.rsplit_once('.').filter(|_| !alone).map_or(name, |(joint, _)| joint)
+}
