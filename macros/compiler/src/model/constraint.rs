@@ -130,13 +130,14 @@ impl<'g> Builder<'_, 'g> {
     /// Drops rows that follow from others and counts the degrees of freedom.
     fn check_mobility(&mut self, cx: &mut Diagnostics) {
         let mut rows = Rows::of(&self.model);
-        redundancy::check_constant(&self.model, &rows, cx);
+        let constant = redundancy::constant(&self.model, &rows);
+        redundancy::check_constant(&self.model, &constant, cx);
         if !cx.is_empty() {
             return;
         }
         let witnesses = mobility::witnesses(&self.model, &rows, cx);
         let before = self.model.constraints.clone();
-        if redundancy::prune(&mut self.model, &rows, &witnesses) {
+        if redundancy::prune(&mut self.model, &rows, &constant, &witnesses) {
             contact::check_pressed(&before, &self.model.redundant, cx);
             rows = Rows::of(&self.model);
         }

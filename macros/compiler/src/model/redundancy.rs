@@ -13,11 +13,31 @@ const TOLERANCE: f64 = 1e-9;
 /// Random configurations tried.
 const SAMPLES: u64 = 3;
 
+/// What is left of zero after the few sums of a row, relative to others of one vector.
+const NOISE: f64 = 1e-12;
+/// The same relative to all rows, whose units may differ.
+const ROUNDING: f64 = 1e-15;
+
+/// By row, whether no velocity influences it anywhere, be it up to rounding: the height of a wheel whose axle keeps its own.
+pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
+    let sampled = |seed| rows.jacobian(&random_configuration(model, seed), seed);
+    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sampled).collect();
+    let group = |row: usize| model.constraints[row].group;
+    let is_small = |sizes: &[f64], row: usize| {
+        let all = sizes.iter().copied().fold(0.0, f64::max);
+        let own = (0..sizes.len()).filter(|k| group(*k) == group(row)).map(|k| sizes[k]).fold(0.0, f64::max);
+        sizes[row] <= NOISE * own || sizes[row] <= ROUNDING * all
+    };
+    let sizes: Vec<Vec<f64>> =
+        samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
+    let idle = |row| rows.is_constant(row) || sizes.iter().all(|sizes| is_small(sizes, row));
+    (0..model.constraints.len()).map(idle).collect()
+}
+
 /// Reports rows that no velocity influences and that are not fulfilled: they have the same value everywhere.
-pub fn check_constant(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) {
-    let all = model.constraints.iter().enumerate();
-    let constant: Vec<&Constraint<'_>> =
-        all.filter(|(row, _)| rows.is_constant(*row)).map(|(_, c)| c).collect();
+pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
+    let all = model.constraints.iter().zip(constant);
+    let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
     let tape = Tape::of(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
     let values = |seed| {
         let q = random_configuration(model, seed);
@@ -32,14 +52,14 @@ pub fn check_constant(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) 
     }
 }
 
-/// Drops rows that follow from the others wherever the mechanism is; true if there are such rows.
-pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, witnesses: &[Witness]) -> bool {
+/// Drops rows that follow from the others wherever the mechanism is, constant ones among them; true if there are such rows.
+pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], witnesses: &[Witness]) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(witnesses.iter().cloned());
     let samples: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
     let mut bases: Vec<Basis> = samples.iter().map(|_| Basis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
-    for row in 0..model.constraints.len() {
+    for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
         // Where no configuration is known that fulfils the constraints, only rows without any influence go.
         let none = Basis::default();
         let depends = samples.iter().zip(&bases).all(|(j, basis)| {
