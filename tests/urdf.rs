@@ -341,7 +341,7 @@ fn the_ground_may_be_a_link() {
     assert_eq!(Grounded::FRAMES, ["ground", "hand"]);
     let q = [0.4].into();
     let placement = Grounded.frame_placement(frame!(Grounded, "ground"), &q);
-    assert_eq!(placement.to_homogeneous(), SMatrix::identity());
+    assert_eq!(placement.to_homogeneous(), SMatrix::<f64, 4, 4>::identity());
     assert_close(
         "hand",
         Grounded.frame_placements(&q)[1].translation.vector.as_slice(),

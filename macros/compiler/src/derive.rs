@@ -72,8 +72,12 @@ pub fn derive_with<'g>(
     if requests.sensitivities {
         constants.push(signatures::parameters(&model.parameters));
     }
-    let output =
-        Output { equations: written(model), prepared, constants, ..steps(model, &joints, functions) };
+    let output = Output {
+        equations: written(model, &joints, &mass),
+        prepared,
+        constants,
+        ..steps(model, &joints, functions)
+    };
     finite(model, output, cx)
 }
 
@@ -288,23 +292,23 @@ fn finish(functions: &mut [Function]) {
     }
 }
 
-/// The equations of motion in a line each; empty for mechanisms that are too large to be read.
+/// The equations of motion in a line each; empty where they are too long to be read.
 pub fn equations(model: &Model<'_>) -> String {
-    written(model).plain
+    written_alone(model).plain
 }
 
 /// The same as LaTeX: an `aligned` environment for math mode, with `amsmath`.
 pub fn equations_latex(model: &Model<'_>) -> String {
-    written(model).latex
+    written_alone(model).latex
 }
 
-fn written(model: &Model<'_>) -> Written {
-    if !mechanics::equations::is_small(model) {
-        return Written::default();
-    }
+fn written_alone(model: &Model<'_>) -> Written {
     let joints = mechanics::joints(model);
-    let mass = crba::mass_matrix(model, &joints);
-    let equations = mechanics::equations::derive(model, &joints, &mass);
+    written(model, &joints, &crba::mass_matrix(model, &joints))
+}
+
+fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Written {
+    let equations = mechanics::equations::derive(model, joints, mass);
     equations.map_or_else(Written::default, |e| mechanics::equations::written(model, &e))
 }
 

@@ -51,6 +51,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
     ];
     for (name, text, about) in texts {
         let about = match text.as_str() {
+            "" if i.velocities.is_empty() => "Empty: nothing moves.",
             "" if i.kinematic => "Empty: without inertia there are no equations of motion.",
             "" => "Empty: the equations of this mechanism are too long to be read.",
             _ => about,

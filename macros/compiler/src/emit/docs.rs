@@ -38,6 +38,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
             true => {
                 "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
             }
+            false if interface.velocities.is_empty() => "Nothing moves.",
             false => "`M(q) v̇ + h(q, v) = τ`, too long to be written out.",
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");

@@ -268,7 +268,8 @@ fn common_number(terms: &[Term]) -> f64 {
     sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
 }
 
-fn gcd(a: u32, b: u32) -> u32 {
+/// The greatest common divisor.
+pub fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 

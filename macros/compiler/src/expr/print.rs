@@ -108,7 +108,7 @@ impl<'a, S: Style> Writer<'a, S> {
         self.factors(parameters, &mut factors, &mut divisors);
         factors.extend(sum);
         self.factors(m.without(parameters), &mut factors, &mut divisors);
-        let number = Number::of(coefficient.abs(), !factors.is_empty());
+        let number = Number::of(coefficient.abs());
         let number = (number != Number::ONE || factors.is_empty()).then_some(number);
         self.style.product(number, &factors, &divisors)
     }

@@ -5,6 +5,7 @@
 use super::crba::Matrix;
 use super::kinematics::Joint;
 use super::{accelerations, constraints, energy, forces, rnea, velocities};
+use crate::expr::eval::Tape;
 use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
 use crate::expr::polynomial::{Polynomial, Rank, Ring};
@@ -18,14 +19,13 @@ mod written;
 
 pub use written::written;
 
-/// Most velocities of a mechanism whose equations are written.
-const VELOCITIES: usize = 4;
-/// Most moving frames.
-const LINKS: usize = 8;
+/// Most operations of the mass matrix, and of all equations, that are multiplied out: a look at them is cheap, and what takes
+/// more would be too long.
+const OPERATIONS: [usize; 2] = [200, 500];
 /// Most terms, of all equations together, that anybody would read.
-const READABLE: usize = 150;
+const READABLE: usize = 220;
 /// Most terms before they are shortened.
-const LONG: usize = 300;
+const LONG: usize = 400;
 
 /// The equations of a mechanism as polynomials of one ring.
 pub struct Equations {
@@ -39,14 +39,17 @@ pub struct Equations {
     pub forces: Vec<Polynomial>,
 }
 
-/// True if the equations are worth trying.
-pub fn is_small(model: &Model<'_>) -> bool {
-    (1..=VELOCITIES).contains(&model.nv()) && model.links.len() <= LINKS
-}
-
-/// The equations of a small mechanism; `None` where they would be too long to read.
+/// The equations of a mechanism; `None` where they would be too long to read. Their length decides, as soon as it is known.
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Equations> {
-    if !is_small(model) {
+    let entries: Vec<Expr<'g>> = mass.iter().flatten().copied().collect();
+    if entries.is_empty() || Tape::of(&entries).steps() > OPERATIONS[0] {
+        return None;
+    }
+    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
+    let right = right_sides(model, joints);
+    let kept: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
+    let all: Vec<Expr<'g>> = entries.iter().chain(&bias).chain(&right).chain(&kept).copied().collect();
+    if Tape::of(&all).steps() > OPERATIONS[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
@@ -54,28 +57,28 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     for angle in angles(model) {
         normal.of(angle.sin())?;
     }
-    let v = velocities(model);
-    let mut motion = normals(&mut normal, &rnea::inverse_dynamics(model, joints, &v, None))?;
-    let (v, a) = (normals(&mut normal, &v)?, normals(&mut normal, &accelerations(model))?);
-    for (i, row) in mass.iter().enumerate() {
-        for (j, entry) in row.iter().enumerate() {
-            let entry = normal.of(*entry)?;
-            let force = normal.ring.times(&entry, &a[j])?;
-            motion[i] = normal.ring.plus(&motion[i], &force)?;
-        }
+    let entries = normals(&mut normal, &entries)?;
+    let mut motion = normals(&mut normal, &bias)?;
+    let (v, a) = (normals(&mut normal, &velocities(model))?, normals(&mut normal, &accelerations(model))?);
+    for (k, entry) in entries.iter().enumerate() {
+        let (i, j) = (k / model.nv(), k % model.nv());
+        let force = normal.ring.times(entry, &a[j])?;
+        motion[i] = normal.ring.plus(&motion[i], &force)?;
     }
-    let kinetic = kinetic(model, joints, mass, &v, &mut normal)?;
+    let kinetic = kinetic(model, joints, &entries, &v, &mut normal)?;
     let potential = normal.of(energy::potential_energy(model, joints))?;
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
-    let mut right = forces::generalized_forces(model, joints);
-    let held = constraints::forces(model, &constraints::multipliers(model));
-    right.iter_mut().zip(held).for_each(|(force, held)| *force += held);
     let mut forces = normals(&mut normal, &right)?;
-    for c in &model.constraints {
-        motion.push(normal.of(c.residual.unwrap_or(c.rate))?);
-        forces.push(Polynomial::default());
-    }
+    motion.extend(normals(&mut normal, &kept)?);
+    forces.resize(motion.len(), Polynomial::default());
     readable(normal.ring, lagrangian, motion, forces)
+}
+
+/// What the inputs and the multipliers contribute, by velocity.
+fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    let held = constraints::forces(model, &constraints::multipliers(model));
+    let forces = forces::generalized_forces(model, joints);
+    forces.into_iter().zip(held).map(|(force, held)| force + held).collect()
 }
 
 /// The coordinates of which sines or cosines are taken somewhere.
@@ -100,7 +103,7 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 fn kinetic<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    mass: &Matrix<'g>,
+    mass: &[Polynomial],
     v: &[Polynomial],
     normal: &mut Normal<'g>,
 ) -> Option<Polynomial> {
@@ -108,12 +111,10 @@ fn kinetic<'g>(
         return normal.of(energy::kinetic_energy(model, joints, &velocities(model)));
     }
     let mut twice = Polynomial::default();
-    for (i, row) in mass.iter().enumerate() {
-        for (j, entry) in row.iter().enumerate() {
-            let momentum = normal.of(*entry).and_then(|entry| normal.ring.times(&entry, &v[j]))?;
-            let energy = normal.ring.times(&momentum, &v[i])?;
-            twice = normal.ring.plus(&twice, &energy)?;
-        }
+    for (k, entry) in mass.iter().enumerate() {
+        let momentum = normal.ring.times(entry, &v[k % v.len()])?;
+        let energy = normal.ring.times(&momentum, &v[k / v.len()])?;
+        twice = normal.ring.plus(&twice, &energy)?;
     }
     Some(twice.scaled(0.5))
 }

@@ -22,6 +22,15 @@ impl Style for Latex<'_> {
     fn number(&self, number: &Number) -> String {
         match number {
             Number::Fraction(p, q) if *q != 1 => format!("\\tfrac{{{p}}}{{{q}}}"),
+            Number::Pi(p, q, power) => {
+                let pi = if power.abs() == 2 { "\\pi^{2}" } else { "\\pi" };
+                let times = |k: &u32| if *k == 1 { String::new() } else { k.to_string() };
+                match (*power > 0, q) {
+                    (true, 1) => format!("{}{pi}", times(p)),
+                    (true, q) => format!("\\tfrac{{{}{pi}}}{{{q}}}", times(p)),
+                    (false, q) => format!("\\tfrac{{{p}}}{{{}{pi}}}", times(q)),
+                }
+            }
             Number::Scientific(digits, power) => format!("{digits}\\times 10^{{{power}}}"),
             _ => number.to_string(),
         }
@@ -68,7 +77,8 @@ impl Style for Latex<'_> {
             return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE);
         }
         // A fraction is not put on another one.
-        let small = matches!(&number, Some(Number::Fraction(_, q)) if *q != 1);
+        let small = matches!(&number, Some(Number::Fraction(_, q)) if *q != 1)
+            || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
         let (before, above) = if small { (number, None) } else { (None, number) };
         let above = over(above.into_iter(), factors);

@@ -1,7 +1,8 @@
 //! How the parts of a polynomial look; and plain text.
 
-use crate::expr::factor::fraction;
+use crate::expr::factor::{fraction, gcd};
 use crate::expr::node::Symbol;
+use std::f64::consts::PI;
 use std::fmt;
 
 /// A text in all ways of writing; empty where there is nothing that could be read.
@@ -59,11 +60,14 @@ pub struct Argument {
     pub lone: bool,
 }
 
-/// A number for reading, without sign.
+/// A number for reading, without sign. One rule for all of them: fractions of halves and thirds are fractions, simple
+/// multiples of π and of its square are such, everything else has digits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// Numerator and denominator.
     Fraction(u32, u32),
+    /// Numerator and denominator of the factor of a power of π.
+    Pi(u32, u32, i8),
     /// Digits, with a point or without.
     Decimal(String),
     /// Digits, and the exponent of ten.
@@ -76,11 +80,13 @@ impl Number {
     /// One.
     pub const ONE: Number = Number::Fraction(1, 1);
 
-    /// A positive number: a fraction where it is one of small numbers and stands before something, else up to six
-    /// significant digits.
-    pub fn of(value: f64, before: bool) -> Number {
-        if let Some((p, q)) = fraction(value).filter(|(_, q)| *q == 1 || before || q % 3 == 0) {
+    /// A positive number: a fraction or a multiple of π where it is one of small numbers, else up to six significant digits.
+    pub fn of(value: f64) -> Number {
+        if let Some((p, q)) = fraction(value) {
             return Number::Fraction(p, q);
+        }
+        if let Some((p, q, power)) = multiple_of_pi(value) {
+            return Number::Pi(p, q, power);
         }
         let exponent = value.log10().floor() as i32;
         if !(-4..9).contains(&exponent) {
@@ -93,6 +99,27 @@ impl Number {
     }
 }
 
+/// Numerator and denominator of the factor of a power of π: simple fractions, and of π itself whole parts of two turns in
+/// degrees.
+fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
+    /// Most of a numerator: larger ones are met by chance.
+    const SIMPLE: u32 = 48;
+    for power in [1, 2, -1, -2] {
+        let factor = value / PI.powi(power.into());
+        if let Some((p, q)) = fraction(factor).filter(|(p, _)| *p <= SIMPLE) {
+            return Some((p, q, power));
+        }
+    }
+    let degrees = value * 180.0 / PI;
+    let whole = degrees.round();
+    if !(1.0..=720.0).contains(&whole) || (degrees - whole).abs() > 1e-11 * whole {
+        return None;
+    }
+    let whole = whole as u32;
+    let common = gcd(whole, 180);
+    Some((whole / common, 180 / common, 1)).filter(|(p, ..)| *p <= SIMPLE)
+}
+
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
@@ -102,6 +129,17 @@ impl fmt::Display for Number {
         match self {
             Number::Fraction(p, 1) => write!(f, "{p}"),
             Number::Fraction(p, q) => write!(f, "{p}/{q}"),
+            Number::Pi(p, q, power) => {
+                let pi = if power.abs() == 2 { "pi²" } else { "pi" };
+                match (*power > 0, p, q) {
+                    (true, 1, 1) => f.write_str(pi),
+                    (true, p, 1) => write!(f, "{p} {pi}"),
+                    (true, 1, q) => write!(f, "{pi}/{q}"),
+                    (true, p, q) => write!(f, "{p}/{q} {pi}"),
+                    (false, p, 1) => write!(f, "{p}/{pi}"),
+                    (false, p, q) => write!(f, "{p}/({q} {pi})"),
+                }
+            }
             Number::Decimal(digits) => f.write_str(digits),
             Number::Scientific(digits, power) => write!(f, "{digits}e{power}"),
         }

@@ -27,21 +27,55 @@ fn text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String 
 
 #[test]
 fn numbers() {
-    for (value, before, expected) in [
-        (1.0 / 3.0, true, "1/3"),
-        (0.5, true, "1/2"),
-        (0.5, false, "0.5"),
-        (2.0 / 3.0, false, "2/3"),
-        (7.0, true, "7"),
-        (0.4, true, "0.4"),
-        (4.905, true, "4.905"),
-        (1234567.8, true, "1234568"),
-        (0.000_123_456_7, false, "0.000123457"),
-        (1.5e-6, false, "1.5e-6"),
-        (2.5e12, true, "2.5e12"),
+    for (value, expected) in [
+        (1.0 / 3.0, "1/3"),
+        (0.5, "1/2"),
+        (1.5, "3/2"),
+        (2.0 / 3.0, "2/3"),
+        (7.0, "7"),
+        (0.4, "0.4"),
+        (4.905, "4.905"),
+        (1234567.8, "1234568"),
+        (0.000_123_456_7, "0.000123457"),
+        (1.5e-6, "1.5e-6"),
+        (2.5e12, "2.5e12"),
     ] {
-        assert_eq!(Number::of(value, before).to_string(), expected);
+        assert_eq!(Number::of(value).to_string(), expected);
     }
+}
+
+/// Of what was π, nothing is written with digits; what only looks so is.
+#[test]
+fn multiples_of_pi() {
+    use std::f64::consts::PI;
+    for (value, expected) in [
+        (PI, "pi"),
+        (PI / 2.0, "pi/2"),
+        (3.0 * PI / 2.0, "3/2 pi"),
+        (2.0 * PI, "2 pi"),
+        (4.0 * PI * PI, "4 pi²"),
+        (0.5 * (PI / 2.0) * (PI / 2.0), "pi²/8"),
+        (1.0 / (2.0 * PI), "1/(2 pi)"),
+        (1.0 / PI, "1/pi"),
+        (0.25 / (PI * PI), "1/(4 pi²)"),
+        (10.0_f64.to_radians(), "pi/18"),
+        (135.0_f64.to_radians(), "3/4 pi"),
+        (36.0_f64.to_radians(), "pi/5"),
+        (3.14159, "3.14159"),
+        (1.5708, "1.5708"),
+        (1.0001 * PI, "3.14191"),
+    ] {
+        assert_eq!(Number::of(value).to_string(), expected);
+    }
+    assert_eq!(text(|g, [_, k, _, x, ..]| k * (x - g.num(PI / 2.0))), "k (x - pi/2)");
+    assert_eq!(text(|g, [m, k, ..]| m * k * g.num(0.5 / PI)), "1/(2 pi) m k");
+    assert_eq!(
+        text(|g, [_, _, _, x, ..]| (x - g.num(PI / 3.0)).sin()),
+        "cos(pi/3) sin(x) - sin(pi/3) cos(x)"
+    );
+    assert_eq!(latex(|g, [m, ..]| m * g.num(PI)), r"\pi\,m");
+    assert_eq!(latex(|g, [m, ..]| m * g.num(1.5 * PI)), r"\tfrac{3\pi}{2}\,m");
+    assert_eq!(latex(|g, [m, k, ..]| m / k * g.num(0.5 / PI)), r"\tfrac{1}{2\pi}\,\frac{m}{k}");
 }
 
 #[test]

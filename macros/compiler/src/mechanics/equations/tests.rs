@@ -36,18 +36,23 @@ fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
     for chart in &model.charts {
-        if let Chart::Ball(first, _) = chart {
-            let norm = q[*first..first + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
-            q[*first..first + 4].iter_mut().for_each(|x| *x /= norm);
-        }
+        let first = match chart {
+            Chart::Ball(first, _) => *first,
+            Chart::Free(first, _) => first + 3,
+            Chart::Plain(..) => continue,
+        };
+        let norm = q[first..first + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
+        q[first..first + 4].iter_mut().for_each(|x| *x /= norm);
     }
     let (v, a, u) = (numbers(model.nv()), numbers(model.nv()), numbers(model.nu()));
+    let multipliers = numbers(model.constraints.len());
     move |symbol| match Quantity::of(symbol) {
         Quantity::Parameter(k) => parameters[k],
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],
         Quantity::Input(k) => u[k],
+        Quantity::Given(k) => multipliers[k],
         Quantity::Time => 0.7,
         other => panic!("{other:?} in the equations"),
     }
@@ -60,7 +65,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
     assert!(near, "{what}: {a:?} instead of {b:?}");
 }
 
-/// Motion, forces and Lagrangian against the recursive algorithms as lowered for generation, and motion against
+/// Motion, forces, constraints and Lagrangian against the recursive algorithms as lowered for generation, and motion against
 /// Lagrange's equations.
 fn check(model: &Model<'_>) {
     let joints = crate::mechanics::joints(model);
@@ -68,7 +73,9 @@ fn check(model: &Model<'_>) {
     let e = derive(model, &joints, &mass).expect("small");
     let (v, a) = (velocities(model), accelerations(model));
     let mut outputs = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    outputs.extend(forces::generalized_forces(model, &joints));
+    outputs.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
+    outputs.extend(right_sides(model, &joints));
+    outputs.extend(model.constraints.iter().map(|_| model.graph.zero()));
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     outputs.push(kinetic - energy::potential_energy(model, &joints));
     let program = lower(&outputs).fused();
@@ -140,6 +147,57 @@ L = 1/2 m radius² theta'² + 1/2 m radius² speed² sin²(theta) + g m radius c
 m radius² theta'' - m radius² speed² sin(theta) cos(theta) + g m radius sin(theta) = 0
 ";
     assert!(text.starts_with(expected), "{text}");
+}
+
+/// How many velocities there are does not matter, if what they do can be said in few words.
+#[test]
+fn length_decides() {
+    let text = equations_of("-g * z", &masses(5));
+    assert!(text.contains("m x2'' + k (2 x2 - x1 - x3) = 0\n"), "{text}");
+    let text = equations_of("-g * z", &masses(20));
+    assert!(text.contains("m x19'' + k (x19 - x18) = 0\n"), "{text}");
+    let text = equations_of("-g * z", FREE);
+    assert!(text.contains("a pose.wx' + (c - b) pose.wy pose.wz = 0\n"), "{text}");
+    let text = equations_of("-g * z", SPHERE);
+    assert!(text.contains("\npose.z - radius = 0\n") || text.contains("\n-radius + pose.z = 0\n"), "{text}");
+    for item in [masses(5), masses(20), FREE.to_string(), SPHERE.to_string()] {
+        with_model("-g * z", &item, |model| check(&model));
+    }
+}
+
+/// All multipliers are explained, each by its constraint.
+#[test]
+fn multipliers_are_named() {
+    let text = equations_of("-g * z", SPHERE);
+    let sentence = "lambda1, lambda2 and lambda3 are the multipliers of the constraints contact.normal,
+contact.x and contact.y, in this order.
+";
+    assert!(text.ends_with(sentence), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+}
+
+/// The axle keeps the wheel's height, which constrains nothing: the row is zero up to rounding, and dropped.
+#[test]
+fn a_condition_that_always_holds_is_dropped() {
+    let text = equations_of("-9.81 * z", CASTOR);
+    assert!(
+        !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
+        "{text}"
+    );
+    let arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
+    assert_eq!(crate::check(arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
+    // What never touches is told, however small its row is.
+    let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
+    let messages = crate::check(arguments(), hovering.parse().unwrap(), Path::new(""));
+    assert!(messages.len() == 1 && messages[0].contains("`contact.normal` can never hold"), "{messages:?}");
+}
+
+#[test]
+fn numbers_are_written_by_one_rule() {
+    let text = equations_of("-9.81 * z", TURNS);
+    for part in ["coil (q - pi/2)", "1/(4 pi²) m lead²", "3/2 q''"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Equations of motion as text, plain and typeset, in the user's own names.
 
 use super::Equations;
+use crate::diag::all_of;
 use crate::expr::Symbol;
 use crate::expr::print::names::Names;
 use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
@@ -48,8 +49,25 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
         out += &line(&format!("{motion} = {force}"));
     }
     out.push('\n');
-    let legend = legend(model, rates);
-    out + &if legend.len() > PAGE { legend.replacen("; ", ";\n", 1) } else { legend } + "\n"
+    legend(model, rates).iter().fold(out, |out, sentence| out + &filled(sentence) + "\n")
+}
+
+/// Words in lines that a page has room for.
+fn filled(text: &str) -> String {
+    let (mut out, mut room) = (String::new(), 0);
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if out.is_empty() || length < room {
+            room = if out.is_empty() { PAGE } else { room - 1 };
+            out.push_str(if out.is_empty() { "" } else { " " });
+        } else {
+            room = PAGE;
+            out.push('\n');
+        }
+        out.push_str(word);
+        room = room.saturating_sub(length);
+    }
+    out
 }
 
 /// The Lagrangian and an equation for every velocity, a line each, from the left: aligned at their signs of equality, the
@@ -105,11 +123,8 @@ fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
     }
 }
 
-fn legend(model: &Model<'_>, rates: &[bool]) -> String {
-    let multipliers = match model.constraints.first() {
-        Some(first) => format!(" lambda1 is the multiplier of the constraint {}.", first.name),
-        None => String::new(),
-    };
+/// What the marks mean, in sentences.
+fn legend(model: &Model<'_>, rates: &[bool]) -> Vec<String> {
     let rates = match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {
             let x = &model.velocities[k].0;
@@ -122,5 +137,15 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> String {
             format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
         }
     };
-    rates + &multipliers
+    let constraints: Vec<String> = model.constraints.iter().map(|c| c.name.clone()).collect();
+    let multipliers: Vec<String> = (1..=constraints.len()).map(|k| format!("lambda{k}")).collect();
+    let multipliers = match constraints.as_slice() {
+        [] => None,
+        [one] => Some(format!("lambda1 is the multiplier of the constraint {one}.")),
+        all => {
+            let (multipliers, all) = (all_of(&multipliers), all_of(all));
+            Some(format!("{multipliers} are the multipliers of the constraints {all}, in this order."))
+        }
+    };
+    std::iter::once(rates).chain(multipliers).collect()
 }

@@ -145,3 +145,55 @@ struct Hoop {
     #[body(mass = m)] bead: Body,
     #[joint(ground -> bead, about = z)] theta: Pin,
 }";
+
+/// A free body.
+pub const FREE: &str = "
+struct FreeBody {
+    g: f64, m: f64, a: f64, b: f64, c: f64,
+    #[body(mass = m, inertia = diagonal(a, b, c))] body: Body,
+    #[joint(ground -> body)] pose: Free,
+}";
+
+/// A ball that rolls.
+pub const SPHERE: &str = "
+struct RollingSphere {
+    g: f64, m: f64, radius: f64,
+    #[body(mass = m, inertia = sphere(m, radius))] ball: Body,
+    #[joint(ground -> ball)] pose: Free,
+    #[constraint(rolls(ball.sphere(radius), ground.plane(z)))] contact: Rolling,
+}";
+
+/// A wheel on an axle that moves in the horizontal plane.
+pub const CASTOR: &str = "
+struct Castor {
+    #[body(mass = 1, inertia = diagonal(1, 1, 1))] axle: Body,
+    #[body(mass = 1, inertia = disk(1, 0.3, y))] wheel: Body,
+    #[joint(ground -> axle, about = z)] plane: Planar,
+    #[joint(axle.at(0.3 * z) -> wheel, about = y)] roll: Pin,
+    #[constraint(rolls(wheel.circle(0.3, y), ground.plane(z)))] contact: Rolling,
+}";
+
+/// A right angle, a lead, and a moment that is a fraction.
+pub const TURNS: &str = "
+struct Turns {
+    coil: f64, m: f64, i: f64, lead: f64,
+    #[body(mass = 1, inertia = diagonal(1.5, 1.5, 1.5))] arm: Body,
+    #[body(mass = m, inertia = diagonal(i, i, i))] nut: Body,
+    #[joint(ground -> arm, about = z)] q: Pin,
+    #[joint(ground -> nut, about = x, lead = lead)] s: Screw,
+    #[acts(on = q, stiffness = coil, free_angle = pi / 2)] spring: Spring,
+}";
+
+/// Masses in a row, with springs between neighbours.
+pub fn masses(n: usize) -> String {
+    let mut items = String::new();
+    for k in 0..n {
+        let energy = match k {
+            0 => "k / 2 * x0 * x0".to_string(),
+            _ => format!("k / 2 * (x{k} - x{0}) * (x{k} - x{0})", k - 1),
+        };
+        items += &format!("#[body(mass = m)] b{k}: Body, #[joint(ground -> b{k}, along = x)] x{k}: Sleeve,");
+        items += &format!("#[energy({energy})] s{k}: Potential,");
+    }
+    format!("struct Masses {{ g: f64, m: f64, k: f64, {items} }}")
+}
