@@ -9,7 +9,7 @@ use std::path::Path;
 const CRATE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/../tests/trybuild/", env!("CARGO_PKG_NAME"));
 
 /// The folders of `ui` with mistakes.
-const TOPICS: [&str; 17] = [
+const TOPICS: [&str; 18] = [
     "actions",
     "arguments",
     "axes",
@@ -20,6 +20,7 @@ const TOPICS: [&str; 17] = [
     "names",
     "outputs",
     "placement",
+    "requests",
     "several",
     "structs",
     "topology",

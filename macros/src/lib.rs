@@ -1,6 +1,8 @@
 //! The attribute macro of Linkwork. Use it through the crate `linkwork`, which re-exports it and holds what the
 //! generated code calls.
 
+mod above;
+
 use proc_macro::TokenStream;
 use std::path::PathBuf;
 
@@ -84,6 +86,7 @@ use std::path::PathBuf;
 /// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
 /// | `lock = ["joint", …]` | joints frozen at zero |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
+/// | `crate = path::to::linkwork` | where generated code finds this crate, if `Cargo.toml` gives it another name (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
 ///
 /// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the configuration
 /// space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of constraints, outputs and
@@ -131,7 +134,10 @@ use std::path::PathBuf;
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-    let emitted = linkwork_compiler::expand(arguments.into(), item.into(), &folder);
+    let emitted = match above::is_below_a_derive() {
+        false => linkwork_compiler::expand(arguments.into(), item.into(), &folder),
+        true => linkwork_compiler::expand_below_a_derive(arguments.into(), item.into(), &folder),
+    };
     let mut tokens = TokenStream::from(emitted.tokens);
     match emitted.text.parse::<TokenStream>() {
         Ok(text) => tokens.extend(text),

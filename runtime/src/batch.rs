@@ -32,6 +32,11 @@ type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 /// A mechanism with functions of several states at once: what `#[mechanism(…, batch)]` implements. Shapes, units and
 /// conventions are those of [`Rheonomic`], for the state of every lane; where nothing depends on time, `t` has no
 /// effect.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no functions of several states at once",
+    label = "this needs the word `batch`",
+    note = "add the word to the attribute: `#[mechanism(…, batch)]`"
+)]
 pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ, NV, NU> {
     /// The mechanism with `L` lanes for scalars.
     fn lanes<const L: usize>(&self) -> Lanewise<'_, Self, L>

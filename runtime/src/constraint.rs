@@ -93,14 +93,17 @@ pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVect
 /// Accelerations `v̇` and multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
-/// What mechanisms with closed loops, rolling or other constraints offer, for generic code.
-///
-/// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
-/// velocities alone. `#[mechanism]` implements the trait where joints close loops or constraints are declared. Time `t` is in
+/// A mechanism with `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
+/// velocities alone: what `#[mechanism]` implements where joints close loops or constraints are declared. Time `t` is in
 /// seconds; mechanisms that do not contain it take any.
 ///
 /// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both, while the mass
 /// matrix, bias forces and inverse dynamics are those of the spanning tree.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no constraints",
+    label = "expected a mechanism with constraints",
+    note = "joints that close loops and `#[constraint(…)]` make one `Constrained`"
+)]
 pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>:
     Rheonomic<NQ, NV, NU>
 {

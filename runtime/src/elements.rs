@@ -3,13 +3,13 @@
 //! A field's type says what it is, its attribute how it is placed; [`mechanism`](macro@crate::mechanism) shows an example.
 //! The compiler reads these types and removes the fields: there are no values of them.
 //!
-//! | what | types |
+//! | | |
 //! | --- | --- |
 //! | bodies | [`Body`], [`Particle`] |
 //! | joints with one degree of freedom | [`Pin`] (revolute), [`Sleeve`] (prismatic), [`Screw`] (helical) |
-//! | joints with two | [`Collar`] (cylindrical), [`Slot`], [`Universal`], [`Stage`] |
-//! | joints with three | [`Ball`] (spherical), [`Planar`], [`Stage`] |
-//! | joints with six, with none | [`Free`] (floating), [`Weld`] (fixed) |
+//! | with two | [`Collar`] (cylindrical), [`Slot`], [`Universal`], [`Stage`] |
+//! | with three | [`Ball`] (spherical), [`Planar`], [`Stage`] |
+//! | with six, with none | [`Free`] (floating), [`Weld`] (fixed) |
 //! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
 //! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
 //! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |
@@ -380,3 +380,38 @@ pub enum Scalar {}
 /// generated function of that name, its components in the axes of a body or frame (the ground's if not given), with
 /// `name_jacobian`.
 pub enum Vector {}
+
+/// There are no values to clone, compare or show. A `#[derive(…)]` above `#[mechanism]` asks for that all the same: with
+/// these it is told that it stands in the wrong place, and nothing else.
+macro_rules! derivable {
+    ($($element:ident)*) => { $(
+        #[doc(hidden)]
+        impl Clone for $element {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        #[doc(hidden)]
+        impl Copy for $element {}
+        #[doc(hidden)]
+        impl core::fmt::Debug for $element {
+            fn fmt(&self, _: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                match *self {}
+            }
+        }
+        #[doc(hidden)]
+        impl PartialEq for $element {
+            fn eq(&self, _: &Self) -> bool {
+                match *self {}
+            }
+        }
+        #[doc(hidden)]
+        impl Eq for $element {}
+    )* };
+}
+
+derivable! {
+    Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
+    Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
+    Holonomic Nonholonomic Rolling Slipping Scalar Vector
+}

@@ -1,5 +1,9 @@
 //! Named frames: the trait that generated code implements once for each of them, and what those implementations call.
 
+mod unknown;
+
+pub use unknown::Message;
+
 use crate::Real;
 use nalgebra::{
     ArrayStorage, Isometry, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
@@ -19,9 +23,15 @@ macro_rules! frame {
             {
                 match <$mechanism>::frame_index($name) {
                     Some(index) => index,
-                    None => {
-                        panic!(concat!(stringify!($mechanism), " has no frame named ", stringify!($name)))
-                    }
+                    None => panic!(
+                        "{}",
+                        $crate::__private::Message::unknown_frame(
+                            stringify!($mechanism),
+                            &<$mechanism>::FRAMES,
+                            $name
+                        )
+                        .text()
+                    ),
                 }
             },
         >
@@ -31,6 +41,11 @@ macro_rules! frame {
 /// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
 /// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`,
 /// `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no such frame",
+    label = "this frame is another mechanism's",
+    note = "name a frame of the mechanism itself: `frame!({Self}, \"…\")`"
+)]
 pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;

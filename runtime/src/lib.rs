@@ -83,6 +83,8 @@ pub use rheonomic::{At, Rheonomic, at};
 #[doc(inline)]
 pub use simulate::simulate;
 
+#[doc(hidden)]
+pub mod absent;
 mod arithmetic;
 pub mod batch;
 pub mod constraint;
@@ -102,8 +104,17 @@ pub mod simulate;
 mod trigonometry;
 
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
+///
+/// Names of your own, and names that you import one by one, go before all of these: a program may have an `Error`, a
+/// `Sample` or a `Body` itself, or `use std::error::Error;`. Elements are known to
+/// [`mechanism`](macro@mechanism) whether they are imported or not; those that nalgebra has as well, `Point`, `Scalar` and
+/// `Vector`, are left out here, so that `use linkwork::nalgebra::*;` may stand beside this.
 pub mod prelude {
-    pub use crate::elements::*;
+    pub use crate::elements::{
+        Attraction, Ball, Body, Collar, Coordinate, Dashpot, Force, Frame, Free, Friction, Gravity,
+        Holonomic, Inerter, Input, Nonholonomic, Particle, Pin, Planar, Potential, Rayleigh, Rolling, Screw,
+        Sleeve, Slipping, Slot, Spring, Stage, Torque, Universal, Weld,
+    };
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
@@ -114,13 +125,14 @@ pub mod prelude {
 /// What generated code calls; no part of the public interface.
 #[doc(hidden)]
 pub mod __private {
-    pub use crate::arithmetic::dispatch::{Body, dispatch};
+    pub use crate::absent;
+    pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled};
     pub use crate::constraint::{
         Motion, columns, constrained_derivatives, least_multipliers, least_solution, pressing_solution,
         regular_solution, slipping_response, slipping_solution,
     };
-    pub use crate::frame::{frame_index, identity_placement, join, origin, placement, six};
+    pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, splat};
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
@@ -140,35 +152,3 @@ mod testing;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;
-
-/// The equations that the README shows are those of its example.
-///
-/// ```
-/// use linkwork::prelude::*;
-///
-/// #[mechanism(gravity = -9.81 * y)]
-/// pub struct CartPole {
-///     pub cart_mass: f64,
-///     pub pole_mass: f64,
-///     pub pole_length: f64,
-///     #[body(mass = cart_mass)]
-///     cart: Body,
-///     #[body(mass = pole_mass, com = pole_length / 2 * y, inertia = rod(pole_mass, pole_length, y))]
-///     pole: Body,
-///     #[joint(ground -> cart, along = x)]
-///     rail: Sleeve,
-///     #[joint(cart -> pole, about = z)]
-///     hinge: Pin,
-///     #[acts(on = cart, along = x)]
-///     push: Force,
-/// }
-///
-/// let readme = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md"));
-/// let equations: Vec<_> = CartPole::EQUATIONS.lines().take_while(|line| !line.starts_with("L is")).collect();
-/// assert!(equations.len() > 6);
-/// for line in equations {
-///     assert!(readme.contains(line), "{line}");
-/// }
-/// ```
-#[cfg(doctest)]
-struct ReadmeEquations;

@@ -22,6 +22,12 @@ impl<T: RealField + Copy> Real for T {}
 /// A mechanism implements the trait for one triple of numbers only, so they need not be written:
 /// `fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(m: &M, …)` is called
 /// as `energy(&cart_pole, …)`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no mechanism without time",
+    label = "expected a `Mechanism`",
+    note = "a mechanism whose equations contain time is one at an instant: pass `&at(&mechanism, t)`",
+    note = "any other is a struct with the attribute `#[mechanism(…)]`, without `inertia = none`"
+)]
 pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// The scalar type: `f64`, `f32` or the struct's own parameter.
     type Scalar: Real;

@@ -9,6 +9,11 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// `#[mechanism]` implements it where something depends on time; every [`Mechanism`] is one too. Shapes, units and conventions are those of [`Mechanism`]; with
 /// driven motion the kinetic energy is no longer `½ vᵀ M v`, nor the momentum `M v`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no mechanism",
+    label = "expected a mechanism",
+    note = "a mechanism is a struct with the attribute `#[mechanism(…)]`, or a reference to one"
+)]
 pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// The scalar type.
     type Scalar: Real;

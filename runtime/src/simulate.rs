@@ -5,8 +5,10 @@
 
 mod event;
 mod run;
+mod start;
 
 pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop, Undefined};
+pub use start::Start;
 
 use crate::integrate::{
     DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, positive,
@@ -104,9 +106,10 @@ where
     T: Real,
     S: Method<T>,
 {
-    /// Starts from the configuration `q` and the velocity `v`: vectors or arrays. Quaternions x y z w of unit length.
-    pub fn from(self, q: impl Into<SVector<T, NQ>>, v: impl Into<SVector<T, NV>>) -> Self {
-        let start = State { t: self.start.t, q: q.into(), v: v.into() };
+    /// Starts from the configuration `q` and the velocity `v`: vectors, references to them or arrays ([`Start`]).
+    /// Quaternions x y z w of unit length.
+    pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
+        let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
         Self { start, ..self.afresh() }
     }
 

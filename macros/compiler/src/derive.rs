@@ -13,6 +13,7 @@ use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
 use crate::syntax::Requests;
 
+pub mod absent;
 mod constraints;
 mod derivatives;
 mod dynamics;

@@ -12,6 +12,7 @@ pub mod syntax;
 
 mod derive;
 
+use derive::absent::absent;
 use derive::signatures::{self, Sizes};
 use diag::Diagnostics;
 use emit::{Constraints, Emitted, Interface, emit_failed, emit_mechanism};
@@ -33,9 +34,26 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
     if let Some((model, output)) = &output {
-        return emit_mechanism(&source.interface(model), output);
+        return emit_mechanism(&source.interface(model, output), output);
     }
     let mut emitted = source.emit_failed();
+    emitted.tokens.extend(cx.into_tokens());
+    emitted
+}
+
+/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!`, and what keeps rustc
+/// from saying the same for each element and derive.
+pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
+    let mut cx = Diagnostics::new();
+    let Some(source) = read(arguments, item, folder, &mut cx) else {
+        return Emitted { tokens: cx.into_tokens(), text: String::new() };
+    };
+    let mut emitted = source.emit_failed();
+    if cx.is_empty() {
+        emitted.tokens.extend(emit::with_elements(&source.mechanism.shell));
+    }
+    cx.error(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`")
+        .help("write it below: there it sees the struct without its elements, which do not stay");
     emitted.tokens.extend(cx.into_tokens());
     emitted
 }
@@ -122,9 +140,23 @@ pub fn compile_with<'g>(
         return None;
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
-    let output = derive_with(&model, source.mechanism.requests, passes, cx)?;
+    let mut output = derive_with(&model, source.mechanism.requests, passes, cx)?;
+    describe(&mut output, &source.mechanism);
     check_outputs(&source.mechanism.description, &output.functions, source.mechanism.requests, cx)
         .then_some((model, output))
+}
+
+/// Puts what the user says of an output before the documentation of its function.
+fn describe(output: &mut emit::Output, mechanism: &Mechanism) {
+    let outputs = &mechanism.description.outputs;
+    let notes = mechanism.shell.notes.iter().filter(|(name, _)| outputs.iter().any(|o| o.name.text == *name));
+    let prepared = output.prepared.iter_mut().flat_map(|prepared| &mut prepared.functions);
+    let mut functions: Vec<&mut emit::Function> = output.functions.iter_mut().chain(prepared).collect();
+    for (name, note) in notes {
+        for f in functions.iter_mut().filter(|f| f.name == *name && !f.docs.is_empty()) {
+            f.docs.insert(0, note.clone());
+        }
+    }
 }
 
 /// Functions that are not derived but written as they are, those of mechanisms with constraints included.
@@ -236,7 +268,9 @@ fn check_outputs(
 
 impl Source {
     /// What the outside sees of the mechanism.
-    fn interface(&self, m: &model::Model<'_>) -> Interface<'_> {
+    fn interface(&self, m: &model::Model<'_>, output: &emit::Output) -> Interface<'_> {
+        let bare = self.bare_interface();
+        let constrained = !m.constraints.is_empty();
         Interface {
             configuration: m.configuration.clone(),
             velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
@@ -246,7 +280,14 @@ impl Source {
             time: m.time,
             velocity_inputs: m.velocity_inputs,
             constraints: Constraints::of(m),
-            ..self.bare_interface()
+            absent: absent(
+                &Sizes::of(m),
+                self.mechanism.requests,
+                &output.functions,
+                &bare.outputs,
+                constrained,
+            ),
+            ..bare
         }
     }
 
@@ -270,6 +311,7 @@ impl Source {
             batch: self.mechanism.requests.batch,
             detect: !self.mechanism.requests.target_only,
             snapped: &d.snapped,
+            absent: Vec::new(),
             file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
         }
     }
@@ -312,8 +354,7 @@ impl Source {
         if outline.constrained && kinematic {
             functions.extend(signatures::constraints(&sizes, 1, 1));
         } else if outline.constrained {
-            functions.retain(|f| f.name != "forward_dynamics");
-            functions.extend(signatures::constrained(&sizes, 1, 1, 0, false));
+            signatures::constrain(&mut functions, &sizes, usize::from(outline.slipping), requests);
         }
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
             for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
@@ -323,15 +364,21 @@ impl Source {
                 }
             }
         }
+        let bare = self.bare_interface();
         let interface = Interface {
+            absent: absent(&sizes, requests, &functions, &bare.outputs, outline.constrained),
             configuration: outline.configuration,
             velocities: outline.velocities,
             inputs: outline.inputs,
             frames: outline.frames,
             time: outline.time,
             velocity_inputs: outline.velocity_inputs,
-            constraints: if outline.constrained { Constraints::unknown() } else { Constraints::default() },
-            ..self.bare_interface()
+            constraints: if outline.constrained {
+                Constraints::unknown(outline.slipping)
+            } else {
+                Constraints::default()
+            },
+            ..bare
         };
         emit_failed(&interface, &functions, &constants, requests.prepare)
     }

@@ -9,7 +9,7 @@ use super::{Arithmetic, Compiled};
 use crate::Real;
 
 /// The body of function number `K` of a mechanism, which takes `Arguments`.
-pub trait Body<const K: usize, Arguments> {
+pub trait Evaluate<const K: usize, Arguments> {
     /// What it returns.
     type Output;
 
@@ -19,7 +19,7 @@ pub trait Body<const K: usize, Arguments> {
 
 /// Runs a body on numbers of type `T` with the best instructions that there are.
 #[inline(always)]
-pub fn dispatch<const K: usize, T: Real, M: Body<K, Arguments>, Arguments>(
+pub fn dispatch<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
     mechanism: &M,
     arguments: Arguments,
 ) -> M::Output {
@@ -44,7 +44,7 @@ pub fn dispatch<const K: usize, T: Real, M: Body<K, Arguments>, Arguments>(
     any(test, not(debug_assertions))
 ))]
 #[target_feature(enable = "avx2,fma")]
-fn with_avx2<const K: usize, M: Body<K, Arguments>, Arguments>(
+fn with_avx2<const K: usize, M: Evaluate<K, Arguments>, Arguments>(
     mechanism: &M,
     arguments: Arguments,
 ) -> M::Output {

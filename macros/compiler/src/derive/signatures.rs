@@ -213,9 +213,28 @@ pub fn requested(sizes: &Sizes, requests: Requests) -> Vec<Function> {
         functions.extend(centroidal(sizes));
     }
     if requests.derivatives {
-        functions.extend(derivatives(sizes));
+        let derivatives = derivatives(sizes);
+        let into: Vec<Function> = derivatives.iter().filter_map(|f| into(f, sizes.nv)).collect();
+        functions.extend(derivatives);
+        functions.extend(into);
     }
     functions
+}
+
+/// Takes away from the functions of a mechanism with a mistake what one with constraints does not have, and adds what it has
+/// besides, as far as that can be said without knowing the constraints.
+pub fn constrain(functions: &mut Vec<Function>, sizes: &Sizes, slipping: usize, requests: Requests) {
+    let solved = [
+        "forward_dynamics",
+        "forward_dynamics_derivatives",
+        "forward_dynamics_derivatives_into",
+        "linearize",
+    ];
+    functions.retain(|f| !solved.contains(&f.name.as_str()));
+    functions.extend(constrained(sizes, 1, 1, slipping, false));
+    if requests.derivatives {
+        functions.extend(constrained_derivatives(sizes, 1));
+    }
 }
 
 /// The functions of the word `centroidal`.
@@ -451,7 +470,11 @@ pub fn output(name: &str, size: usize, uses: Uses, sizes: &Sizes) -> Vec<Functio
     arguments.extend(uses.accelerations.then_some(A));
     arguments.extend(uses.inputs.then_some(U));
     let shape = if size == 1 { Shape::Scalar } else { Shape::Vector(size) };
-    let mut functions = vec![sizes.function(name, &arguments, shape, &[&format!("The output `{name}`.")])];
+    let about = match uses.accelerations {
+        true => format!("The output `{name}`, of given accelerations. It has no Jacobian yet."),
+        false => format!("The output `{name}`."),
+    };
+    let mut functions = vec![sizes.function(name, &arguments, shape, &[&about])];
     if !uses.accelerations {
         let what = match uses.velocities {
             true => "it changes with the velocities",

@@ -27,15 +27,15 @@ pub struct Constraints {
 }
 
 impl Constraints {
-    /// One, where only the equations could tell how many there are.
-    pub fn unknown() -> Constraints {
+    /// One, where only the equations could tell how many there are; of a contact that slips, if there is one.
+    pub fn unknown(slips: bool) -> Constraints {
         Constraints {
             names: vec![String::new()],
             holonomic: 1,
             groups: vec![0],
             redundant: Vec::new(),
             freedom: [0; 2],
-            slipping: Vec::new(),
+            slipping: slips.then_some(0).into_iter().collect(),
             determining: Vec::new(),
             overdetermined: false,
         }

@@ -76,7 +76,7 @@ impl Bodies {
             let comma = if own.is_empty() || lanes.is_empty() { "" } else { ", " };
             let _ = writeln!(
                 out,
-                "{ALLOW}impl<{own}{comma}{lanes}> ::linkwork::__private::Body<{k}, {types}> for {name}{arguments} {bounds} {{
+                "{ALLOW}#[doc(hidden)]\nimpl<{own}{comma}{lanes}> ::linkwork::__private::Evaluate<{k}, {types}> for {name}{arguments} {bounds} {{
                 type Output = {result};
                 #[inline(always)]
                 fn evaluate<Ops: ::linkwork::__private::Arithmetic>(&self, {names}: {types}) -> {result} {{\n{text}}}

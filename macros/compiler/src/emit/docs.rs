@@ -9,7 +9,9 @@ use std::fmt::Write;
 
 /// Paragraphs for the struct's rustdoc.
 pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
-    let mut text = String::from("\n\n# Mechanism\n\n");
+    let mut text = String::from("\n\n");
+    declaration(&mut text, interface);
+    text.push_str("# Mechanism\n\n");
     let _ = writeln!(
         text,
         "`NQ` = {}, `NV` = {}, `NU` = {}. SI units, angles in radians.\n",
@@ -25,6 +27,11 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     }
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
+    for name in &interface.frames {
+        if let Some(note) = note(interface, name) {
+            let _ = writeln!(text, "  - `{name}`: {note}");
+        }
+    }
     units(&mut text, interface);
     constraints(&mut text, interface);
     if !interface.snapped.is_empty() {
@@ -152,16 +159,66 @@ fn units(text: &mut String, i: &Interface<'_>) {
         ("v", &i.velocities, &i.units.velocities),
         ("u", &i.inputs, &i.units.inputs),
     ];
-    text.push_str("\n# Units\n\nInferred from use; `any` where nothing determines one.\n\n| | name | unit |\n| --- | --- | --- |\n");
+    text.push_str("\n# Units\n\nInferred from use; `any` where nothing determines one.\n\n");
+    text.push_str(match i.shell.notes.is_empty() {
+        true => "| | name | unit |\n| --- | --- | --- |\n",
+        false => "| | name | unit | |\n| --- | --- | --- | --- |\n",
+    });
+    let mut said = Vec::new();
+    let mut row = |what: &str, name: &str, unit: &str| {
+        let _ = write!(text, "| {what} | `{name}` | {unit} |");
+        if !i.shell.notes.is_empty() {
+            // Once for all coordinates of a joint; their rates go without.
+            let note = note(i, name).filter(|note| !said.contains(note));
+            said.extend(note);
+            let _ = write!(text, " {} |", note.unwrap_or_default().replace('|', "\\|"));
+        }
+        text.push('\n');
+    };
     for (what, names, units) in lists {
         for (k, (name, unit)) in names.iter().zip(units).enumerate() {
             let what = if what.is_empty() { "parameter".to_string() } else { format!("`{what}[{k}]`") };
-            let _ = writeln!(text, "| {what} | `{name}` | {unit} |");
+            row(&what, name, unit);
         }
     }
     for (name, unit) in i.outputs.iter().zip(&i.units.outputs) {
-        let _ = writeln!(text, "| output | `{name}` | {unit} |");
+        row("output", name, unit);
     }
+}
+
+/// What the user says of the field that a name belongs to.
+pub fn note<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a str> {
+    let field = name.split('.').next().unwrap_or(name);
+    i.shell.notes.iter().find(|(known, _)| known == field).map(|(_, note)| note.as_str())
+}
+
+/// Documentation of an output's function: what the user says of it, then what it is.
+pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
+    match note(i, name) {
+        Some(note) => format!(" {note}\n\n The output `{name}`, {what}"),
+        None => format!(" The output `{name}`, {what}"),
+    }
+}
+
+/// Most lines of a declaration that is not folded.
+const UNFOLDED: usize = 40;
+
+/// The declaration as the user wrote it.
+fn declaration(text: &mut String, i: &Interface<'_>) {
+    let Some(code) = &i.shell.declaration else { return };
+    // Doc comments may contain code.
+    let mut fence = "```".to_string();
+    while code.contains(&fence) {
+        fence.push('`');
+    }
+    let code = format!("{fence}text\n{code}\n{fence}\n");
+    let _ = match code.lines().count() > UNFOLDED {
+        true => writeln!(
+            text,
+            "# Declaration\n\n<details><summary>As it is written</summary>\n\n{code}\n</details>\n"
+        ),
+        false => writeln!(text, "# Declaration\n\n{code}"),
+    };
 }
 
 fn list(text: &mut String, what: &str, names: &[String]) {

@@ -1,5 +1,6 @@
 //! The whole output: struct, inherent functions, trait, frames.
 
+use super::absent::{Absent, write_absent};
 use super::constants::write_constants;
 use super::constraints::{self, Constraints};
 use super::dispatch::Bodies;
@@ -55,6 +56,8 @@ pub struct Interface<'a> {
     pub detect: bool,
     /// Numbers of the file that were rounded.
     pub snapped: &'a [String],
+    /// What the mechanism does not have, and why.
+    pub absent: Vec<Absent>,
 }
 
 /// What was derived.
@@ -135,7 +138,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     constraints::write_constants(&mut methods, &interface.constraints);
     if !interface.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
-        reactions::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
+        reactions::write_methods(&mut methods, interface, &output.functions, &s);
     }
     write_manifold(&mut methods, Some(&output.charts), &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
@@ -163,10 +166,12 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     }
     let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
     bodies.write(&mut emitted.text, &interface.shell.ident.to_string(), &Head::new(interface, &s));
+    write_absent(&mut emitted.text, interface, &s);
     if let Some(prepared) = &output.prepared {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
         write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
     }
+    emitted.text = at_home(emitted.text, interface.shell);
     emitted
 }
 
@@ -204,9 +209,11 @@ pub fn emit_failed(
         interface.frames.len()
     );
     let mut emitted = assemble(interface, &s, &methods, &[], "");
+    write_absent(&mut emitted.text, interface, &s);
     if prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
     }
+    emitted.text = at_home(emitted.text, interface.shell);
     emitted
 }
 
@@ -319,14 +326,15 @@ pub struct Head {
 impl Head {
     /// Those of the struct, with the scalar's own bound.
     pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
-        let mut generics = i.shell.generics.clone();
-        if s.scalar.is_generic() {
-            let name = quote::format_ident!("{}", s.scalar.name());
-            generics.make_where_clause().predicates.push(syn::parse_quote!(#name: ::linkwork::Real));
-        }
-        let (impl_generics, ty_generics, where_clause) = generics.split_for_impl();
+        let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
         let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
-        Head { generics: spell(&impl_generics), arguments: spell(&ty_generics), bounds: spell(&where_clause) }
+        let mut bounds = spell(&where_clause);
+        if s.scalar.is_generic() {
+            let start = if bounds.is_empty() { "where" } else { bounds.trim_end().trim_end_matches(',') };
+            let comma = if bounds.is_empty() { "" } else { "," };
+            bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.one());
+        }
+        Head { generics: spell(&impl_generics), arguments: spell(&ty_generics), bounds }
     }
 
     /// The inherent functions of a type of this name, and the trait's.
@@ -375,9 +383,30 @@ impl Head {
     }
 }
 
+/// The name under which generated code finds the runtime, where the attribute says where it is.
+fn alias_of(ident: &syn::Ident) -> String {
+    format!("__linkwork_of_{}", ident.to_string().trim_start_matches("r#"))
+}
+
+/// The path of the runtime in tokens.
+pub(super) fn runtime(shell: &Shell) -> TokenStream {
+    match shell.home {
+        None => quote!(::linkwork),
+        Some(_) => quote::format_ident!("{}", alias_of(&shell.ident)).to_token_stream(),
+    }
+}
+
+/// The text with the runtime where the attribute says that it is.
+fn at_home(text: String, shell: &Shell) -> String {
+    match shell.home {
+        None => text,
+        Some(_) => text.replace("::linkwork::", &format!("{}::", alias_of(&shell.ident))),
+    }
+}
+
 /// Puts struct and implementations together.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
-    let Shell { attributes, visibility, ident, parameters, elements, .. } = i.shell;
+    let Shell { attributes, visibility, ident, parameters, elements, home, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
@@ -389,10 +418,16 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     let docs = if docs.is_empty() { quote!() } else { quote!(#[doc = #docs]) };
     // The types of the elements, so that an editor explains them.
     let words = elements.iter().map(|(_, kind)| kind);
+    // Under a name of its own, since the path may be one that can be written in the user's source alone.
+    let alias = home.as_ref().map(|path| {
+        let alias = quote::format_ident!("{}", alias_of(ident));
+        quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)
+    });
+    let runtime = runtime(i.shell);
     let known = if frames.is_empty() {
         quote!()
     } else {
-        quote!(const _: () = { #(const _: ::core::option::Option<::linkwork::elements::#words> = ::core::option::Option::None;)* };)
+        quote!(const _: () = { #(const _: ::core::option::Option<#runtime::elements::#words> = ::core::option::Option::None;)* };)
     };
     let file = i.file.as_ref().map(|path| {
         quote!(
@@ -405,6 +440,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
         #visibility struct #ident #struct_generics #fields
         #file
         #known
+        #alias
     };
     let head = Head::new(i, s);
     let mut text = String::new();
@@ -412,7 +448,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     for (k, body) in frames.iter().enumerate() {
         let _ = writeln!(
             text,
-            "{ALLOW}impl{} ::linkwork::NamedFrame<{k}, {}, {}> for {}{} {} {{\ntype Scalar = {};\n{body}}}",
+            "{ALLOW}#[doc(hidden)]\nimpl{} ::linkwork::NamedFrame<{k}, {}, {}> for {}{} {} {{\ntype Scalar = {};\n{body}}}",
             head.generics,
             s.nq,
             s.nv,

@@ -1,10 +1,12 @@
 //! Lowered programs → Rust: the struct without its elements, the generated functions with their documentation, and the
 //! implementation of the trait. Emission never simplifies.
 
+mod absent;
 mod angles;
 mod body;
 mod constants;
 mod constraints;
+mod derived;
 mod dispatch;
 mod docs;
 pub mod frames;
@@ -18,7 +20,9 @@ mod reactions;
 mod scalar;
 mod stores;
 
+pub use absent::Absent;
 pub use constraints::Constraints;
+pub use derived::with_elements;
 pub use function::{Argument, Function, Parted, Shape};
 pub use item::{Constant, Emitted, Interface, Output, emit_failed, emit_mechanism};
 pub use prepared::Prepared;

@@ -1,6 +1,7 @@
 //! The second struct of the word `prepare`: it holds the numbers that depend on the parameters alone, and has the
 //! functions of the first, which do what is left.
 
+use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
 use super::constraints;
 use super::dispatch::Bodies;
@@ -55,11 +56,12 @@ pub fn write_prepared(
     }
     constraints::write_constants(&mut methods, &i.constraints);
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
-    reactions::write_methods(&mut methods, &i.constraints, functions, s);
+    reactions::write_methods(&mut methods, i, functions, s);
     write_manifold(&mut methods, content.charts, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     head.write_impls(out, &name, &methods, i, s);
     bodies.write(out, &name, &head);
+    write_absent_of_prepared(out, &name, i, s);
 
     let Head { generics, arguments, bounds } = &head;
     let _ = writeln!(

@@ -1,15 +1,17 @@
 //! Outputs that name reactions of joints: the motion is solved first, then the reactions follow from its accelerations and
 //! multipliers.
 
-use super::constraints::Constraints;
+use super::docs::output_docs;
 use super::function::{Argument, Function, Signature};
+use super::item::Interface;
 use std::fmt::Write;
 
 /// What the hidden function of a reaction's output is called, after which the output is.
 pub const HIDDEN: &str = "__reaction_";
 
 /// Writes the outputs whose hidden functions are among these.
-pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
+pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+    let c = &i.constraints;
     let by_velocity =
         functions.iter().any(|f| f.name == "generalized_forces" && f.arguments.contains(&Argument::V));
     let t = if s.time { "t, " } else { "" };
@@ -35,16 +37,28 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         };
         let _ = writeln!(
             out,
-            "/// The output `{name}`, in the motion under the inputs: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots.
+            "#[doc = {:?}]
             #[must_use]
             pub fn {name}({}) -> {} {{
                 let tau = {tau};
                 {solve}
                 self.{}({t}{pass})
             }}",
+            output_docs(i, name, &about(s)),
             s.parameters(&s.timed(&arguments)),
             s.shape(f.shape),
             f.name
         );
     }
+}
+
+/// What the function of a reaction's output gives.
+fn about(s: &Signature<'_>) -> String {
+    let motion = match s.nu {
+        0 => "in the motion that the state determines",
+        _ => "in the motion under the inputs",
+    };
+    format!(
+        "{motion}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no Jacobian yet."
+    )
 }

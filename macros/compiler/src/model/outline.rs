@@ -5,7 +5,8 @@ use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Action, ActionKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind, Law,
+    Action, ActionKind, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind,
+    Law,
 };
 use std::collections::BTreeSet;
 
@@ -27,6 +28,8 @@ pub struct Outline {
     pub velocity_inputs: bool,
     /// Joints close loops, or constraints are declared.
     pub constrained: bool,
+    /// Some of those are contacts that slip.
+    pub slipping: bool,
     /// The outputs, in order.
     pub outputs: Vec<OutlinedOutput>,
 }
@@ -69,6 +72,7 @@ pub fn outline(d: &Description) -> Outline {
             })
         }),
         constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
+        slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
         outputs: d.outputs.iter().map(|output| outlined(d, output)).collect(),
         frames: frames(d),
         bodies: bodies(d),

@@ -3,7 +3,9 @@
 use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
-use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, guard};
+use super::{
+    Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, guard, home,
+};
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
@@ -57,6 +59,12 @@ pub struct Shell {
     pub parameters: Vec<Field>,
     /// Name and type of the fields that go, for the editor's sake.
     pub elements: Vec<(Ident, Ident)>,
+    /// What the user says of fields in doc comments: name of the field, first paragraph.
+    pub notes: Vec<(String, String)>,
+    /// The attribute and the struct as they are written, if the compiler can tell.
+    pub declaration: Option<String>,
+    /// Where generated code finds the runtime, if not in a crate of its own name.
+    pub home: Option<syn::Path>,
 }
 
 /// The name of the fixed frame.
@@ -116,8 +124,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if !guard::check_tokens(&arguments, cx) || !guard::check_tokens(&item, cx) {
         return None;
     }
-    let item = parse_struct(item, cx)?;
-    let mut item = item;
+    let fields = declaration::fields(&item);
+    let mut item = parse_struct(item, cx)?;
+    let (arguments, home) = home::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
     let mut description = empty_description(&item);
     let mut shell = Shell {
@@ -127,6 +136,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         generics: item.generics.clone(),
         parameters: Vec::new(),
         elements: Vec::new(),
+        notes: declaration::notes(&item),
+        declaration: declaration::text(&item, fields),
+        home,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
     for field in item.fields {
@@ -344,6 +356,9 @@ fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut 
 
 fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
+        if element::is_conditional(attribute) {
+            cx.error(attribute.path().span(), "a parameter cannot be conditional").help(element::CONDITIONS);
+        }
         if let Some(word) = attribute.path().get_ident()
             && word != "unit"
             && element::ATTRIBUTES.contains(&word.to_string().as_str())

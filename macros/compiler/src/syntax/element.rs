@@ -186,6 +186,27 @@ pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
 
+/// What to do where a field is meant to be there under conditions only, which the attribute is not told.
+pub const CONDITIONS: &str =
+    "put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
+
+/// True for an attribute that takes a parameter away under a condition, or says under one what the language does.
+pub fn is_conditional(attribute: &Attribute) -> bool {
+    let conditional = |list: &syn::MetaList| {
+        let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
+        let parts = parse.parse2(list.tokens.clone()).unwrap_or_default();
+        parts.iter().skip(1).any(|part| {
+            let word = part.path().get_ident().map(ToString::to_string).unwrap_or_default();
+            word.starts_with("cfg") || ATTRIBUTES.contains(&word.as_str())
+        })
+    };
+    match &attribute.meta {
+        meta if meta.path().is_ident("cfg") => true,
+        Meta::List(list) if list.path.is_ident("cfg_attr") => conditional(list),
+        _ => false,
+    }
+}
+
 /// The unit in `#[unit(…)]`, as an expression.
 pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     let tokens = match &attribute.meta {
@@ -227,7 +248,7 @@ fn own_arguments(
                 .help(format!("expected `#[{expected}(…)]`"));
             return None;
         } else if word == "cfg" || word == "cfg_attr" {
-            cx.error(span, "an element cannot be conditional").help("put `#[cfg]` on the whole struct");
+            cx.error(span, "an element cannot be conditional").help(CONDITIONS);
         } else if !matches!(
             word.as_str(),
             "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated"

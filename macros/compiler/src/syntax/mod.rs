@@ -6,9 +6,11 @@ use crate::diag::Place;
 pub mod action;
 pub mod arguments;
 pub mod attribute;
+pub mod declaration;
 pub mod element;
 pub mod expression;
 pub mod guard;
+pub mod home;
 
 pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
 

@@ -1,0 +1,75 @@
+//! Functions that a mechanism does not have, under bounds that never hold: a call of one is told what it lacks.
+
+use super::function::Signature;
+use super::item::{ALLOW, Head, Interface};
+use std::fmt::Write;
+
+/// Functions and constants that are not there, all for one reason.
+#[derive(Clone, Debug)]
+pub struct Absent {
+    /// The trait of the runtime that says why.
+    pub reason: &'static str,
+    /// Names of the functions.
+    pub functions: Vec<String>,
+    /// Names of the constants.
+    pub constants: Vec<&'static str>,
+}
+
+/// What a prepared mechanism leaves to the one that it was prepared from.
+const OF_FRAMES: [&str; 6] = [
+    "frame_acceleration",
+    "frame_index",
+    "frame_jacobian",
+    "frame_placement",
+    "frame_placements",
+    "frame_velocity",
+];
+
+impl Absent {
+    /// The functions of frames, and what is made by the mechanism itself.
+    fn of_prepared() -> Absent {
+        Absent {
+            reason: "HasFrames",
+            functions: OF_FRAMES.map(ToString::to_string).to_vec(),
+            constants: vec!["FRAMES"],
+        }
+    }
+}
+
+/// Writes what the struct lacks.
+pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let name = i.shell.ident.to_string();
+    for absent in &i.absent {
+        write_one(out, &name, absent, &Head::new(i, s));
+    }
+}
+
+/// Writes what a prepared struct of this name lacks.
+pub fn write_absent_of_prepared(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+    for absent in i.absent.iter().chain([&Absent::of_prepared()]) {
+        write_one(out, name, absent, &Head::new(i, s));
+    }
+}
+
+/// Nobody else's function of this name is in the way of these, nor are they in anybody's: rustc sees that the bound does
+/// not hold.
+fn write_one(out: &mut String, name: &str, absent: &Absent, head: &Head) {
+    if absent.functions.is_empty() && absent.constants.is_empty() {
+        return;
+    }
+    let Head { generics, arguments, bounds } = head;
+    let start = if bounds.is_empty() { "where" } else { bounds.trim_end_matches(',') };
+    let comma = if bounds.is_empty() { "" } else { "," };
+    let _ = writeln!(
+        out,
+        "{ALLOW}#[doc(hidden)]\nimpl{generics} {name}{arguments} {start}{comma} for<'a> Self: ::linkwork::__private::absent::{}<'a> {{",
+        absent.reason
+    );
+    for function in &absent.functions {
+        let _ = writeln!(out, "#[inline]\npub fn {function}(&self) {{}}");
+    }
+    for constant in &absent.constants {
+        let _ = writeln!(out, "pub const {constant}: () = ();");
+    }
+    out.push_str("}\n");
+}

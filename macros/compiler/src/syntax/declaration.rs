@@ -1,0 +1,94 @@
+//! The struct as the user wrote it, for its documentation: the source text, and what doc comments say of its fields.
+
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::{Attribute, Expr, ExprLit, ItemStruct, Lit, Meta};
+
+/// The source text of a struct's fields with their braces. None outside of a compilation, and of what a macro has put together.
+pub fn fields(item: &TokenStream) -> Option<String> {
+    let braces = item.clone().into_iter().find_map(|token| match token {
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => Some(group.span()),
+        _ => None,
+    });
+    braces.map(source).unwrap_or_else(|| Some(";".to_string()))
+}
+
+/// The source text of a token, unless it stands in the definition of a macro.
+fn source(span: Span) -> Option<String> {
+    span.source_text().filter(|text| !text.contains('$'))
+}
+
+/// The attribute and the struct with the source text of its fields.
+pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
+    let attribute = source(Span::call_site()).filter(|text| text.starts_with("#["))?;
+    let fields = fields?;
+    let (visibility, name) = (item.vis.to_token_stream().to_string(), &item.ident);
+    let generics = item.generics.params.to_token_stream().to_string();
+    let generics = if generics.is_empty() { generics } else { format!("<{generics}>") };
+    let bounds = item.generics.where_clause.to_token_stream().to_string();
+    let head = [visibility, format!("struct {name}{generics}"), bounds];
+    let head = head.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+    let space = if fields == ";" { "" } else { " " };
+    Some(format!("{}\n{head}{space}{}", dedented(&attribute), dedented(&fields)))
+}
+
+/// The lines without the indentation of the last, which closes what the first opens.
+fn dedented(text: &str) -> String {
+    let depth = text.lines().last().map_or(0, |last| last.len() - last.trim_start().len());
+    let line = |line: &str| {
+        let blank = line.len() - line.trim_start().len();
+        line.get(depth.min(blank)..).unwrap_or_default().to_string()
+    };
+    let mut lines = text.lines();
+    let first = lines.next().unwrap_or_default().to_string();
+    [first].into_iter().chain(lines.map(line)).collect::<Vec<_>>().join("\n")
+}
+
+/// The first paragraph of the doc comment of every field that has one.
+pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
+    let note = |field: &syn::Field| {
+        let name = field.ident.as_ref()?.to_string();
+        let said = first_paragraph(&field.attrs);
+        (!said.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), said))
+    };
+    item.fields.iter().filter_map(note).collect()
+}
+
+fn first_paragraph(attributes: &[Attribute]) -> String {
+    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+        Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
+            Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) => Some(text.value()),
+            _ => None,
+        },
+        _ => None,
+    });
+    let all = lines.collect::<Vec<_>>().join("\n");
+    let lines = all.lines().map(str::trim).skip_while(|line| line.is_empty());
+    lines.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_start_where_the_last_does() {
+        assert_eq!(dedented("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
+        assert_eq!(dedented("{ a: f64 }"), "{ a: f64 }");
+    }
+
+    #[test]
+    fn a_note_is_the_first_paragraph() {
+        let item: ItemStruct = syn::parse_quote! {
+            struct S {
+                /// The length,
+                /// of the rod.
+                ///
+                /// More.
+                length: f64,
+                mass: f64,
+            }
+        };
+        assert_eq!(notes(&item), [("length".to_string(), "The length, of the rod.".to_string())]);
+    }
+}

@@ -1,0 +1,94 @@
+//! What the attribute takes and what it does not: arguments in, messages or code out.
+
+use linkwork_compiler::{check, expand};
+use std::path::Path;
+
+const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
+
+fn messages(arguments: &str, fields: &str) -> Vec<String> {
+    let item = format!("struct S {{ {fields} }}");
+    check(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
+}
+
+fn code(arguments: &str, fields: &str) -> String {
+    let item = format!("/// `::linkwork::`\npub struct S {{ {fields} }}");
+    let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    emitted.into_tokens().unwrap().to_string().replace(' ', "")
+}
+
+const NONE: [String; 0] = [];
+
+#[test]
+fn a_field_is_there_always() {
+    let help = "= help: put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
+    let used = "#[body(mass = m)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
+    for attribute in ["cfg(unix)", "cfg_attr(unix, unit(kg))", "cfg_attr(unix, cfg(test))"] {
+        let told = messages("", &format!("#[{attribute}] m: f64, {used}"));
+        assert_eq!(told, [format!("a parameter cannot be conditional\n\n{help}")], "{attribute}");
+    }
+    assert_eq!(messages("", &format!("#[cfg_attr(unix, serde(skip))] m: f64, {used}")), NONE);
+    let told = messages("", &format!("#[cfg(unix)] {CART}"));
+    assert_eq!(told, [format!("an element cannot be conditional\n\n{help}")]);
+}
+
+#[test]
+fn the_runtime_may_have_another_name() {
+    let fields = format!("{CART} #[output(r(cart / ground))] place: Vector,");
+    let words = "derivatives, centroidal, regressor, packed, batch";
+    let usual = code(words, &fields);
+    for (path, spelt) in [("lw", "uselwas"), ("::a::b", "use::a::bas"), ("crate::c", "usecrate::cas")] {
+        for arguments in [format!("crate = {path}, {words}"), format!("{words}, crate = {path}")] {
+            let renamed = code(&arguments, &fields);
+            assert!(renamed.contains(&format!("{spelt}__linkwork_of_S;")), "{path}");
+            // The user's own words stay.
+            assert!(renamed.contains("\"`::linkwork::`\""));
+            let of_the_user = "\"`::linkwork::`\"";
+            let back = renamed.replace("__linkwork_of_S::", "::linkwork::");
+            let rest = back.replace(of_the_user, "");
+            assert_eq!(
+                rest.matches("::linkwork::").count(),
+                usual.replace(of_the_user, "").matches("::linkwork::").count()
+            );
+            assert!(!renamed.replace(of_the_user, "").contains("::linkwork::"), "{path}");
+        }
+    }
+    // Of a struct that is generic, with a mistake too.
+    let generic = |fields: &str| {
+        let item = format!("struct S<T> {{ m: T, {} {fields} }}", CART.replace("mass = 1", "mass = m"));
+        let emitted = expand("crate = lw, prepare".parse().unwrap(), item.parse().unwrap(), Path::new(""));
+        emitted.into_tokens().unwrap().to_string().replace(' ', "")
+    };
+    for fields in ["", "#[output(unknown)] mistake: Scalar,"] {
+        assert!(!generic(fields).contains("::linkwork::"), "{fields}");
+    }
+    assert!(messages("crate = 3", CART)[0].starts_with("expected a path for `crate`"));
+    assert!(messages("crate = ", CART)[0].starts_with("expected a path for `crate`"));
+    assert_eq!(messages("crate = a, crate = b", CART), ["`crate` is given twice"]);
+}
+
+#[test]
+fn doc_comments_stand_beside_what_they_describe() {
+    let text = code(
+        "",
+        "/// Mass | of all.\n m: f64,
+        /// A box.\n #[body(mass = m)] cart: Body,
+        /// How far it\n/// went.\n///\n/// More.\n #[joint(ground -> cart, along = x)] rail: Sleeve,
+        /// The push.\n #[acts(on = rail)] push: Force,
+        /// Where it is.\n #[output(r(cart / ground))] place: Vector,
+        /// What it feels.\n #[output(reaction_force(rail))] load: Vector,
+        /// How it speeds up.\n #[output(dot(a(cart / ground / ground), x))] jolt: Scalar,",
+    );
+    for expected in [
+        "|parameter|`m`|kg|Mass\\\\|ofall.|",
+        "-`cart`:Abox.",
+        "|`q[0]`|`rail`|m|Howfaritwent.|",
+        "|`v[0]`|`rail`|m/s||",
+        "|`u[0]`|`push`|N|Thepush.|",
+        "|output|`place`|m|Whereitis.|",
+        "\"Whereitis.\\n\\nTheoutput`place`.\"",
+        "\"Whatitfeels.\\n\\nTheoutput`load`,inthemotionundertheinputs",
+        "\"Howitspeedsup.\\n\\nTheoutput`jolt`,ofgivenaccelerations.IthasnoJacobianyet.\"",
+    ] {
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+}

@@ -1,0 +1,191 @@
+//! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a second mistake.
+//! What a mechanism does not have on purpose stands under a bound that says why.
+
+use linkwork_compiler::expand;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use syn::{ImplItem, Item, ItemImpl, Type};
+
+/// A mistake that belongs to no other field.
+const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
+
+const WORDS: &str = "derivatives, centroidal, regressor, sensitivities, packed, prepare, batch";
+
+const CART_POLE: &str = "
+    m: f64, l: f64,
+    #[body(mass = 1)] cart: Body,
+    #[body(mass = m, com = l * y)] pole: Body,
+    #[joint(ground -> cart, along = x)] rail: Sleeve,
+    #[joint(cart -> pole, about = z)] hinge: Pin,
+    #[acts(on = cart, along = x)] push: Force,
+    #[output(r(pole / ground))] place: Vector,
+    #[output(dot(v(pole / ground / ground), y))] climb: Scalar,
+    #[output(dot(a(pole / ground / ground), y))] lift: Scalar,
+    #[output(reaction_force(hinge))] load: Vector,";
+
+const DRIVEN: &str = "
+    m: f64, radius: f64, spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t))] hoop: Frame,
+    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,
+    #[output(v(bead / ground / hoop), resolved_in = hoop)] sliding: Vector,";
+
+const FOUR_BAR: &str = "
+    m: f64,
+    #[body(mass = m, com = x / 2)] crank: Body,
+    #[body(mass = m, com = x / 2)] coupler: Body,
+    #[body(mass = m, com = x / 2)] rocker: Body,
+    #[joint(ground -> crank, about = z)] input: Pin,
+    #[joint(crank.at(x) -> coupler, about = z)] joint: Pin,
+    #[joint(ground.at(1.5 * x) -> rocker, about = z)] output: Pin,
+    #[joint(coupler.at(2 * x) -> rocker.at(1.4 * x), about = z)] last: Pin,
+    #[acts(on = input)] motor: Torque,
+    #[output(reaction_force(last))] load: Vector,";
+
+const SLIDING: &str = "
+    m: f64, friction: f64,
+    #[body(mass = m, inertia = rod(m, 1, x))] rod: Body,
+    #[joint(ground -> rod, about = z)] pose: Planar,
+    #[constraint(slips(rod.at(-0.5 * x).sphere(0.01), ground.plane(y)), friction = friction, speed = 0.001)]
+    floor: Slipping,";
+
+const MECHANISMS: [(&str, &str); 4] =
+    [("CartPole", CART_POLE), ("Driven", DRIVEN), ("FourBar", FOUR_BAR), ("Sliding", SLIDING)];
+
+/// By name, the number of arguments (none for constants).
+type Names = BTreeMap<String, Option<usize>>;
+
+struct Generated {
+    /// What can be called, of all structs.
+    present: Names,
+    /// What cannot, with the bounds that say why.
+    absent: BTreeMap<String, String>,
+    /// The traits that are implemented.
+    traits: BTreeSet<String>,
+}
+
+fn generated(arguments: &str, name: &str, fields: &str) -> Generated {
+    let item = format!("pub struct {name} {{ {fields} }}");
+    let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
+    let mut all = Generated { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
+    for item in file.items {
+        if let Item::Impl(block) = item {
+            all.read(&block);
+        }
+    }
+    all
+}
+
+/// The bound of what is absent: the only one over a lifetime.
+fn reason(block: &ItemImpl) -> Option<String> {
+    let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
+    let reasons = bounds.filter_map(|predicate| match predicate {
+        syn::WherePredicate::Type(bound) if bound.lifetimes.is_some() => match bound.bounds.first()? {
+            syn::TypeParamBound::Trait(bound) => Some(bound.path.segments.last()?.ident.to_string()),
+            _ => None,
+        },
+        _ => None,
+    });
+    reasons.last()
+}
+
+impl Generated {
+    fn read(&mut self, block: &ItemImpl) {
+        let Type::Path(of) = &*block.self_ty else { return };
+        let of = of.path.segments.last().unwrap().ident.to_string();
+        if let Some((path, _)) = &block.trait_ {
+            self.traits.insert(format!("{of}: {}", path.segments.last().unwrap().ident));
+            return;
+        }
+        let reason = reason(block);
+        for item in &block.items {
+            let (name, arguments) = match item {
+                ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(f.sig.inputs.len())),
+                ImplItem::Const(c) => (c.ident.to_string(), None),
+                _ => continue,
+            };
+            if name.starts_with("__") {
+                continue;
+            }
+            let name = format!("{of}::{name}");
+            let first = match &reason {
+                Some(reason) => self.absent.insert(name.clone(), reason.clone()).is_none(),
+                None => self.present.insert(name.clone(), arguments).is_none(),
+            };
+            assert!(first, "`{name}` stands there twice");
+        }
+    }
+}
+
+#[test]
+fn a_mistake_leaves_every_name() {
+    for (name, fields) in MECHANISMS {
+        for words in ["", "derivatives", "batch", WORDS] {
+            let whole = generated(words, name, fields);
+            let failed = generated(words, name, &format!("{fields} {MISTAKE}"));
+            for (function, arguments) in &whole.present {
+                assert_eq!(failed.present.get(function), Some(arguments), "{name}, {words}: `{function}`");
+            }
+            let hidden = ["NamedFrame", "Evaluate", "Body"].map(|hidden| format!("{name}: {hidden}"));
+            let hidden =
+                hidden.into_iter().chain(["Evaluate", "Body"].map(|h| format!("Prepared{name}: {h}")));
+            let wanted: BTreeSet<String> = whole.traits.iter().cloned().collect();
+            let hidden: BTreeSet<String> = hidden.collect();
+            let missing: Vec<&String> =
+                wanted.iter().filter(|t| !hidden.contains(*t) && !failed.traits.contains(*t)).collect();
+            assert!(missing.is_empty(), "{name}, {words}: {missing:?}");
+        }
+    }
+}
+
+#[test]
+fn every_word_is_named_by_what_needs_it() {
+    let of = |name: &str| name.split_once("::").unwrap().1.to_string();
+    for (name, fields) in MECHANISMS {
+        let (bare, all) = (generated("", name, fields), generated(WORDS, name, fields));
+        // Whatever all words together give, without them either is there or says why it is not.
+        for function in all.present.keys().filter(|function| function.starts_with(name)) {
+            let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
+            // Two words together give these: the first names itself, then the other.
+            let of_two = function.ends_with("_lanes")
+                && !bare.present.contains_key(function.trim_end_matches("_lanes"));
+            assert!(known || of_two, "{function}");
+        }
+        // Without one of the words, what it gives is told to need it.
+        let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
+        for word in one_less {
+            let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
+            let without = generated(&others.join(", "), name, fields);
+            let lost = all.present.keys().filter(|function| !without.present.contains_key(*function));
+            for function in lost.filter(|function| !function.starts_with("Prepared") || word != "prepare") {
+                let reason = without.absent.get(function).map(|reason| reason.to_lowercase());
+                assert_eq!(reason, Some(format!("asksfor{word}")), "{function}");
+            }
+        }
+        for function in all.absent.keys() {
+            let constrained = ["FourBar", "Sliding"].contains(&name);
+            let reason = &all.absent[function];
+            let expected: &[&str] = match constrained {
+                true => &["HasNoConstraints", "HasJacobiansOfAccelerations", "HasFrames"],
+                false => &["HasConstraints", "HasJacobiansOfAccelerations", "HasFrames"],
+            };
+            assert!(expected.contains(&reason.as_str()), "{}: {reason}", of(function));
+        }
+    }
+}
+
+#[test]
+fn kinematics_alone_say_what_they_lack() {
+    let kinematic = generated(
+        "inertia = none",
+        "CartPole",
+        "#[body] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,",
+    );
+    for name in ["mass_matrix", "simulate_nothing", "linearize", "center_of_mass", "prepare", "BODIES"] {
+        let reason = kinematic.absent.get(&format!("CartPole::{name}")).map(String::as_str);
+        assert_eq!(reason, (name != "simulate_nothing").then_some("HasInertia"), "{name}");
+    }
+    let twice = kinematic.absent.keys().find(|name| kinematic.present.contains_key(*name));
+    assert_eq!(twice, None);
+}

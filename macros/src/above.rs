@@ -1,0 +1,59 @@
+//! What stands above the attribute: a `#[derive(…)]` there has seen the struct with its elements. Neither the struct nor the
+//! compiler tells, so the source file is asked.
+
+use proc_macro::Span;
+
+/// The line of a `#[derive(…)]` above the attribute, if there is one.
+pub fn is_below_a_derive() -> bool {
+    let here = Span::call_site();
+    let text = here.local_file().and_then(|path| std::fs::read_to_string(path).ok());
+    text.is_some_and(|text| stands_below_a_derive(&text, here.line(), here.column()))
+}
+
+/// True if an attribute that begins at a line and column, counted from one, stands below a `#[derive(…)]` of the same item.
+fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
+    let lines: Vec<&str> = text.lines().take(line).collect();
+    let Some((own, above)) = lines.split_last() else { return false };
+    let own: String = own.chars().take(column.saturating_sub(1)).collect();
+    for line in [own.as_str()].into_iter().chain(above.iter().rev().copied()).map(str::trim) {
+        if line.starts_with("#[derive(") {
+            return true;
+        }
+        // The end of something else.
+        let code = line.split("//").next().unwrap_or_default().trim_end();
+        if [";", "}", "{", "*/"].iter().any(|end| code.ends_with(end)) {
+            return false;
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stands_below_a_derive;
+
+    #[test]
+    fn the_derive_of_the_same_item_is_found() {
+        let below = ["#[derive(Clone)]\n", "#[derive(\n    Clone,\n)]\n/// A cart.\n\n", "#[derive(Clone)] "];
+        for above in below {
+            let text = format!("use a::b;\n{above}#[mechanism]\nstruct Cart;");
+            let line = text.lines().position(|line| line.contains("#[mechanism]")).unwrap_or_default() + 1;
+            let column = text.lines().nth(line - 1).and_then(|l| l.find("#[m")).unwrap_or_default() + 1;
+            assert!(stands_below_a_derive(&text, line, column), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_derive_of_another_item_is_not() {
+        for above in [
+            "#[derive(Clone)]\nstruct A;\n",
+            "#[derive(Clone)]\nstruct A { a: f64 } // end\n",
+            "/// A `cart`\n",
+        ] {
+            let text = format!("{above}#[mechanism]\n#[derive(Clone)]\nstruct Cart;");
+            let line = text.lines().position(|line| line.contains("#[mechanism]")).unwrap_or_default() + 1;
+            assert!(!stands_below_a_derive(&text, line, 1), "{text}");
+        }
+        assert!(!stands_below_a_derive("", 1, 1));
+    }
+}

@@ -1,0 +1,101 @@
+//! Why a function is not there. Generated code has each function that a mechanism lacks once more, under a bound that nothing
+//! fulfils: whoever calls it is told what to do about it. Since the bound never holds, such a function stands in nobody's
+//! way, neither in that of an output nor in that of a method of the user's own.
+//!
+//! The lifetime makes rustc take a bound as it is, though it names no parameter; without one it would be refused at once.
+
+/// A mechanism with the word `derivatives`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `derivatives`",
+    label = "this needs the word `derivatives`",
+    note = "add the word to the attribute: `#[mechanism(…, derivatives)]`"
+)]
+pub trait AsksForDerivatives<'a> {}
+
+/// A mechanism with the word `centroidal`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `centroidal`",
+    label = "this needs the word `centroidal`",
+    note = "add the word to the attribute: `#[mechanism(…, centroidal)]`"
+)]
+pub trait AsksForCentroidal<'a> {}
+
+/// A mechanism with the word `regressor`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `regressor`",
+    label = "this needs the word `regressor`",
+    note = "add the word to the attribute: `#[mechanism(…, regressor)]`"
+)]
+pub trait AsksForRegressor<'a> {}
+
+/// A mechanism with the word `sensitivities`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `sensitivities`",
+    label = "this needs the word `sensitivities`",
+    note = "add the word to the attribute: `#[mechanism(…, sensitivities)]`; the mechanism needs parameters"
+)]
+pub trait AsksForSensitivities<'a> {}
+
+/// A mechanism with the word `packed`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `packed`",
+    label = "this needs the word `packed`",
+    note = "add the word to the attribute: `#[mechanism(…, packed)]`"
+)]
+pub trait AsksForPacked<'a> {}
+
+/// A mechanism with the word `prepare`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `prepare`",
+    label = "this needs the word `prepare`",
+    note = "add the word to the attribute: `#[mechanism(…, prepare)]`; the mechanism needs parameters"
+)]
+pub trait AsksForPrepare<'a> {}
+
+/// A mechanism with the word `batch`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `batch`",
+    label = "this needs the word `batch`",
+    note = "add the word to the attribute: `#[mechanism(…, batch)]`"
+)]
+pub trait AsksForBatch<'a> {}
+
+/// A mechanism with loops, rolling or other constraints.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no constraints",
+    label = "only mechanisms with constraints have this",
+    note = "its coordinates are independent of each other: every `q` and `v` is a state"
+)]
+pub trait HasConstraints<'a> {}
+
+/// A mechanism with masses and inertias.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no inertia",
+    label = "only mechanisms with inertia have this",
+    note = "it is declared with `inertia = none`: kinematics alone"
+)]
+pub trait HasInertia<'a> {}
+
+/// A mechanism without constraints.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has constraints",
+    label = "only mechanisms without constraints have this",
+    note = "`forward_dynamics_derivatives` and `linearize` take the constraints into account"
+)]
+pub trait HasNoConstraints<'a> {}
+
+/// A mechanism whose outputs of accelerations have Jacobians: none so far.
+#[diagnostic::on_unimplemented(
+    message = "an output of accelerations or reactions has no Jacobian yet",
+    label = "this output has none",
+    note = "outputs of the configuration and of velocities have one"
+)]
+pub trait HasJacobiansOfAccelerations<'a> {}
+
+/// A mechanism that knows its frames: not one that is prepared.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no frames",
+    label = "the mechanism that it was prepared from has them",
+    note = "call this on the mechanism itself: frames are not prepared"
+)]
+pub trait HasFrames<'a> {}

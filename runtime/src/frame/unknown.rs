@@ -1,0 +1,185 @@
+//! What is said of a name that no frame has, at compile time, where nothing allocates: the name, and the names nearest to it.
+
+/// A message that grows at compile time.
+pub struct Message {
+    text: [u8; Message::MOST],
+    length: usize,
+}
+
+/// Most letters of names that are compared.
+const LETTERS: usize = 64;
+/// Most edits by which a name is near another.
+const EDITS: usize = 3;
+/// Most names that are listed.
+const LISTED: usize = 8;
+
+impl Message {
+    const MOST: usize = 1024;
+
+    /// That a mechanism has no frame of this name, with the names nearest to it, or all if they are few.
+    pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
+        let mut message = Message { text: [0; Message::MOST], length: 0 };
+        message = message.with("`").with(mechanism).with("` has no frame `").with(name).with("`");
+        let mut first = true;
+        let mut edits = 1;
+        while edits <= EDITS + 1 {
+            let mut k = 0;
+            while k < frames.len() {
+                if distance(frames[k].as_bytes(), name.as_bytes()) == edits {
+                    message = message.with(if first { "; did you mean `" } else { "` or `" }).with(frames[k]);
+                    first = false;
+                }
+                k += 1;
+            }
+            // Further ones are not listed where there are near ones.
+            edits = if first { edits + 1 } else { EDITS + 2 };
+        }
+        if !first {
+            return message.with("`?");
+        }
+        if frames.len() > LISTED {
+            return message.with("; `").with(mechanism).with("::FRAMES` lists those that it has");
+        }
+        let mut k = 0;
+        while k < frames.len() {
+            message = message.with(if k == 0 { "; expected `" } else { "`, `" }).with(frames[k]);
+            k += 1;
+        }
+        if frames.is_empty() { message } else { message.with("`") }
+    }
+
+    /// Its text.
+    pub const fn text(&self) -> &str {
+        // What is too long ends at the end of a piece.
+        match core::str::from_utf8(self.text.split_at(self.length).0) {
+            Ok(text) => text,
+            Err(_) => "no frame has this name",
+        }
+    }
+
+    const fn with(mut self, text: &str) -> Message {
+        let text = text.as_bytes();
+        if self.length + text.len() > Message::MOST {
+            return self;
+        }
+        let mut k = 0;
+        while k < text.len() {
+            self.text[self.length + k] = text[k];
+            k += 1;
+        }
+        self.length += text.len();
+        self
+    }
+}
+
+/// How many letters of one name are to be changed, added or left out for the other, capitals apart, if at most three and at
+/// most a third of them; one more if one is a part of the other; else more than that.
+const fn distance(a: &[u8], b: &[u8]) -> usize {
+    let least = if a.len() < b.len() { a.len() } else { b.len() };
+    let mut limit = b.len() / 3;
+    limit = if limit > EDITS {
+        EDITS
+    } else if limit == 0 {
+        1
+    } else {
+        limit
+    };
+    let far = if least >= 3 && (contains(a, b) || contains(b, a)) { EDITS + 1 } else { EDITS + 2 };
+    if a.len() > LETTERS || b.len() > LETTERS || a.len().abs_diff(b.len()) > limit {
+        return far;
+    }
+    // By rows of the table of Levenshtein's distance, as far from its diagonal as counts.
+    let mut row = [EDITS + 1; LETTERS + 2];
+    let mut j = 0;
+    while j <= b.len() && j <= limit {
+        row[j] = j;
+        j += 1;
+    }
+    let mut i = 1;
+    while i <= a.len() {
+        let mut j = i.saturating_sub(limit);
+        let mut before = if j == 0 { 0 } else { row[j - 1] };
+        let mut left = EDITS + 1;
+        if j == 0 {
+            before = row[0];
+            row[0] = i;
+            left = i;
+            j = 1;
+        }
+        while j <= b.len() && j <= i + limit {
+            let above = row[j];
+            let changed = before + !a[i - 1].eq_ignore_ascii_case(&b[j - 1]) as usize;
+            let added = if above < left { above + 1 } else { left + 1 };
+            left = if changed < added { changed } else { added };
+            before = above;
+            row[j] = left;
+            j += 1;
+        }
+        i += 1;
+    }
+    match row[b.len()] {
+        edits if edits <= limit && edits < b.len() => {
+            if edits == 0 {
+                1
+            } else {
+                edits
+            }
+        }
+        _ => far,
+    }
+}
+
+/// True if the letters of the second stand one after another in the first.
+const fn contains(a: &[u8], b: &[u8]) -> bool {
+    let mut start = 0;
+    while start + b.len() <= a.len() {
+        let mut k = 0;
+        while k < b.len() && a[start + k] == b[k] {
+            k += 1;
+        }
+        if k == b.len() {
+            return true;
+        }
+        start += 1;
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::string::ToString;
+
+    fn told(frames: &[&str], name: &str) -> std::string::String {
+        Message::unknown_frame("Arm", frames, name).text().to_string()
+    }
+
+    #[test]
+    fn the_nearest_names_are_told() {
+        let frames = ["base", "panda_link1", "panda_link2", "panda_hand", "tool"];
+        assert_eq!(told(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
+        assert_eq!(
+            told(&frames, "panda_lnik1"),
+            "`Arm` has no frame `panda_lnik1`; did you mean `panda_link1`?"
+        );
+        assert_eq!(
+            told(&frames, "pandalink2"),
+            "`Arm` has no frame `pandalink2`; did you mean `panda_link2`?"
+        );
+        assert_eq!(told(&frames, "bas"), "`Arm` has no frame `bas`; did you mean `base`?");
+        let two = "`Arm` has no frame `panda_link`; did you mean `panda_link1` or `panda_link2`?";
+        assert_eq!(told(&frames, "panda_link"), two);
+        assert_eq!(told(&frames, "hand"), "`Arm` has no frame `hand`; did you mean `panda_hand`?");
+        assert_eq!(told(&["a", "b"], "elbow"), "`Arm` has no frame `elbow`; expected `a`, `b`");
+        assert_eq!(told(&[], "elbow"), "`Arm` has no frame `elbow`");
+        let many = ["a"; 9];
+        assert_eq!(told(&many, "elbow"), "`Arm` has no frame `elbow`; `Arm::FRAMES` lists those that it has");
+    }
+
+    #[test]
+    fn long_names_do_no_harm() {
+        let long = "ü".repeat(600);
+        assert!(told(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
+        assert!(told(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));
+    }
+}

@@ -1,0 +1,18 @@
+//! A derive that comes first sees elements that do not stay.
+
+use linkwork::prelude::*;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[mechanism(gravity = -9.81 * y)]
+pub struct CartPole {
+    pub cart_mass: f64,
+    #[body(mass = cart_mass)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+}
+
+fn main() {
+    let cart = CartPole { cart_mass: 1.0 };
+    println!("{cart:?} {}", cart.mass_matrix(&cart.neutral()));
+}
