@@ -198,3 +198,124 @@ fn three_fingers_agree() {
         assert!((gripper.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-3);
     }
 }
+
+/// Carts that are alike, with a spring between two of them: the third has no force that corresponds.
+#[mechanism(gravity = -9.81 * z)]
+struct Carts {
+    #[body(mass = 1)]
+    a: Body,
+    #[joint(ground -> a, along = x)]
+    rail_a: Sleeve,
+    #[body(mass = 2)]
+    b: Body,
+    #[joint(ground -> b, along = x)]
+    rail_b: Sleeve,
+    #[body(mass = 3)]
+    c: Body,
+    #[joint(ground -> c, along = x)]
+    rail_c: Sleeve,
+    #[acts(between = (a, b.at(2 * x)), stiffness = 5, free_length = 1)]
+    buffer: Spring,
+}
+
+#[test]
+fn a_spring_between_two_of_three_carts_pulls_those() {
+    let (m, mut random) = (Carts {}, Random::new(5));
+    for _ in 0..20 {
+        let (q, v): (SVector<f64, 3>, _) = (random.vector(0.5), random.vector(1.0));
+        let pull = 5.0 * (q[1] + 2.0 - q[0] - 1.0);
+        let expected = SVector::from([-pull, pull, 0.0]);
+        assert!((m.bias_forces(&q, &v) - expected).amax() < 1e-12);
+        let a = m.forward_dynamics(&q, &v, &SVector::zeros());
+        assert!((a - SVector::from([pull, -pull / 2.0, 0.0])).amax() < 1e-12);
+    }
+}
+
+/// Two definitions of one hand: three fingers, with elements between them, as they are and without passes.
+macro_rules! hand {
+    ($name:ident, $($options:tt)*) => {
+        #[mechanism(gravity = -9.81 * z $($options)*)]
+        struct $name {
+            #[body(mass = 2, com = 0.1 * z, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+            palm: Body,
+            #[joint(ground -> palm, about = unit(x + z))]
+            wrist: Pin,
+            #[body(mass = 0.3, com = 0.05 * x, inertia = rod(0.3, 0.1, x))]
+            left: Body,
+            #[joint(palm.at(0.1 * x).rotated(z(0.2)) -> left, about = y)]
+            open_left: Pin,
+            #[body(mass = 0.1, com = 0.02 * z, inertia = rod(0.1, 0.04, z))]
+            left_tip: Body,
+            #[joint(left.at(0.1 * x) -> left_tip, about = y)]
+            bend_left: Pin,
+            #[body(mass = 0.3, com = 0.05 * x, inertia = rod(0.3, 0.1, x))]
+            right: Body,
+            #[joint(palm.at(0.1 * y).rotated(z(2.1)) -> right, about = y)]
+            open_right: Pin,
+            #[body(mass = 0.1, com = 0.02 * z, inertia = rod(0.1, 0.04, z))]
+            right_tip: Body,
+            #[joint(right.at(0.1 * x) -> right_tip, about = y)]
+            bend_right: Pin,
+            #[body(mass = 0.4, com = 0.05 * x, inertia = rod(0.4, 0.1, x))]
+            thumb: Body,
+            #[joint(palm.at(-0.1 * y).rotated(z(-2.1)) -> thumb, about = y)]
+            open_thumb: Pin,
+            #[body(mass = 0.2, com = 0.02 * z, inertia = rod(0.2, 0.04, z))]
+            thumb_tip: Body,
+            #[joint(thumb.at(0.1 * x) -> thumb_tip, about = y)]
+            bend_thumb: Pin,
+            #[acts(between = (left_tip.at(0.04 * z), right_tip.at(0.04 * z)), stiffness = 20, free_length = 0.1)]
+            band: Spring,
+            #[acts(between = (thumb_tip.at(0.04 * z), ground.at(0.3 * x)), damping = 2)]
+            cord: Dashpot,
+            #[energy(pow(open_left - open_right, 2) * 0.3)]
+            web: Potential,
+        }
+    };
+}
+
+hand!(Hand,);
+hand!(PlainHand, , skip_passes = [frames, regroup, parallel, limbs]);
+
+#[test]
+fn elements_between_limbs_act_with_and_without_passes() {
+    support::compare::assert_same_dynamics(&Hand {}, &PlainHand {}, 20, 1e-11);
+}
+
+/// An arm whose angles and places carry noise, as exporters leave it: axes that are next to parallel, arms of next to no length,
+/// centres of mass next to axes.
+macro_rules! noisy {
+    ($name:ident, $($options:tt)*) => {
+        #[mechanism(gravity = -9.81 * z $($options)*)]
+        struct $name {
+            #[body(mass = 3, com = [2e-16, 1e-17, 0.2], inertia = diagonal(0.05, 0.05, 0.01))]
+            a: Body,
+            #[joint(ground.at([0, 0, 0.3]).rotated(x(1e-15)) -> a, about = z)]
+            first: Pin,
+            #[body(mass = 2, com = [3e-17, 0.1, 0.03], inertia = diagonal(0.02, 0.01, 0.02).rotated(x(0.3)))]
+            b: Body,
+            #[joint(a.at([1e-9, 0.1, 0.4]).rotated(x(3e-15), y(-2e-15)) -> b, about = z)]
+            second: Pin,
+            #[body(mass = 1, com = [1e-12, 2e-13, 0.03], inertia = diagonal(0.02, 0.01, 0.02).rotated(y(0.3)))]
+            c: Body,
+            #[joint(b.at([0.2, 1e-16, 0.1]).rotated(y(1.3e-8), x(4e-9)) -> c, about = z)]
+            third: Pin,
+            #[body(mass = 0.1, com = [0.01, 0, 0.02], inertia = diagonal(2e-5, 1e-5, 2e-5))]
+            d: Body,
+            #[joint(c.at([0.02, -1e-3, 0.05]).rotated(x(1.5707963), z(2e-7)) -> d, about = z)]
+            fourth: Pin,
+            #[body(mass = 0.05, com = [0.01, 1e-18, 0], inertia = diagonal(1e-6, 2e-6, 2e-6))]
+            e: Body,
+            #[joint(d.at([0.03, 1e-10, 2e-9]).rotated(y(7e-12)) -> e, about = z)]
+            fifth: Pin,
+        }
+    };
+}
+
+noisy!(NoisyArm,);
+noisy!(NoisyPlainArm, , skip_passes = [frames, regroup, parallel]);
+
+#[test]
+fn noise_in_figures_costs_no_digits() {
+    support::compare::assert_same_dynamics(&NoisyArm {}, &NoisyPlainArm {}, 50, 1e-11);
+}

@@ -165,6 +165,21 @@ fn definitions(start: &str, n: usize) -> String {
     )
 }
 
+/// Alike carts, driven by so many functions one in another of their own places; the first two are tied to each other.
+fn carts(n: usize) -> String {
+    let cart = |name: &str| {
+        let laws =
+            list(n, |k| format!("#[define(2 * sin({name}{k} + 0.3) - 0.1)] {name}{}: Scalar, ", k + 1));
+        format!(
+            "#[body(mass = 1)] {name}: Body, #[joint(ground -> {name}, along = x)] at_{name}: Sleeve,
+             #[define(at_{name})] {name}0: Scalar, {laws}
+             #[acts(on = at_{name}, value = {name}{n})] drive_{name}: Force, "
+        )
+    };
+    let all: String = ["a", "b", "c"].map(cart).concat();
+    format!("struct S {{ {all} #[acts(between = (a, b.at(x)), stiffness = 2)] tie: Spring }}")
+}
+
 #[test]
 fn sharing_does_not_explode() {
     let nest =
@@ -197,6 +212,9 @@ fn sharing_does_not_explode() {
         ("definitions that name another twice", definitions("m", 60)),
         ("definitions of a mistake", definitions("nothing", 60)),
         ("definitions one in another", definitions("m", 200)),
+        ("a spring between alike carts", carts(0)),
+        ("laws of alike carts", carts(20)),
+        ("long laws of alike carts", carts(1500)),
     ];
     run_cases(cases);
 }

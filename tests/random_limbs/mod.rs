@@ -1,4 +1,5 @@
-//! Random mechanisms with alike limbs, in the words of the language.
+//! Random mechanisms with alike limbs, in the words of the language; some with elements between the limbs, or between a limb
+//! and what carries it or the ground.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -18,8 +19,43 @@ pub struct Creature {
     mirrored: bool,
     /// Masses are parameters: some of all limbs, some of each.
     symbolic: bool,
+    /// Joints have springs and dashpots.
+    sprung: bool,
+    /// What acts between limbs.
+    interactions: Vec<Interaction>,
     numbers: Vec<f64>,
 }
+
+/// An element between two places.
+#[derive(Clone, Debug)]
+struct Interaction {
+    /// Index into `INTERACTIONS`.
+    kind: usize,
+    /// Limb and joint of the first end, by which its body is named too.
+    first: (usize, usize),
+    /// Those of the second end; the ground, or what carries the limbs, for a limb that there is not.
+    second: (usize, usize),
+}
+
+/// Elements between places `@a` and `@b`, or between coordinates `@p` and `@q` with one velocity.
+const INTERACTIONS: [&str; 13] = [
+    "#[acts(between = (@a, @b), stiffness = 3, free_length = 0.2)] #: Spring,",
+    "#[acts(between = (@a, @b), force = 2 * stretch + pow(stretch, 3), free_length = 0.3)] #: Spring,",
+    "#[acts(between = (@a, @b), damping = 0.6)] #: Dashpot,",
+    "#[acts(between = (@a, @b), inertance = 0.4)] #: Inerter,",
+    "#[acts(between = (@b, @a), strength = 0.7)] #: Attraction,",
+    "#[energy(0.3 * dot(r(@a / @b), r(@a / @b)))] #: Potential,",
+    "#[dissipation(0.2 * dot(v(@a / @b / ground), v(@a / @b / ground)))] #: Rayleigh,",
+    "#[acts(on = @a, value = 0.4 * r(@b / ground) - 0.3 * v(@a / ground / ground))] #: Force,",
+    "#[acts(on = @p, inertance = 0.3)] #: Inerter,",
+    "#[energy(0.5 * pow(@p - @q, 2) + 0.2 * sin(@p) * @q)] #: Potential,",
+    "#[dissipation(0.3 * pow(rate(@p) - rate(@q), 2))] #: Rayleigh,",
+    "#[acts(on = @p, value = 0.4 * sin(@q) - 0.2 * rate(@p))] #: Torque,",
+    "#[constraint(norm(r(@a / @b)) = 1.3)] #: Holonomic,",
+];
+
+/// From here on elements act on coordinates.
+const ON_COORDINATES: std::ops::Range<usize> = 8..12;
 
 const TRUNKS: [&str; 4] = ["ground", "free body", "pinned body", "arm on a free body"];
 const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
@@ -27,15 +63,16 @@ const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
 /// Creatures with two to five limbs of up to `joints` joints.
 pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
     let kinds = vec((0..KINDS.len(), 0..3_usize), 1..=joints);
-    let parts = (0..TRUNKS.len(), 2..6_usize, kinds, any::<[bool; 3]>(), vec(-1.0..1.0_f64, 61));
-    parts.prop_map(|(trunk, limbs, joints, [forked, mirrored, symbolic], numbers)| Creature {
-        trunk,
-        limbs,
-        joints,
-        forked,
-        mirrored,
-        symbolic,
-        numbers,
+    let end = || (0..7_usize, 0..4_usize);
+    let interaction = (0..INTERACTIONS.len(), end(), end()).prop_map(|(kind, first, second)| Interaction {
+        kind,
+        first,
+        second,
+    });
+    let flags = any::<[bool; 4]>();
+    let parts = (0..TRUNKS.len(), 2..6_usize, kinds, flags, vec(interaction, 0..=3), vec(-1.0..1.0_f64, 61));
+    parts.prop_map(|(trunk, limbs, joints, [forked, mirrored, symbolic, sprung], interactions, numbers)| {
+        Creature { trunk, limbs, joints, forked, mirrored, symbolic, sprung, interactions, numbers }
     })
 }
 
@@ -57,7 +94,40 @@ impl Creature {
                 self.write_joint(limb, k, &parent, &mut fields);
             }
         }
+        for (k, interaction) in self.interactions.iter().enumerate() {
+            self.write_interaction(k, interaction, carrier, &mut fields);
+        }
         ("gravity = [0.3, -1.2, -9.0]".to_string(), format!("pub struct Creature {{\n{fields}}}"))
+    }
+
+    /// Name and kind of joint `k` of a limb.
+    fn joint(&self, (limb, k): (usize, usize)) -> (String, &'static str) {
+        let k = k % self.joints.len();
+        (format!("joint{}_{k}", limb % self.limbs), KINDS[self.joints[k].0])
+    }
+
+    fn write_interaction(&self, k: usize, interaction: &Interaction, carrier: &str, out: &mut String) {
+        let Interaction { kind, first, second } = *interaction;
+        let body = |(limb, joint): (usize, usize)| {
+            format!("limb{}_{}", limb % self.limbs, joint % self.joints.len())
+        };
+        let a = body(first);
+        let b = match second.0 {
+            5 => "ground".to_string(),
+            6 => carrier.to_string(),
+            _ => body(second),
+        };
+        let [(p, one), (q, other)] = [first, second].map(|end| self.joint(end));
+        let plain = one != "Ball" && other != "Ball" && p != q;
+        if if ON_COORDINATES.contains(&kind) { !plain } else { a == b } {
+            return;
+        }
+        let n = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
+        let a = format!("{a}.at([{:?}, {:?}, 0.3])", n(0), n(1));
+        let b = format!("{b}.at([{:?}, 0.7, {:?}])", n(2), n(3));
+        let text = INTERACTIONS[kind].replace("@a", &a).replace("@b", &b).replace("@p", &p).replace("@q", &q);
+        let text = if one == "Sleeve" { text.replace("Torque", "Force") } else { text };
+        let _ = writeln!(out, "{}", text.replacen("#:", &format!("between{k}:"), 1));
     }
 
     fn write_trunk(&self, out: &mut String) -> &'static str {
@@ -119,7 +189,7 @@ impl Creature {
             "#[joint({parent}.at({at:?}){turned} -> limb{limb}_{k}{words})] joint{limb}_{k}: {},",
             KINDS[kind]
         );
-        if KINDS[kind] != "Ball" {
+        if KINDS[kind] != "Ball" && self.sprung {
             let _ = writeln!(
                 out,
                 "#[acts(on = joint{limb}_{k}, stiffness = {:?})] spring{limb}_{k}: Spring,

@@ -11,7 +11,7 @@ use crate::mechanics::{self, Joint, crba, energy, forces, frames, power, reactio
 use crate::model::kinematics::{symbols_in, time_derivative};
 use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
 use crate::passes::Passes;
-use crate::syntax::Requests;
+use crate::syntax::{Requests, Skipped};
 
 pub mod absent;
 mod constraints;
@@ -42,6 +42,7 @@ pub fn derive_with<'g>(
     passes: Passes,
     cx: &mut Diagnostics,
 ) -> Option<Output> {
+    let passes = without(passes, requests.skipped);
     let joints = mechanics::joints(model);
     if model.kinematic {
         return finite(model, kinematics(model, &joints), cx);
@@ -125,6 +126,17 @@ fn finite(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Out
     cx.error(model.place.clone(), "the figures of this mechanism are too large")
         .help("a product of masses, lengths or forces in its equations is not a finite number");
     None
+}
+
+/// Those passes that a user has not switched off.
+fn without(passes: Passes, skipped: Skipped) -> Passes {
+    Passes {
+        frames: passes.frames && !skipped.frames,
+        regroup: passes.regroup && !skipped.regroup,
+        parallel: passes.parallel && !skipped.parallel,
+        lanes: passes.lanes && !skipped.limbs,
+        ..passes
+    }
 }
 
 /// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are

@@ -3,8 +3,10 @@
 use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
+use super::skipped::Skipped;
 use super::{
     Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, guard, home,
+    skipped,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
@@ -43,6 +45,8 @@ pub struct Requests {
     pub batch: bool,
     /// No instructions beside those of the compilation's target.
     pub target_only: bool,
+    /// Passes over the model that are left out.
+    pub skipped: Skipped,
 }
 
 /// The struct without its elements.
@@ -102,7 +106,7 @@ const REQUESTS: [&str; 7] =
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 14] = [
+const OPTIONS: [&str; 15] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -117,6 +121,7 @@ const OPTIONS: [&str; 14] = [
     "lock",
     "snap",
     "processor",
+    "skip_passes",
 ];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
@@ -408,6 +413,7 @@ fn read_options(
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &asked, description, cx);
+    requests.skipped = skipped::read(&mut arguments, cx);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
@@ -499,6 +505,7 @@ fn read_requests(
         prepare: is_asked("prepare"),
         batch: is_asked("batch"),
         target_only: false,
+        skipped: Skipped::default(),
     };
     for (word, place) in asked {
         if description.parameters.is_empty() && ["sensitivities", "prepare"].contains(word) {

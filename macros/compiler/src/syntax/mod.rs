@@ -11,8 +11,10 @@ pub mod element;
 pub mod expression;
 pub mod guard;
 pub mod home;
+pub mod skipped;
 
 pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
+pub use skipped::Skipped;
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]

@@ -64,50 +64,51 @@ impl Shapes {
             let mut roots: Vec<usize> =
                 left.iter().copied().filter(|k| self.shape[*k] == self.shape[first]).take(MOST).collect();
             left.retain(|k| !roots.contains(k));
-            roots.retain(|k| self.is_apart(joints, *k));
+            roots.retain(|k| is_apart(joints, *k));
             if roots.len() < 2 {
                 continue;
             }
             let mut rows = Vec::new();
             let limbs = roots.len();
             roots.resize(limbs.next_power_of_two(), roots[limbs - 1]);
-            self.rows(&roots, &mut rows);
+            self.rows(roots, &mut rows);
             rows.iter().flatten().for_each(|k| taken[*k] = true);
             groups.push(Group { limbs, rows });
         }
     }
 
-    /// True if no coordinate of a limb moves anything else.
-    fn is_apart(&self, joints: &[Joint<'_>], root: usize) -> bool {
-        let mut inside = vec![false; joints.len()];
-        self.mark(root, &mut inside);
-        let velocities = |is: bool| {
-            let some = joints.iter().zip(&inside).filter(move |(_, inside)| **inside == is);
-            some.flat_map(|(joint, _)| joint.dofs.iter().map(|d| d.index))
-        };
-        let own: Vec<usize> = velocities(true).collect();
-        !velocities(false).any(|index| own.contains(&index))
-    }
-
-    fn mark(&self, k: usize, inside: &mut [bool]) {
-        inside[k] = true;
-        self.children[k].iter().for_each(|c| self.mark(*c, inside));
-    }
-
-    /// Corresponding links of subtrees of one shape.
-    fn rows(&self, roots: &[usize], rows: &mut Vec<Vec<usize>>) {
-        rows.push(roots.to_vec());
-        let mut left: Vec<Vec<usize>> = roots.iter().map(|k| self.children[*k].clone()).collect();
-        for child in self.children[roots[0]].clone() {
-            let shape = self.shape[child];
-            let next = left.iter_mut().filter_map(|list| {
-                let at = list.iter().position(|c| self.shape[*c] == shape)?;
-                Some(list.remove(at))
+    /// Corresponding links of subtrees of one shape, parents before their children.
+    fn rows(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
+        let mut todo = vec![roots];
+        while let Some(row) = todo.pop() {
+            let mut left: Vec<Vec<usize>> = row.iter().map(|k| self.children[*k].clone()).collect();
+            let next = self.children[row[0]].iter().map(|child| {
+                let alike = left.iter_mut().filter_map(|list| {
+                    let at = list.iter().position(|c| self.shape[*c] == self.shape[*child])?;
+                    Some(list.remove(at))
+                });
+                alike.collect()
             });
-            let next: Vec<usize> = next.collect();
-            self.rows(&next, rows);
+            let next: Vec<Vec<usize>> = next.collect();
+            todo.extend(next.into_iter().rev());
+            rows.push(row);
         }
     }
+}
+
+/// True if no coordinate of a limb moves anything else.
+fn is_apart(joints: &[Joint<'_>], root: usize) -> bool {
+    let mut inside = vec![false; joints.len()];
+    inside[root] = true;
+    for k in root + 1..joints.len() {
+        inside[k] = joints[k].parent.is_some_and(|p| inside[p.0]);
+    }
+    let velocities = |is: bool| {
+        let some = joints.iter().zip(&inside).filter(move |(_, inside)| **inside == is);
+        some.flat_map(|(joint, _)| joint.dofs.iter().map(|d| d.index))
+    };
+    let own: Vec<usize> = velocities(true).collect();
+    !velocities(false).any(|index| own.contains(&index))
 }
 
 /// Joints of one kind have the same number of degrees of freedom.

@@ -1,13 +1,21 @@
 //! Expressions of several limbs as the lanes of one. What is made is right for any pairing of operands: every lane has
-//! the value of its own expression.
+//! the value of its own expression. Depth and steps are bounded: expressions come from users, and what is too deep or
+//! takes too long has no lanes.
 
 use crate::expr::replace::replace;
-use crate::expr::{Expr, Graph, Id, Node, Symbol};
+use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
 use crate::model::Quantity;
-use std::collections::BTreeMap;
+use crate::model::kinematics::symbols_in;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How deep operands are compared to find out which go together.
 const DEPTH: u8 = 8;
+
+/// Most operations one in another. Each takes stack, which compilers and their plug-ins have little of.
+const DEEPEST: usize = 64;
+
+/// Most steps of one mechanism, of about a tenth of a microsecond each in an unoptimised build.
+const STEPS: usize = 2_000_000;
 
 /// Makes lanes of expressions; what was made once is kept.
 pub struct Merge<'g> {
@@ -17,12 +25,23 @@ pub struct Merge<'g> {
     signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
     /// Symbols that are the lanes of one.
     partners: Vec<Vec<Symbol>>,
+    /// How deep the expression is that is looked at.
+    depth: usize,
+    /// How many steps are left.
+    steps: usize,
 }
 
 impl<'g> Merge<'g> {
     /// For the expressions of a graph.
     pub fn new(graph: &'g Graph) -> Merge<'g> {
-        Merge { graph, known: BTreeMap::new(), signed: BTreeMap::new(), partners: Vec::new() }
+        Merge {
+            graph,
+            known: BTreeMap::new(),
+            signed: BTreeMap::new(),
+            partners: Vec::new(),
+            depth: 0,
+            steps: STEPS,
+        }
     }
 
     /// Says which symbols are the lanes of one.
@@ -30,12 +49,33 @@ impl<'g> Merge<'g> {
         self.partners.push(lanes);
     }
 
-    /// An expression of one lane with the symbols of another, as far as they are known.
-    fn in_lane(&self, e: Expr<'g>, lane: usize) -> Expr<'g> {
-        replace(e, &|s| {
-            let partners = self.partners.iter().find(|list| list.contains(&s))?;
-            partners.get(lane).map(|s| self.graph.symbol(*s))
-        })
+    /// What takes the place of an expression of one lane in another lane, where it is not counted: with the symbols of that
+    /// lane, so that they are gathered once. As it is if it has symbols of other lanes too, of which there would be several
+    /// alike, or may be infinite there: not even zero times that would be zero.
+    fn in_lane(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
+        let partners = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
+        let is_own = |s: &Symbol| partners(*s).is_none_or(|list| list.get(from) == Some(s));
+        if !symbols_in(&[e]).iter().all(is_own) || !is_finite(e) {
+            return e;
+        }
+        replace(e, &|s| partners(s)?.get(to).map(|s| self.graph.symbol(*s)))
+    }
+
+    /// Takes steps off what is left; `None` when nothing is.
+    fn spend(&mut self, steps: usize) -> Option<()> {
+        self.steps = self.steps.checked_sub(steps)?;
+        Some(())
+    }
+
+    /// What is made one level deeper; `None` if that is too deep.
+    fn deeper(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
+        if self.depth == DEEPEST {
+            return None;
+        }
+        self.depth += 1;
+        let made = make(self);
+        self.depth -= 1;
+        made
     }
 
     /// The expression with these lanes; what is the same in all lanes has none. `None` if they are built differently.
@@ -51,7 +91,8 @@ impl<'g> Merge<'g> {
         if let Some(known) = self.known.get(&ids) {
             return known.map(|id| self.graph.expr(id));
         }
-        let found = self.build(lanes);
+        self.spend(ids.len())?;
+        let found = self.deeper(|merge| merge.build(lanes));
         self.known.insert(ids, found.map(Expr::id));
         found
     }
@@ -63,7 +104,7 @@ impl<'g> Merge<'g> {
         for lane in 0..parts.len() {
             if lanes[lane].value().is_some() {
                 // Nothing there moves, so that nothing of what takes its place counts.
-                parts[lane].2 = self.in_lane(parts[moving].2, lane);
+                parts[lane].2 = self.in_lane(parts[moving].2, moving, lane);
             }
         }
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
@@ -88,11 +129,11 @@ impl<'g> Merge<'g> {
                 Some(self.lanes(&arguments?)?.call(f))
             }
             Node::Add(..) | Node::Sub(..) => {
-                let (a, b) = paired(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?, true)?;
+                let (a, b) = self.paired(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?)?;
                 Some(self.lanes(&a)? + self.lanes(&b)?)
             }
             Node::Mul(..) => {
-                let (a, b) = paired(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?, true)?;
+                let (a, b) = self.paired(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?)?;
                 Some(self.lanes(&a)? * self.lanes(&b)?)
             }
             Node::Div(..) => {
@@ -100,7 +141,8 @@ impl<'g> Merge<'g> {
                     Node::Div(a, b) => Some((at(a), at(b))),
                     _ => None,
                 };
-                let (a, b) = paired(lanes.iter().map(parts).collect::<Option<Vec<_>>>()?, false)?;
+                let (a, b): (Vec<_>, Vec<_>) =
+                    lanes.iter().map(parts).collect::<Option<Vec<_>>>()?.into_iter().unzip();
                 Some(self.lanes(&a)? / self.lanes(&b)?)
             }
             _ => None,
@@ -130,7 +172,8 @@ impl<'g> Merge<'g> {
         if let Some(known) = self.signed.get(&key) {
             return known.map(|id| self.graph.expr(id));
         }
-        let found = self.build_signed(lanes, signs);
+        self.spend(key.len())?;
+        let found = self.deeper(|merge| merge.build_signed(lanes, signs));
         self.signed.insert(key, found.map(Expr::id));
         found
     }
@@ -146,12 +189,14 @@ impl<'g> Merge<'g> {
         }
         if absorbs(first, DEPTH) {
             let all = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
-                lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>().and_then(|all| paired(all, true))
+                lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>()
             };
-            if let Some((a, b)) = all(terms) {
+            if let Some(operands) = all(terms) {
+                let (a, b) = self.paired(operands)?;
                 return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
             }
-            if let Some((a, b)) = all(factors) {
+            if let Some(operands) = all(factors) {
+                let (a, b) = self.paired(operands)?;
                 return match absorbs(*a.first()?, DEPTH) {
                     true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
                     false => Some(self.lanes(&a)? * self.signed(&b, signs)?),
@@ -160,21 +205,41 @@ impl<'g> Merge<'g> {
         }
         Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
     }
-}
 
-/// First and second operands of all lanes, those of a commutative operation exchanged where that brings like to like.
-fn paired<'g>(
-    mut operands: Vec<(Expr<'g>, Expr<'g>)>,
-    commutative: bool,
-) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
-    let (a, b) = *operands.first()?;
-    for (x, y) in operands.iter_mut().filter(|_| commutative) {
-        let straight = alike(a, *x, DEPTH) && alike(b, *y, DEPTH);
-        if !straight && alike(a, *y, DEPTH) && alike(b, *x, DEPTH) {
-            std::mem::swap(x, y);
+    /// First and second operands of a commutative operation in all lanes, exchanged where that brings like to like.
+    fn paired(&mut self, mut operands: Vec<(Expr<'g>, Expr<'g>)>) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+        let (a, b) = *operands.first()?;
+        for (x, y) in &mut operands {
+            let straight = self.alike(a, *x, DEPTH)? && self.alike(b, *y, DEPTH)?;
+            if !straight && self.alike(a, *y, DEPTH)? && self.alike(b, *x, DEPTH)? {
+                std::mem::swap(x, y);
+            }
         }
+        Some(operands.into_iter().unzip())
     }
-    Some(operands.into_iter().unzip())
+
+    /// Whether two expressions are built alike, as far as one looks. `None` when no steps are left.
+    fn alike(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
+        self.spend(1)?;
+        let ((.., a), (.., b)) = (affine(a), affine(b));
+        if a == b || depth == 0 || a.value().is_some() || b.value().is_some() {
+            return Some(true);
+        }
+        let mut same = |x: Id, y: Id| self.alike(a.graph().expr(x), a.graph().expr(y), depth - 1);
+        Some(match (a.node(), b.node()) {
+            (Node::Symbol(s), Node::Symbol(t)) => {
+                std::mem::discriminant(&Quantity::of(s)) == std::mem::discriminant(&Quantity::of(t))
+            }
+            (Node::Neg(x), Node::Neg(y)) => same(x, y)?,
+            (Node::Call(f, x), Node::Call(g, y)) => f == g && same(x, y)?,
+            (Node::Add(x, y) | Node::Sub(x, y), Node::Add(u, v) | Node::Sub(u, v))
+            | (Node::Mul(x, y), Node::Mul(u, v)) => {
+                (same(x, u)? && same(y, v)?) || (same(x, v)? && same(y, u)?)
+            }
+            (Node::Div(x, y), Node::Div(u, v)) => same(x, u)? && same(y, v)?,
+            _ => false,
+        })
+    }
 }
 
 /// The terms of a sum or difference.
@@ -210,50 +275,51 @@ fn absorbs(e: Expr<'_>, depth: u8) -> bool {
     }
 }
 
-/// Offset, factor and rest: an expression as `offset + factor × rest`.
+/// Offset, factor and rest: an expression as `offset + factor × rest`, as far as constants go.
 fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
     let at = |id: Id| e.graph().expr(id);
-    let scaled = |c: f64, id: Id| {
-        let (offset, factor, rest) = affine(at(id));
-        (c * offset, c * factor, rest)
-    };
-    let shifted = |c: f64, sign: f64, id: Id| {
-        let (offset, factor, rest) = scaled(sign, id);
-        (c + offset, factor, rest)
-    };
-    match e.node() {
-        Node::Const(c) => (c, 0.0, e),
-        Node::Neg(a) => scaled(-1.0, a),
-        Node::Mul(a, b) => at(a).value().map_or((0.0, 1.0, e), |c| scaled(c, b)),
-        Node::Add(a, b) | Node::Sub(a, b) => {
-            let sign = if matches!(e.node(), Node::Sub(..)) { -1.0 } else { 1.0 };
-            match (at(a).value(), at(b).value()) {
-                (Some(c), _) => shifted(c, sign, b),
-                (_, Some(c)) => shifted(sign * c, 1.0, a),
-                _ => (0.0, 1.0, e),
+    let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
+    loop {
+        let value = |id: Id| at(id).value();
+        match rest.node() {
+            Node::Const(c) => return (offset + factor * c, 0.0, rest),
+            Node::Neg(a) => (factor, rest) = (-factor, at(a)),
+            Node::Mul(a, b) => match value(a) {
+                Some(c) => (factor, rest) = (factor * c, at(b)),
+                None => return (offset, factor, rest),
+            },
+            Node::Add(a, b) | Node::Sub(a, b) => {
+                let sign = if matches!(rest.node(), Node::Sub(..)) { -1.0 } else { 1.0 };
+                (offset, factor, rest) = match (value(a), value(b)) {
+                    (Some(c), _) => (offset + factor * c, factor * sign, at(b)),
+                    (_, Some(c)) => (offset + factor * sign * c, factor, at(a)),
+                    _ => return (offset, factor, rest),
+                };
             }
+            _ => return (offset, factor, rest),
         }
-        _ => (0.0, 1.0, e),
     }
 }
 
-/// True if two expressions are built alike, as far as one looks.
-fn alike(a: Expr<'_>, b: Expr<'_>, depth: u8) -> bool {
-    let ((.., a), (.., b)) = (affine(a), affine(b));
-    if a == b || depth == 0 || a.value().is_some() || b.value().is_some() {
-        return true;
-    }
-    let at = |id: Id| a.graph().expr(id);
-    let same = |x: Id, y: Id| alike(at(x), at(y), depth - 1);
-    match (a.node(), b.node()) {
-        (Node::Symbol(s), Node::Symbol(t)) => {
-            std::mem::discriminant(&Quantity::of(s)) == std::mem::discriminant(&Quantity::of(t))
+/// True for an expression that is finite wherever its symbols are, short of numbers that are too large.
+fn is_finite(e: Expr<'_>) -> bool {
+    let graph = e.graph();
+    let (mut todo, mut seen) = (vec![e.id()], BTreeSet::new());
+    while let Some(id) = todo.pop() {
+        let node = graph.node(id);
+        match node {
+            Node::Const(_)
+            | Node::Symbol(_)
+            | Node::Neg(_)
+            | Node::Add(..)
+            | Node::Sub(..)
+            | Node::Mul(..)
+            | Node::Call(Function::Sin | Function::Cos, _) => {}
+            _ => return false,
         }
-        (Node::Neg(x), Node::Neg(y)) => same(x, y),
-        (Node::Call(f, x), Node::Call(g, y)) => f == g && same(x, y),
-        (Node::Add(x, y) | Node::Sub(x, y), Node::Add(u, v) | Node::Sub(u, v))
-        | (Node::Mul(x, y), Node::Mul(u, v)) => (same(x, u) && same(y, v)) || (same(x, v) && same(y, u)),
-        (Node::Div(x, y), Node::Div(u, v)) => same(x, u) && same(y, v),
-        _ => false,
+        if seen.insert(id) {
+            node.operands(|a| todo.push(a));
+        }
     }
+    true
 }
