@@ -1,7 +1,10 @@
 //! First derivatives of the dynamics against reference values, and against differentiation of the equations themselves;
 //! what they cost.
 
+mod free_bodies;
+mod random_limbs;
 mod random_tree;
+mod random_world;
 
 use linkwork::mechanism;
 use linkwork::nalgebra::SMatrix;
@@ -10,14 +13,16 @@ use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::lower::{Op, Program, lower};
 use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, invariance, symbolic};
-use linkwork_compiler::mechanics::{self, crba, kinematics, rnea};
-use linkwork_compiler::model::Model;
+use linkwork_compiler::mechanics::{self, crba, kinematics, ldl, rnea};
+use linkwork_compiler::model::{Chart, Model, Quantity};
 use linkwork_compiler::{compile, read};
 use proptest::prelude::*;
-use random_tree::trees;
+use random_limbs::creatures;
+use random_tree::{tied_trees, trees};
+use random_world::worlds;
 use std::path::Path;
 use support::compare::assert_similar;
-use support::model::{symbols, with_model};
+use support::model::{symbols, try_model, with_model};
 use support::random::config;
 use support::table::Record;
 
@@ -176,6 +181,76 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     known.indices()
 }
 
+/// The configuration after a step of size `h` along velocity `k`, to the second order.
+fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
+    let along = |s| match Quantity::of(s) {
+        Quantity::Configuration(i) => q[i],
+        Quantity::Velocity(i) => f64::from(u8::from(i == k)),
+        _ => 0.0,
+    };
+    let rates: Vec<Expr<'_>> =
+        (0..model.nq()).map(|i| kinematics::configuration_rate(model.space(), i)).collect();
+    let mut moved: Vec<f64> = q.iter().zip(eval(&rates, &along)).map(|(q, rate)| q + h * rate).collect();
+    for chart in &model.charts {
+        let quaternion = match *chart {
+            Chart::Plain(..) => continue,
+            Chart::Ball(q, _) => q..q + 4,
+            Chart::Free(q, _) => q + 3..q + 7,
+        };
+        let length = moved[quaternion.clone()].iter().map(|c| c * c).sum::<f64>().sqrt();
+        moved[quaternion].iter_mut().for_each(|c| *c /= length);
+    }
+    moved
+}
+
+/// The derivatives of forward dynamics, with what is known of them in its place, are limits of differences. Returns the
+/// largest deviation relative to the largest derivative, and how many columns are known.
+fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
+    const STEP: f64 = 1e-5;
+    let joints = mechanics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
+    let bias = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), None);
+    let rest: Vec<Expr<'_>> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
+    let motion = ldl::solve(mass.clone(), rest, &joints);
+    let mut found = derivatives::forward_dynamics(model, &joints, &mass, &tau, Method::Recursion(1));
+    let known = invariance::known(model, &joints);
+    known.replace(&mut found.forces);
+    let at = symbols(model, seed);
+    let q: Vec<f64> = (0..model.nq()).map(|k| at(Quantity::Configuration(k).symbol())).collect();
+    let n = model.nv();
+    let inverse = eval(&found.inverse.concat(), &at);
+    let (mut worst, mut scale) = (0.0_f64, 1.0_f64);
+    let given = |forces: &crba::Matrix<'_>, known: &[usize], by_q: bool| {
+        let forces = eval(&forces.concat(), &at);
+        let mut worst = (0.0_f64, 1.0_f64);
+        for k in 0..n {
+            let column: Vec<f64> = (0..n).map(|i| forces[i * n + k]).collect();
+            let product = |i: usize| -(0..n).map(|j| inverse[i * n + j] * column[j]).sum::<f64>();
+            let column: Vec<f64> = if known.contains(&k) { column } else { (0..n).map(product).collect() };
+            let side = |h: f64| {
+                let q = if by_q { moved(model, &q, k, h) } else { q.clone() };
+                let near = |s| match Quantity::of(s) {
+                    Quantity::Configuration(i) => q[i],
+                    Quantity::Velocity(i) if i == k && !by_q => at(s) + h,
+                    _ => at(s),
+                };
+                eval(&motion, &near)
+            };
+            for ((found, after), before) in column.iter().zip(side(STEP)).zip(side(-STEP)) {
+                let error = (found - (after - before) / (2.0 * STEP)).abs();
+                worst = (worst.0.max(error), worst.1.max(found.abs()));
+            }
+        }
+        worst
+    };
+    let [by_q, by_v] = known.indices();
+    for (error, size) in [given(&found.forces.by_q, &by_q, true), given(&found.forces.by_v, &by_v, false)] {
+        (worst, scale) = (worst.max(error), scale.max(size));
+    }
+    (worst / scale, by_q.len() + by_v.len())
+}
+
 #[test]
 fn forces_from_the_ground_are_not_forgotten() {
     let of = |element: &str| {
@@ -196,6 +271,22 @@ fn forces_from_the_ground_are_not_forgotten() {
     assert_eq!(of(spring), [none(), vec![0, 1, 2]]);
     let dashpot = "#[acts(between = (ground.at(3 * x), arm.at(z)), damping = 3)] mooring: Dashpot,";
     assert_eq!(of(dashpot), [none(), none()]);
+    // What has inertia falls otherwise than the links, or sees the ground turn.
+    let inerter = "#[acts(between = (ground.at(3 * x), arm.at(z)), inertance = 3)] mooring: Inerter,";
+    assert_eq!(of(inerter), [none(), none()]);
+    assert_eq!(of("#[acts(on = elbow, inertance = 3)] inside: Inerter,"), all());
+    let other =
+        "#[body(mass = 2, inertia = diagonal(1, 2, 3))] ship: Body, #[joint(ground -> ship)] course: Free,";
+    let inerter = "#[acts(between = (ship.at(x), arm.at(z)), inertance = 3)] towing: Inerter,";
+    assert_eq!(of(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
+    assert_eq!(of(&format!("{other} {inerter}")), [none(), none()]);
+    let particle = |axis: &str| {
+        format!(
+            "way: Coordinate, #[particle(mass = 1, at = hull.at(way * {axis} + 0.3 * y))] load: Particle,"
+        )
+    };
+    assert_eq!(of(&particle("ground.x")), [none(), none()]);
+    assert_eq!(of(&particle("x")), all());
 }
 
 proptest! {
@@ -209,6 +300,32 @@ proptest! {
             check_inverse(model, seed);
             check_what_is_known(model, seed);
         });
+    }
+}
+
+proptest! {
+    #![proptest_config(config(120))]
+
+    /// Elements of every kind between bodies and the ground, on free bodies as on others.
+    #[test]
+    fn derivatives_are_limits_of_differences(
+        (tree, world, creature) in (tied_trees(4), worlds(), creatures(2)),
+        which in 0..6_usize,
+        seed in 0_u64..1000,
+    ) {
+        let source = match which {
+            0 => world.source(),
+            1 => creature.source(),
+            _ => tree.source(),
+        };
+        let check = |model: &Model<'_>| {
+            if model.constraints.is_empty() {
+                let (deviation, known) = deviation_from_differences(model, seed);
+                assert!(deviation < 1e-6, "{deviation:e}, {known} columns are known (seed {seed})\n{}", source.1);
+            }
+        };
+        // What holds a body to itself, or moves nothing, is refused.
+        let _ = try_model(&source, |_, model| check(model));
     }
 }
 

@@ -21,7 +21,36 @@ struct Limb {
 #[derive(Clone, Debug)]
 pub struct Tree {
     limbs: Vec<Limb>,
+    /// Elements between two bodies, by index into `TIES`; the ground stands for the first body where the second is the same.
+    ties: Vec<(usize, usize, usize)>,
     gravity: [f64; 3],
+}
+
+/// Elements between places `@a` and `@b` of bodies or the ground, of which the first is a body: what has inertia, stores,
+/// dissipates and drives, and particles that are placed along axes of the body or the ground.
+const TIES: [&str; 9] = [
+    "#[acts(between = (@b, @a), stiffness = 3, free_length = 0.2)] #: Spring,",
+    "#[acts(between = (@b, @a), damping = 0.6)] #: Dashpot,",
+    "#[acts(between = (@b, @a), inertance = 0.7)] #: Inerter,",
+    "#[energy(0.3 * dot(r(@a / @b), r(@a / @b)))] #: Potential,",
+    "#[dissipation(0.2 * dot(v(@a / @b / ground), v(@a / @b / ground)))] #: Rayleigh,",
+    "#[acts(on = @a, value = 0.4 * r(@b / ground) - 0.3 * v(@a / ground / ground))] #: Force,",
+    "way#: Coordinate, #[particle(mass = 0.6, at = @o.at(way# * ground.x + 0.3 * ground.y))] #: Particle,",
+    "way#: Coordinate, #[particle(mass = 0.6, at = @o.at(way# * x + 0.3 * y))] #: Particle,",
+    "#[acts(on = @o, value = 0.3 * @o.x - 0.4 * omega(@o / ground))] #: Torque,",
+];
+
+/// Trees with up to `joints` joints, of which more than usual move freely, with elements between their bodies and the ground.
+#[allow(dead_code, reason = "not every test that has trees has tied ones")]
+pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
+    let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);
+    let free = vec(0..3_usize, joints);
+    (trees(joints), ties, free).prop_map(|(mut tree, ties, free)| {
+        for (limb, free) in tree.limbs.iter_mut().zip(free).filter(|(_, free)| *free == 0) {
+            limb.kind = KINDS.iter().position(|kind| *kind == "Free").unwrap_or(free);
+        }
+        Tree { ties, ..tree }
+    })
 }
 
 /// Trees with up to `joints` joints of any kind.
@@ -30,7 +59,7 @@ pub fn trees(joints: usize) -> impl Strategy<Value = Tree> {
         |(kind, parent, numbers, plain_axes, symbolic)| Limb { kind, parent, numbers, plain_axes, symbolic },
     );
     (vec(limb, 1..=joints), [-10.0..10.0_f64, -10.0..10.0_f64, -10.0..10.0_f64])
-        .prop_map(|(limbs, gravity)| Tree { limbs, gravity })
+        .prop_map(|(limbs, gravity)| Tree { limbs, ties: Vec::new(), gravity })
 }
 
 const KINDS: [&str; 11] =
@@ -56,6 +85,16 @@ impl Tree {
         // The first joint moves, so that there is something to do.
         for (k, limb) in self.limbs.iter().enumerate() {
             limb.write(k, &mut fields);
+        }
+        for (k, (kind, first, second)) in self.ties.iter().enumerate() {
+            let (first, second) = (first % self.limbs.len(), second % self.limbs.len());
+            let other = if first == second { "ground".to_string() } else { format!("body{second}") };
+            let n = |which: usize| self.limbs[first].number(which + 3 * k);
+            let a = format!("body{first}.at([{:?}, 0.8, {:?}])", n(0), n(1));
+            let b = format!("{other}.at([{:?}, {:?}, 1.1])", n(2), n(3));
+            let tie = TIES[*kind].replace("@a", &a).replace("@b", &b);
+            let tie = tie.replace("way#", &format!("way{k}")).replace("@o", &format!("body{first}"));
+            let _ = writeln!(fields, "{}", tie.replace("#:", &format!("tie{k}:")));
         }
         let [x, y, z] = self.gravity;
         (format!("gravity = [{x:?}, {y:?}, {z:?}]"), format!("pub struct Random {{\n{fields}}}"))

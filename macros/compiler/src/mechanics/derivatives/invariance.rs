@@ -3,12 +3,18 @@
 //! uniform gravity has other components. With the linear and angular velocity `v` and `ω` of the base and gravity `g`, all in
 //! its axes, all accelerations are those without gravity, but that of the base, `v̇ = … + g − ω × v`. A rotation `φ` of the
 //! base in its axes changes `g` by `g × φ`, so that `∂v̇/∂φ = [g]×` and `∂v̇/∂v = −[ω]×`; those of all other accelerations are
-//! zero. Springs, loads and the like may forbid this.
+//! zero.
+//!
+//! That is so where the links move in the axes of the base as if the ground were not there, and where nothing else of the
+//! equations changes with the orientation, the velocity or the acceleration of the base: springs, dashpots and inerters that
+//! see the ground, or what is placed along its axes, forbid it. It is read off the expressions of the equations themselves.
 
 use super::{ForceDerivatives, symbolic};
-use crate::expr::{Expr, Mat3, Vec3};
-use crate::mechanics::Joint;
-use crate::model::{Model, Motion, Quantity};
+use crate::expr::diff::Derivative;
+use crate::expr::{Expr, Mat3, Symbol, Vec3};
+use crate::mechanics::{Joint, accelerations, rnea, velocities};
+use crate::model::kinematics::{Spatial, symbols_in};
+use crate::model::{Inertia, Link, Model, Motion, Quantity};
 
 /// Columns that are known, with their indices.
 type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
@@ -25,30 +31,117 @@ pub struct Known<'g> {
 /// Finds them.
 pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     let mut found = Known::default();
-    let others = symbolic::of_resistance(model);
-    for (link, joint) in model.links.iter().zip(joints) {
-        let (None, Motion::Free { v, .. }) = (link.parent, &link.motion) else { continue };
+    let is_base = |base: usize| match model.links[base] {
+        Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q, v }),
+        _ => None,
+    };
+    let bases: Vec<Base> = (0..joints.len()).filter_map(is_base).collect();
+    if bases.is_empty() {
+        return found;
+    }
+    let others = Others::of(model, joints);
+    for base in
+        bases.into_iter().filter(|base| base.carries_all_alike(model, joints) && others.let_fall(base.v))
+    {
+        let v = base.v;
         let columns = |first: usize, block: Mat3<'g>| {
             (0..3).map(move |k| {
                 let mut column = vec![model.graph.zero(); model.nv()];
-                for (i, entry) in column[*v..*v + 3].iter_mut().enumerate() {
+                for (i, entry) in column[v..v + 3].iter_mut().enumerate() {
                     *entry = block.0[i][k];
                 }
                 (first + k, column)
             })
         };
-        let is_free = |of: &[Vec<Expr<'g>>], first: usize| {
-            of.iter().all(|row| row[first..first + 3].iter().all(|e| e.is_zero()))
-        };
-        if is_free(&others.by_q, v + 3) {
-            found.by_q.extend(columns(v + 3, Mat3::skew(joint.rotation.to_child(model.gravity))));
+        if are_free(&others.forces.by_q, v + 3) {
+            let gravity = joints[base.link].rotation.to_child(model.gravity);
+            found.by_q.extend(columns(v + 3, Mat3::skew(gravity)));
         }
-        if is_free(&others.by_v, *v) {
+        if are_free(&others.forces.by_v, v) {
             let w = Vec3([3, 4, 5].map(|k| Quantity::Velocity(v + k).expr(model.graph)));
-            found.by_v.extend(columns(*v, Mat3::skew(-w)));
+            found.by_v.extend(columns(v, Mat3::skew(-w)));
         }
     }
     found
+}
+
+/// A link that moves freely against the ground, with the first entries of its coordinates and velocities.
+struct Base {
+    link: usize,
+    q: usize,
+    v: usize,
+}
+
+impl Base {
+    /// True if the other links, with their masses and gravity, know nothing of where the base is and how it moves: not what
+    /// hangs from it, nor what does not.
+    fn carries_all_alike<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
+        let mut all = model.gravity.0.to_vec();
+        for (k, (link, joint)) in model.links.iter().zip(joints).enumerate() {
+            let Inertia { mass, moment, tensor } = link.inertia;
+            all.push(mass);
+            all.extend(moment.0.iter().chain(&tensor.diagonal).chain(&tensor.off));
+            if k == self.link {
+                continue;
+            }
+            if joint.dofs.iter().any(|dof| (self.v..self.v + 6).contains(&dof.index)) {
+                return false;
+            }
+            all.extend(joint.rotation.matrix().0.as_flattened());
+            all.extend(joint.translation.0);
+            let mut add = |s: &Spatial<'g>| all.extend(s.linear.0.iter().chain(&s.angular.0));
+            joint.dofs.iter().for_each(|dof| add(&dof.subspace));
+            if let Some(drift) = &joint.drift {
+                [&drift.twist, &drift.acceleration].into_iter().chain(&drift.subspace_rates).for_each(add);
+            }
+        }
+        !symbols_in(&all).into_iter().any(|s| self.owns(s))
+    }
+
+    /// True for a coordinate or a velocity of the base.
+    fn owns(&self, symbol: Symbol) -> bool {
+        match Quantity::of(symbol) {
+            Quantity::Configuration(k) => (self.q..self.q + 7).contains(&k),
+            Quantity::Velocity(k) => (self.v..self.v + 6).contains(&k),
+            _ => false,
+        }
+    }
+}
+
+/// What stands in the equations of motion beside the inertia of the links, whatever it is.
+struct Others<'g> {
+    /// Its derivatives by configuration and velocity.
+    forces: ForceDerivatives<'g>,
+    /// By velocity: whether the forces depend on its acceleration.
+    inertial: Vec<bool>,
+}
+
+impl<'g> Others<'g> {
+    /// The equations of motion of the model with links that have no mass.
+    fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Others<'g> {
+        let mut massless = model.clone();
+        for link in &mut massless.links {
+            link.inertia = Inertia::zero(model.graph);
+        }
+        let (v, a) = (velocities(model), accelerations(model));
+        let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
+        let depends = |k: usize| {
+            let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+            forces.iter().any(|force| !d.of(*force).is_zero())
+        };
+        let inertial = (0..model.nv()).map(depends).collect();
+        Others { forces: symbolic::derivatives(model, &forces), inertial }
+    }
+
+    /// True if the acceleration of the base whose velocities begin at `v` meets no inertia but that of the links.
+    fn let_fall(&self, v: usize) -> bool {
+        !self.inertial[v..v + 3].contains(&true)
+    }
+}
+
+/// True if three columns are zero.
+fn are_free(of: &[Vec<Expr<'_>>], first: usize) -> bool {
+    of.iter().all(|row| row[first..first + 3].iter().all(|e| e.is_zero()))
 }
 
 impl<'g> Known<'g> {

@@ -1,0 +1,106 @@
+//! Compiled mechanisms with free bodies and inertia that sees the ground: their derivatives are limits of differences, with
+//! prepared parameters and in the linearisation too.
+
+use linkwork::mechanism;
+use linkwork::nalgebra::{SMatrix, SVector};
+use support::random::Random;
+
+/// An inerter between the ground and a body.
+#[mechanism(gravity = -9.81 * z, derivatives, prepare)]
+struct Moored {
+    inertance: f64,
+    #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[acts(between = (ground.at(2 * x), hull.at(0.3 * y)), inertance = inertance)]
+    mooring: Inerter,
+    #[acts(on = hull.at(0.2 * z), along = x)]
+    engine: Force,
+}
+
+/// A particle that is placed along an axis of the ground, on a body.
+#[mechanism(gravity = -9.81 * z, derivatives, prepare)]
+struct Loaded {
+    mass: f64,
+    way: Coordinate,
+    #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[particle(mass = mass, at = hull.at(way * ground.x + 0.3 * ground.y))]
+    load: Particle,
+    #[acts(on = way)]
+    winch: Force,
+}
+
+/// An inerter between two bodies, large enough for functions that call each other.
+#[mechanism(gravity = -9.81 * z, derivatives, prepare)]
+struct Pair {
+    inertance: f64,
+    #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
+    tug: Body,
+    #[joint(ground -> tug)]
+    course: Free,
+    #[body(mass = 2, inertia = diagonal(0.4, 0.2, 0.3))]
+    ship: Body,
+    #[joint(ground.at(3 * y).rotated(x(0.4)) -> ship)]
+    drift: Free,
+    #[body(mass = 0.5, com = 0.2 * x, inertia = rod(0.5, 0.4, x))]
+    crane: Body,
+    #[joint(ship.at(0.3 * z) -> crane, about = z)]
+    slewing: Pin,
+    #[acts(between = (tug.at(0.2 * x), crane.at(0.3 * x)), inertance = inertance)]
+    tow: Inerter,
+    #[acts(on = slewing)]
+    motor: Torque,
+}
+
+/// A column of differences for each of the directions.
+fn differences<const N: usize>(f: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
+    const STEP: f64 = 1e-5;
+    let column = |k: usize| {
+        let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
+        (f(&step) - f(&-step)) / (2.0 * STEP)
+    };
+    SMatrix::from_columns(&std::array::from_fn::<_, N, _>(column))
+}
+
+macro_rules! free_body {
+    ($test:ident, $mechanism:expr, $type:ident) => {
+        #[test]
+        fn $test() {
+            const NV: usize = $type::NV;
+            let (m, mut random) = ($mechanism, Random::new(11));
+            let prepared = m.prepare();
+            for _ in 0..5 {
+                let q = random.configuration(&m);
+                let (v, tau) = (random.vector::<NV>(1.0), random.vector::<NV>(2.0));
+                let near = |what: &str, found: &SMatrix<f64, NV, NV>, limit: &SMatrix<f64, NV, NV>| {
+                    let error = (found - limit).amax() / (1.0 + limit.amax());
+                    assert!(error < 1e-7, "{what}: off by {error:e}");
+                };
+                let by_q = differences(|e| m.forward_dynamics(&m.integrate(&q, e), &v, &tau));
+                let by_v = differences(|e| m.forward_dynamics(&q, &(v + e), &tau));
+                let found = m.forward_dynamics_derivatives(&q, &v, &tau);
+                near("∂v̇/∂q", &found.0, &by_q);
+                near("∂v̇/∂v", &found.1, &by_v);
+                let found = prepared.forward_dynamics_derivatives(&q, &v, &tau);
+                near("∂v̇/∂q, prepared", &found.0, &by_q);
+                near("∂v̇/∂v, prepared", &found.1, &by_v);
+                let u = random.vector::<{ $type::NU }>(2.0);
+                let moved = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
+                let by_q = differences(|e| moved(&m.integrate(&q, e), &v));
+                let by_v = differences(|e| moved(&q, &(v + e)));
+                let (a, _) = m.linearize(&q, &v, &u);
+                let block = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
+                near("linearised by q", &block(0), &by_q);
+                near("linearised by v", &block(NV), &by_v);
+            }
+        }
+    };
+}
+
+free_body!(an_inerter_to_the_ground_sees_where_a_body_is, Moored { inertance: 0.5 }, Moored);
+free_body!(a_particle_along_axes_of_the_ground_sees_how_a_body_turns, Loaded { mass: 0.7 }, Loaded);
+free_body!(an_inerter_between_bodies_couples_them, Pair { inertance: 0.6 }, Pair);
