@@ -37,11 +37,15 @@ pub struct Site {
     pub freedom: Freedom,
     /// Mass properties, if in numbers.
     pub mass: Option<Mass>,
+    /// How far along its axis the link's origin may be moved. The rounding of moments of inertia about the origin grows as
+    /// the square of its distance, beside which what the link has of its own is lost: it stays within a few times the
+    /// link's size.
+    pub reach: f64,
 }
 
 impl Site {
-    /// The site of a link; where parameters cost nothing (`free`), its mass properties need not be numbers.
-    pub fn of(link: &Link<'_>, free_parameters: bool) -> Site {
+    /// The site of a link of some size; where parameters cost nothing (`free`), its mass properties need not be numbers.
+    pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (Place::of(&link.placement), Mass::of(&link.inertia));
         let free = match &link.motion {
             Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
@@ -56,6 +60,7 @@ impl Site {
             place,
             freedom: free.filter(|_| numeric).unwrap_or(Freedom::None),
             mass,
+            reach: REACH * size,
         }
     }
 
@@ -72,6 +77,15 @@ impl Site {
 
 /// Most angles and most shifts that are tried for one link.
 const MOST: usize = 5;
+
+/// How many times its size a link's origin may be moved. With the sine of the angle between them above its inverse the common
+/// normal of two axes is within reach whatever their places are. At this distance rounding takes two digits at most off the
+/// link's moments of inertia.
+const REACH: f64 = 8.0;
+
+/// Axes of which the sine is smaller are taken for parallel as well. No accuracy depends on it, only which frames are tried:
+/// a placement is that of the frames that are chosen, whatever they are.
+const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Frames for link `k`, in its present one; that one is the first. `chosen` are the candidates of later links.
 pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Place>]) -> Vec<Place> {
@@ -102,6 +116,8 @@ struct Choices {
     a: usize,
     angles: Vec<f64>,
     shifts: Vec<f64>,
+    /// Largest shift.
+    reach: f64,
 }
 
 impl Choices {
@@ -117,9 +133,11 @@ impl Choices {
         push(&mut self.angles, clean(rest, 2.0 * angle.abs()), 1.0);
     }
 
-    /// The origin at a distance that comes from lengths of size `scale`.
+    /// The origin at a distance that comes from lengths of size `scale`, if that is within reach.
     fn shift(&mut self, s: f64, scale: f64) {
-        push(&mut self.shifts, clean(s, scale), scale);
+        if s.abs() <= self.reach {
+            push(&mut self.shifts, clean(s, scale), scale);
+        }
     }
 }
 
@@ -131,7 +149,7 @@ fn push(list: &mut Vec<f64>, x: f64, scale: f64) {
 }
 
 fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Place>]) -> Choices {
-    let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0] };
+    let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
     for c in children(sites, k) {
         if let Some(place) = &sites[c].place {
             towards(&mut list, &sites[c], place, &chosen[c]);
@@ -163,12 +181,19 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Place>]) -> Choices
 fn towards(list: &mut Choices, child: &Site, place: &Place, chosen: &[Place]) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
-    match child.direction() {
-        Some(u) if clean(1.0 - u[a].abs(), 1.0) != 0.0 => {
-            let cosine = u[a];
-            list.shift((p[a] - dot(p, u) * cosine) / (1.0 - cosine * cosine), scale);
+    let direction = child.direction();
+    if let Some(u) = direction {
+        // Where the common normal meets the axis, from the parts of both vectors across it, of which no digits cancel. Of
+        // axes that are parallel but for rounding it is anywhere, and most often out of reach.
+        let across = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
+        let (side, away) = (across(u), across(p));
+        if clean(norm(side), 1.0) != 0.0 {
+            list.shift(p[a] - u[a] * dot(away, side) / dot(side, side), scale);
             list.head(cross(axis(a), u));
         }
+    }
+    match direction {
+        Some(u) if norm([u[(a + 1) % 3], u[(a + 2) % 3], 0.0]) > NEARLY_PARALLEL => {}
         Some(_) => {
             // Of parallel axes all normals are common: the child's own choices carry over.
             list.shift(p[a], scale);

@@ -8,9 +8,9 @@
 
 use super::candidates::{Freedom, Site, candidates};
 use super::cost;
-use super::number::{Place, clean};
+use super::number::{Mass, Place, clean, norm};
 use crate::expr::Vec3;
-use crate::model::{Coordinate, Direction, Inertia, Input, Model, Motion, Pose};
+use crate::model::{Coordinate, Direction, Inertia, Input, Link, Model, Motion, Pose};
 
 /// A choice for one link.
 #[derive(Clone, Copy)]
@@ -23,9 +23,9 @@ struct Step {
     offset: f64,
 }
 
-/// Moves the frames.
-pub fn place_frames(model: &mut Model<'_>, free_parameters: bool) {
-    let sites = sites(model, free_parameters);
+/// Moves the frames of links that have these sizes.
+pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
+    let sites = sites(model, sizes, free_parameters);
     let Some(frames) = choose(&sites) else { return };
     let steps: Vec<Option<Step>> = (0..sites.len())
         .map(|k| {
@@ -37,9 +37,24 @@ pub fn place_frames(model: &mut Model<'_>, free_parameters: bool) {
     apply(model, &sites, &steps);
 }
 
+/// The size of every link: the distances of its own joint from the parent's origin, of its children's joints, and of its
+/// mass from its own origin, as far as they are numbers.
+pub fn sizes(model: &Model<'_>) -> Vec<f64> {
+    let places: Vec<Option<Place>> = model.links.iter().map(|link| Place::of(&link.placement)).collect();
+    let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
+    let size = |(k, link): (usize, &Link<'_>)| {
+        let children =
+            (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
+        let masses = Mass::of(&link.inertia).map_or(0.0, |mass| mass.radius());
+        children.map(length).fold(length(k) + masses, f64::max)
+    };
+    model.links.iter().enumerate().map(size).collect()
+}
+
 /// What the choice depends on.
-fn sites(model: &Model<'_>, free_parameters: bool) -> Vec<Site> {
-    let mut sites: Vec<Site> = model.links.iter().map(|link| Site::of(link, free_parameters)).collect();
+fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
+    let of = |(link, size): (&Link<'_>, &f64)| Site::of(link, *size, free_parameters);
+    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(of).collect();
     for k in 0..sites.len() {
         // A placement that is not made of numbers stays as it is, on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {

@@ -13,7 +13,7 @@ mod parallel;
 mod regroup;
 mod slide;
 
-pub use frames::place_frames;
+pub use frames::{place_frames, sizes};
 pub use parallel::in_common_axes;
 pub use regroup::{Gauge, Regroup, regroup};
 
@@ -70,7 +70,7 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
     }
     if passes.frames {
         slide::slide_frames(&mut start);
-        place_frames(&mut start, passes.free_parameters);
+        place_frames(&mut start, &sizes(model), passes.free_parameters);
     }
     let joints = joints(&start);
     if !passes.regroup {

@@ -158,6 +158,12 @@ impl Mass {
         })
     }
 
+    /// How far from the origin the masses are, in the mean of squares; zero without mass.
+    pub fn radius(&self) -> f64 {
+        let polar = 0.5 * (self.tensor[0][0] + self.tensor[1][1] + self.tensor[2][2]);
+        if self.mass > 0.0 { (polar.max(0.0) / self.mass).sqrt() } else { 0.0 }
+    }
+
     /// They as expressions.
     pub fn inertia<'g>(&self, g: &'g Graph) -> Inertia<'g> {
         Inertia {

@@ -17,6 +17,10 @@ pub fn in_common_axes<'g>(forms: &[Form<'g>]) -> Vec<Form<'g>> {
     forms.iter().filter_map(with_common_axes).collect()
 }
 
+/// Axes of which the sine is no larger are parallel. The equations in common axes are those of axes that are: they change by as
+/// much beside one, less than what π with twelve digits is off, as files have it.
+const PARALLEL: f64 = 2.5e-13;
+
 /// A joint about or along a coordinate axis, of those that are parallel to each other.
 #[derive(Clone, Copy)]
 struct Member {
@@ -74,8 +78,12 @@ fn members(model: &Model<'_>) -> Vec<Option<Member>> {
         let member = axis(link).map(|axis| {
             let above = link.parent.and_then(|p| members[p.0]);
             let along = above.and_then(|above| {
-                let cosine = link.placement.rotation.matrix().0[above.axis][axis].value()?;
-                (cosine.abs() == 1.0).then_some((cosine, above.first))
+                let direction = link.placement.rotation.matrix().column(axis).values()?;
+                let cosine = direction[above.axis];
+                // The cosine of a small angle is one, too: its sine tells.
+                let across = [(above.axis + 1) % 3, (above.axis + 2) % 3];
+                let is_parallel = across.iter().all(|i| direction[*i].abs() <= PARALLEL);
+                (is_parallel && cosine.abs() == 1.0).then_some((cosine, above.first))
             });
             Member { axis, first: along.map_or(k, |(_, first)| first), along: along.map(|(c, _)| c) }
         });

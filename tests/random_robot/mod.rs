@@ -1,0 +1,100 @@
+//! Random robots as exporters write them: frames by right angles and a few other angles, all figures with noise.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
+
+/// A tree of pins and sleeves.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    links: Vec<Link>,
+    /// Noise of angles, of axes, and of lengths beside the length itself.
+    noise: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+struct Link {
+    parent: usize,
+    slides: bool,
+    /// By how many right angles it is turned about each axis of its parent; the last counts of four means another angle.
+    turns: [usize; 3],
+    /// Which components of its place, and of its centre of mass, are there at all.
+    present: [bool; 6],
+    /// Lengths are of this size.
+    size: f64,
+    numbers: Vec<f64>,
+}
+
+/// Robots with up to `joints` joints, with noise of 1e-16 to 1e-3 in angles and axes, none, or some of each.
+pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
+    let noise = || prop_oneof![1 => Just(0.0), 4 => (-16.0..-3.0_f64).prop_map(|e| 10.0_f64.powf(e))];
+    let link =
+        (0..3_usize, 0..6_usize, [0..5_usize, 0..5_usize, 0..5_usize], any::<[bool; 6]>(), -2.0..0.0_f64)
+            .prop_flat_map(|(parent, kind, turns, present, size)| {
+                vec(-1.0..1.0_f64, 24).prop_map(move |numbers| Link {
+                    parent,
+                    slides: kind == 0,
+                    turns,
+                    present,
+                    size: 10.0_f64.powf(size),
+                    numbers,
+                })
+            });
+    (vec(link, 2..=joints), noise(), noise(), noise())
+        .prop_map(|(links, angles, axes, lengths)| Robot { links, noise: [angles, axes, lengths] })
+}
+
+impl Robot {
+    /// The attribute's arguments and the struct.
+    pub fn source(&self) -> (String, String) {
+        let mut fields = String::new();
+        for (k, link) in self.links.iter().enumerate() {
+            link.write(k, self.noise, &mut fields);
+        }
+        ("gravity = -9.81 * z".to_string(), format!("pub struct Robot {{\n{fields}}}"))
+    }
+}
+
+impl Link {
+    /// Three lengths, some of them noise alone.
+    fn vector(&self, first: usize, noise: f64) -> String {
+        let component = |i: usize| {
+            let there = self.present[first + i];
+            let rest = if there { self.size * self.numbers[first + i] } else { 0.0 };
+            rest + noise * self.numbers[6 + first + i]
+        };
+        format!("[{:?}, {:?}, {:?}]", component(0), component(1), component(2))
+    }
+
+    fn write(&self, k: usize, [angles, axes, lengths]: [f64; 3], out: &mut String) {
+        let n = |which: usize| self.numbers[which];
+        let (mass, s) = ((1.5 + n(12)) * self.size, self.size);
+        let _ = writeln!(
+            out,
+            "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, {:?}).rotated(x({:?})))] b{k}: Body,",
+            self.vector(3, lengths),
+            0.7 * s,
+            0.4 * s,
+            if self.present[5] { n(13) } else { angles * n(13) },
+        );
+        let angle = |i: usize| match self.turns[i] {
+            4 => n(14 + i),
+            turns => turns as f64 * FRAC_PI_2 + angles * n(14 + i),
+        };
+        let parent = match k {
+            0 => "ground".to_string(),
+            _ => format!("b{}", k - 1 - self.parent.min(k - 1)),
+        };
+        let (word, kind) = if self.slides { ("along", "Sleeve") } else { ("about", "Pin") };
+        let axis = format!("unit([{:?}, {:?}, 1])", axes * n(17), axes * n(18));
+        let _ = writeln!(
+            out,
+            "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: {kind},",
+            self.vector(0, lengths),
+            angle(2),
+            angle(1),
+            angle(0),
+        );
+    }
+}
