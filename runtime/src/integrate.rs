@@ -19,6 +19,7 @@ mod constrained;
 mod dormand_prince;
 mod error;
 mod implicit_midpoint;
+mod local;
 mod path;
 mod rk4;
 mod rosenbrock;
@@ -126,6 +127,11 @@ fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
 }
 
+/// `Ok` for finite numbers that are not negative, otherwise [`Error::InvalidStep`] with the name of the setting.
+pub(crate) fn not_negative<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
+    if value == T::zero() { Ok(()) } else { positive(name, value) }
+}
+
 /// `Ok` for finite positive numbers, otherwise [`Error::InvalidStep`] with the name of the setting.
 pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value.is_finite() && value > T::zero() {
@@ -135,7 +141,8 @@ pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Erro
     }
 }
 
-/// The first of equal steps, none longer than `longest`, that end exactly on `until`: its length and its end.
+/// The first of equal steps, none longer than `longest` by more than a millionth, that end exactly on `until`: its length
+/// and its end.
 ///
 /// # Errors
 ///
@@ -147,6 +154,7 @@ fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Err
             let remaining = until - t;
             // Rounding of the times must not cost one more step.
             let slack = constant::<T>(8.0) * epsilon::<T>() * (t.abs() + until.abs() + remaining) / longest;
+            let slack = slack.max(constant(1e-6));
             let count = (remaining / longest - slack).ceil();
             if count > T::one() { (remaining / count, t + remaining / count) } else { (remaining, until) }
         }

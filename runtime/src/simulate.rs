@@ -3,6 +3,7 @@
 //! [`simulate`] begins, the methods of [`Simulation`] say the rest, and iterating yields [`Sample`]s. All other types here
 //! belong to events: they appear in the type of a simulation, and programs need not name them.
 
+mod clock;
 mod event;
 mod run;
 mod start;
@@ -11,7 +12,7 @@ pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Re
 pub use start::Start;
 
 use crate::integrate::{
-    DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, positive,
+    DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, not_negative, positive,
 };
 use crate::{Real, Rheonomic};
 use core::fmt;
@@ -60,7 +61,7 @@ where
 }
 
 /// The events `E` and one more.
-type With<E, G, A> = (E, Event<G, A>);
+type With<E, T, G, A> = (E, Event<T, G, A>);
 
 /// The motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +108,7 @@ where
     S: Method<T>,
 {
     /// Starts from the configuration `q` and the velocity `v`: vectors, references to them or arrays ([`Start`]).
-    /// Quaternions x y z w of unit length.
+    /// Quaternions x y z w of unit length; others are [`Error::Quaternion`].
     pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
         let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
         Self { start, ..self.afresh() }
@@ -119,7 +120,7 @@ where
         Self { start, ..self.afresh() }
     }
 
-    /// Ends `duration` seconds after the start. Without it the run ends at an event of [`until`](Self::until), or
+    /// Ends `duration` seconds after the start; with zero the start is all there is. Without it the run ends at an event of [`until`](Self::until), or
     /// goes on for as long as samples are asked for.
     pub fn duration(self, duration: T) -> Self {
         Self { duration: Some(duration), ..self.afresh() }
@@ -162,7 +163,7 @@ where
     }
 
     /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
-    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, G, Stop>, NQ, NV, NU>
+    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -174,7 +175,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, G, Stop>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -185,12 +186,12 @@ where
     ///
     /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step may be
     /// missed; a function that is zero at the start counts once it has left zero and returned, however soon. The crossing
-    /// is located to rounding on the interpolated motion. A function that is not a number is [`Error::NotFinite`].
+    /// is located to rounding on the interpolated motion. A function that is not a number is [`Error::Event`].
     pub fn event<G>(
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, G, Report>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Report>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -198,13 +199,17 @@ where
     }
 
     /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. Its sample holds
-    /// the velocity after it. Impacts that follow each other ever faster, without end, are [`Error::Impacts`].
+    /// the velocity after it, which constraints have changed to the nearest that fulfils them (they give impulses, too).
+    ///
+    /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one) and the motion
+    /// then goes on through, or impacts follow each other ever faster without end, the run ends with [`Error::Impacts`].
+    /// Events that coincide, such as an [`until`](Self::until), all act, in the order of declaration.
     pub fn impact<G, F>(
         self,
         crossing: Crossing,
         function: G,
         after: F,
-    ) -> Simulation<'m, M, T, I, S, With<E, G, Impact<F>>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Impact<F>>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
@@ -246,7 +251,10 @@ where
         Simulation { system, method, events, start, duration, every, progress: None, over: false }
     }
 
-    fn with_event<G, A>(self, event: Event<G, A>) -> Simulation<'m, M, T, I, S, With<E, G, A>, NQ, NV, NU> {
+    fn with_event<G, A>(
+        self,
+        event: Event<T, G, A>,
+    ) -> Simulation<'m, M, T, I, S, With<E, T, G, A>, NQ, NV, NU> {
         let Self { system, method, events, start, duration, every, .. } = self;
         let events = (events, event);
         Simulation { system, method, events, start, duration, every, progress: None, over: false }

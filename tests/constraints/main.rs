@@ -4,6 +4,7 @@ mod contacts;
 mod counts;
 mod embedded;
 mod formulations;
+mod impacts;
 mod invariants;
 mod long_runs;
 mod overdetermined;

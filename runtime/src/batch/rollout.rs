@@ -306,7 +306,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             let mut memory = rollout.method.memory();
             let mut state = State { t: start.t.0[k], q: lane(&start.q, k), v: lane(&start.v, k) };
             for _ in 0..rollout.steps {
-                match system.advance(&rollout.method, &mut memory, &state, None, false) {
+                match system.advance(&rollout.method, &mut memory, nalgebra::zero(), &state, None, false) {
                     Ok(step) => state = step.end,
                     Err(error) => {
                         failures[k] = Some(error);

@@ -115,8 +115,9 @@ impl<T: Real> DormandPrince<T> {
 
     /// Whether the step `h` from `t` to `end` can be taken; `wanted` is what it was cut from. If the trial before was
     /// not finite, that is the reason for a small step.
-    fn check_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool) -> Result<(), Error> {
-        let least = self.least.unwrap_or(T::zero()).max(epsilon::<T>() * t.abs());
+    fn check_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool, now: T) -> Result<(), Error> {
+        // Steps count time from their start: only double precision's rounding of the whole run sets a limit.
+        let least = self.least.unwrap_or(T::zero()).max(constant::<T>(f64::EPSILON) * now.abs());
         let (t, possible) = (to_f64(t), end > t && h > T::zero() && wanted > least);
         match (possible, finite) {
             (true, _) => Ok(()),
@@ -172,7 +173,7 @@ impl<T: Real> Method<T> for DormandPrince<T> {
         let (mut rejected, mut finite) = (false, true);
         loop {
             let (h, t) = self.fit(wanted, start.t, until);
-            self.check_size([start.t, t], h, wanted, finite)?;
+            self.check_size([start.t, t], h, wanted, finite, system.time(start.t))?;
             memory.trials += 1;
             if memory.trials > self.most_steps {
                 return Err(Error::TooManySteps { t: to_f64(start.t) });

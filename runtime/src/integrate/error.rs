@@ -16,8 +16,7 @@ pub enum Error {
     },
     /// Neither a duration nor an event would end the run. Raised before the first step.
     Endless,
-    /// The state or its rate became infinite or NaN (a singular mass matrix, or a motion that escapes), or the function of an
-    /// event NaN.
+    /// The state or its rate became infinite or NaN: a singular mass matrix, or a motion that escapes.
     NotFinite {
         /// Time at the start of the failed step.
         t: f64,
@@ -35,6 +34,18 @@ pub enum Error {
         /// Time reached.
         t: f64,
     },
+    /// The function of an event is not a number.
+    Event {
+        /// Time at the start of the step on which it is not, or of the run.
+        t: f64,
+        /// Which event, in the order of declaration.
+        event: usize,
+    },
+    /// A quaternion at the start is not of unit length: divide it by its length, or start from `neutral()`.
+    Quaternion {
+        /// The entry of the configuration that is off most.
+        coordinate: &'static str,
+    },
     /// The state at the start does not fulfil the constraints: bring it there by `assemble` and `project_velocity`.
     OffConstraints {
         /// Time of the start.
@@ -47,11 +58,14 @@ pub enum Error {
         /// What is violated, or why the motion is not determined.
         reason: ConstraintError,
     },
-    /// Impacts follow each other ever faster, as those of a ball that comes to rest: end the run before, and go on with
-    /// the contact as a constraint.
+    /// An impact does not separate what has met, or impacts follow each other ever faster, as those of a ball that comes
+    /// to rest: nothing would hold it on the surface. End the run there (`until`), and go on with the contact as a
+    /// constraint.
     Impacts {
         /// Time reached.
         t: f64,
+        /// Which event, in the order of declaration.
+        event: usize,
     },
     /// The equations of an implicit step were not solved: take smaller steps.
     NotConverged {
@@ -76,11 +90,40 @@ impl fmt::Display for Error {
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
             Self::OffConstraints { t } => write!(f, "the state at t = {t} s is off the constraints"),
             Self::Constraint { t, reason } => write!(f, "at t = {t} s {reason}"),
-            Self::Impacts { t } => write!(f, "at t = {t} s impacts follow each other without end"),
+            Self::Event { t, event } => {
+                write!(f, "the function of event {event} is not a number after t = {t} s")
+            }
+            Self::Quaternion { coordinate } => write!(
+                f,
+                "the quaternion of `{coordinate}` at the start must have unit length: divide it by its length"
+            ),
+            Self::Impacts { t, event } => write!(
+                f,
+                "at t = {t} s the impact of event {event} does not separate what has met: end the run there with \
+                 `until`, and go on with the contact as a constraint"
+            ),
             Self::NotConverged { t, iterations } => {
                 write!(f, "the implicit step at t = {t} s did not converge in {iterations} iterations")
             }
         }
+    }
+}
+
+impl Error {
+    /// The error with its time counted from `origin` seconds earlier.
+    pub(super) fn later(mut self, origin: f64) -> Self {
+        match &mut self {
+            Self::NotFinite { t }
+            | Self::StepTooSmall { t, .. }
+            | Self::TooManySteps { t }
+            | Self::Event { t, .. }
+            | Self::OffConstraints { t }
+            | Self::Constraint { t, .. }
+            | Self::Impacts { t, .. }
+            | Self::NotConverged { t, .. } => *t += origin,
+            Self::InvalidStep { .. } | Self::Endless | Self::Quaternion { .. } => {}
+        }
+        self
     }
 }
 

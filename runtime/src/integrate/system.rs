@@ -1,8 +1,9 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
+use super::local::Local;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
-use crate::private::constant;
+use crate::private::{constant, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 
@@ -83,6 +84,11 @@ where
 /// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in
 /// [`Mechanism`](crate::Mechanism).
 pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
+    /// The time since which methods count, as the run counts it.
+    fn time(&self, t: T) -> T {
+        t
+    }
+
     /// `q ⊕ dv`.
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;
 
@@ -155,7 +161,8 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         Self { mechanism, inputs, undetermined: None }
     }
 
-    /// A step of a method. Where it fails because forces determine no acceleration, the error says why.
+    /// A step of a method, which counts time from `origin`, as do its start, its end and `until`; errors do not. Where it
+    /// fails because forces determine no acceleration, the error says why.
     ///
     /// # Errors
     ///
@@ -164,6 +171,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         &mut self,
         method: &S,
         memory: &mut S::Memory<NV>,
+        origin: T,
         start: &State<T, NQ, NV>,
         until: Option<T>,
         dense: bool,
@@ -173,13 +181,14 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         I: Inputs<T, NQ, NV, NU>,
     {
         self.undetermined = None;
-        let step = method.advance(memory, self, start, until, dense);
-        step.map_err(|error| match (error, self.undetermined) {
+        let mut local = Local { system: &mut *self, origin };
+        let step = method.advance(memory, &mut local, start, until, dense);
+        step.map_err(|error| match (error.later(to_f64(origin)), self.undetermined) {
             (
                 Error::NotFinite { t } | Error::StepTooSmall { t, .. } | Error::NotConverged { t, .. },
                 Some(reason),
             ) => Error::Constraint { t, reason },
-            _ => error,
+            (error, _) => error,
         })
     }
 

@@ -37,9 +37,14 @@ pub struct Hit<T> {
     pub index: usize,
 }
 
-/// The function of an event is not a number.
+/// Why the search for events failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Undefined;
+pub enum Undefined {
+    /// The function of this event is not a number.
+    Value(usize),
+    /// The motion goes on through the surface of this event, whose impact should have kept it from there.
+    Through(usize),
+}
 
 /// How a run goes on after an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,13 +115,18 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     const STOPS: bool;
 
     /// Notes the signs at the first state of a run.
-    fn begin(&mut self, state: &State<T, NQ, NV>);
-
-    /// The first event between `from` and `to` on a step.
     ///
     /// # Errors
     ///
-    /// [`Undefined`] where a function is not a number.
+    /// [`Undefined::Value`] where a function is not a number.
+    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined>;
+
+    /// The first event between `from` and `to` on a step. Every event remembers where it is itself, if it is not later
+    /// than the first by more than rounding.
+    ///
+    /// # Errors
+    ///
+    /// [`Undefined`] where a function is not a number, and where an impact has not separated what has met.
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
         &mut self,
         path: &P,
@@ -127,8 +137,24 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     /// Takes over the signs at the end of the last range without an event.
     fn pass(&mut self);
 
-    /// Lets an event act.
-    fn act(&mut self, index: usize, state: &mut State<T, NQ, NV>) -> Flow;
+    /// The first event, from the index `from` on, that is not later than `limit` on the step.
+    fn due(&self, from: usize, limit: T) -> Option<usize>;
+
+    /// Lets an event act. `later` is the state a moment after another, with its velocity.
+    fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
+        &mut self,
+        index: usize,
+        state: &mut State<T, NQ, NV>,
+        later: &P,
+    ) -> Flow;
+
+    /// Forgets on which side of their surfaces the motion goes on after the events up to `limit`: the velocity has changed.
+    fn rebound(&mut self, limit: T);
+}
+
+/// How far apart events on a step may be, by rounding, that are one.
+pub(super) fn together<T: Real>() -> T {
+    epsilon::<T>() * constant(8.0)
 }
 
 /// No events.
@@ -139,7 +165,9 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
     const COUNT: usize = 0;
     const STOPS: bool = false;
 
-    fn begin(&mut self, _state: &State<T, NQ, NV>) {}
+    fn begin(&mut self, _state: &State<T, NQ, NV>) -> Result<(), Undefined> {
+        Ok(())
+    }
 
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
         &mut self,
@@ -152,33 +180,62 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
 
     fn pass(&mut self) {}
 
-    fn act(&mut self, _index: usize, _state: &mut State<T, NQ, NV>) -> Flow {
+    fn due(&self, _from: usize, _limit: T) -> Option<usize> {
+        None
+    }
+
+    fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
+        &mut self,
+        _index: usize,
+        _state: &mut State<T, NQ, NV>,
+        _later: &P,
+    ) -> Flow {
         Flow::Go
     }
+
+    fn rebound(&mut self, _limit: T) {}
 }
 
-/// One event: its function, which crossings count, what it does, and the sign of the function.
+/// One event: its function, which crossings count, what it does, and what is known of the motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Event<G, A> {
+pub struct Event<T, G, A> {
     function: G,
     crossing: Crossing,
     action: A,
+    /// The sign of the function where the search has come to, and at the end of the range searched last.
     side: Ordering,
     ahead: Ordering,
+    /// Where it was found on the step.
+    found: Option<T>,
+    /// The side on which the motion cannot go on after an impact.
+    closed: Ordering,
 }
 
-impl<G, A> Event<G, A> {
+impl<T, G, A> Event<T, G, A> {
     pub(super) fn new(function: G, crossing: Crossing, action: A) -> Self {
-        Self { function, crossing, action, side: Ordering::Equal, ahead: Ordering::Equal }
+        let unknown = Ordering::Equal;
+        Self { function, crossing, action, side: unknown, ahead: unknown, found: None, closed: unknown }
+    }
+
+    /// The value of the function.
+    fn value<const NQ: usize, const NV: usize>(&mut self, state: &State<T, NQ, NV>) -> T
+    where
+        T: Real,
+        G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
+    {
+        (self.function)(state.t, &state.q, &state.v)
     }
 }
+
+/// Part of the speed before an impact below which nothing is left of it.
+const STOPPED: f64 = 1e-6;
 
 /// The sign of a number; zero for NaN.
 fn side<T: Real>(value: T) -> Ordering {
     value.partial_cmp(&T::zero()).unwrap_or(Ordering::Equal)
 }
 
-impl<T, E, G, A, const NQ: usize, const NV: usize> Events<T, NQ, NV> for (E, Event<G, A>)
+impl<T, E, G, A, const NQ: usize, const NV: usize> Events<T, NQ, NV> for (E, Event<T, G, A>)
 where
     T: Real,
     E: Events<T, NQ, NV>,
@@ -188,9 +245,14 @@ where
     const COUNT: usize = E::COUNT + 1;
     const STOPS: bool = E::STOPS || A::STOPS;
 
-    fn begin(&mut self, state: &State<T, NQ, NV>) {
-        self.0.begin(state);
-        self.1.side = side((self.1.function)(state.t, &state.q, &state.v));
+    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined> {
+        self.0.begin(state)?;
+        let value = self.1.value(state);
+        if value.partial_cmp(&value).is_none() {
+            return Err(Undefined::Value(E::COUNT));
+        }
+        self.1.side = side(value);
+        Ok(())
     }
 
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
@@ -200,25 +262,30 @@ where
         to: T,
     ) -> Result<Option<Hit<T>>, Undefined> {
         let earlier = self.0.locate(path, from, to)?;
-        let to = earlier.map_or(to, |hit| hit.theta);
+        // A little farther, so that events that coincide are found, whatever their order.
+        let to = earlier.map_or(to, |hit| (hit.theta + together()).min(to));
         let event = &mut self.1;
-        let mut value = |theta: T| {
-            let state = path(theta);
-            (event.function)(state.t, &state.q, &state.v)
-        };
-        let end = value(to);
+        event.found = None;
+        let end = event.value(&path(to));
         if end.partial_cmp(&end).is_none() {
-            return Err(Undefined);
+            return Err(Undefined::Value(E::COUNT));
         }
         event.ahead = side(end);
         if event.side == Ordering::Equal {
-            (from, event.side) = leaving(&mut value, [from, to]);
+            (from, event.side) = leaving(&mut |theta| event.value(&path(theta)), [from, to]);
+            match event.side {
+                // Still on the surface.
+                Ordering::Equal => event.ahead = Ordering::Equal,
+                side if side == event.closed => return Err(Undefined::Through(E::COUNT)),
+                _ => event.closed = Ordering::Equal,
+            }
         }
         if !event.crossing.counts(event.side, event.ahead) {
             return Ok(earlier);
         }
         let sign = if event.side == Ordering::Less { T::one() } else { -T::one() };
-        let theta = first_sign_change(|theta| value(theta) * sign, [from, to], end * sign);
+        let theta = first_sign_change(|theta| event.value(&path(theta)) * sign, [from, to], end * sign);
+        event.found = Some(theta);
         if earlier.is_some_and(|hit| hit.theta <= theta) {
             return Ok(earlier);
         }
@@ -232,14 +299,39 @@ where
         }
     }
 
-    fn act(&mut self, index: usize, state: &mut State<T, NQ, NV>) -> Flow {
+    fn due(&self, from: usize, limit: T) -> Option<usize> {
+        let own = || self.1.found.filter(|found| *found <= limit && from <= E::COUNT).map(|_| E::COUNT);
+        self.0.due(from, limit).or_else(own)
+    }
+
+    fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
+        &mut self,
+        index: usize,
+        state: &mut State<T, NQ, NV>,
+        later: &P,
+    ) -> Flow {
         if index != E::COUNT {
-            return self.0.act(index, state);
+            return self.0.act(index, state, later);
         }
-        let flow = self.1.action.act(state);
-        // After an impact the motion may leave to either side.
-        self.1.side = if flow == Flow::Jump { Ordering::Equal } else { self.1.side.reverse() };
+        let event = &mut self.1;
+        let before = event.value(&later(state)) - event.value(state);
+        let flow = event.action.act(state);
+        let beyond = event.side.reverse();
+        event.side = beyond;
+        if flow == Flow::Jump {
+            let after = event.value(&later(state)) - event.value(state);
+            // What goes on in the same direction passes; all else has met a surface.
+            let passes = after * before > T::zero() && after.abs() > before.abs() * constant(STOPPED);
+            event.closed = if passes { Ordering::Equal } else { beyond };
+        }
         flow
+    }
+
+    fn rebound(&mut self, limit: T) {
+        self.0.rebound(limit);
+        if self.1.found.is_some_and(|found| found <= limit) {
+            self.1.side = Ordering::Equal;
+        }
     }
 }
 
@@ -247,7 +339,7 @@ where
 /// back before `b`.
 fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
-    for part in [1.5e-8, 1e-6, 6e-5, 4e-3] {
+    for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
         let x = a + (b - a) * constant(part);
         let value = f(x);
         if value.abs() > rounding {

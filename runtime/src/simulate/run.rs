@@ -1,9 +1,12 @@
 //! The course of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::{Events, Flow, Hit, Sample, Simulation, Undefined, positive};
+use super::clock::{Clock, after};
+use super::event::together;
+use super::{Events, Flow, Hit, Sample, Simulation, Undefined, not_negative, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
+use nalgebra::SVector;
 
 /// Parts into which every step is divided in the search for events.
 const SEARCHES: u8 = 4;
@@ -11,13 +14,34 @@ const SEARCHES: u8 = 4;
 /// Part of a step within which the same impact again is one of infinitely many.
 const SOON: f64 = 1e-6;
 
+/// Events of one instant, as they act one after another.
+#[derive(Clone, Debug)]
+struct Firing<T, const NQ: usize, const NV: usize> {
+    state: State<T, NQ, NV>,
+    /// Seconds after the start.
+    elapsed: f64,
+    /// How far on the step events belong to the instant.
+    limit: T,
+    /// The index from which on events have still to act.
+    next: usize,
+    /// What they have done together.
+    jumped: bool,
+    stopped: bool,
+}
+
 /// How far a run has come.
 #[derive(Clone, Debug)]
 pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
-    /// The last node: start of the current step, or where the next begins.
+    clock: Clock,
+    /// The last node: start of the current step, or where the next begins; and its seconds after the start.
     node: State<T, NQ, NV>,
+    elapsed: f64,
+    /// The end of the current step in seconds after the start, and its time.
+    ahead: (f64, T),
+    /// Events that are acting.
+    firing: Option<Firing<T, NQ, NV>>,
     memory: Memory,
-    /// The current step, whose samples and events are being emitted.
+    /// The current step, whose samples and events are being emitted. It counts time from its start.
     step: Option<Step<T, NQ, NV>>,
     /// How far on the current step events have been searched and handled.
     cursor: T,
@@ -32,14 +56,16 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     pub(super) quiet: bool,
     /// Whether an event has ended the run.
     stopped: bool,
-    /// Number and time of the last event that changed the velocity.
-    jump: Option<(usize, T)>,
+    /// The last event that changed the velocity, and its seconds after the start.
+    jump: Option<(usize, f64)>,
 }
 
-/// `t`, or `onto` if it is that up to rounding.
-fn snapped<T: Real>(t: T, onto: Option<T>) -> T {
-    let near = constant::<T>(8.0) * epsilon::<T>();
-    onto.filter(|onto| (t - *onto).abs() <= near * (t.abs() + onto.abs())).unwrap_or(t)
+/// Why a run ends where the search for events has failed.
+fn failure(reason: Undefined, t: f64) -> Error {
+    match reason {
+        Undefined::Value(event) => Error::Event { t, event },
+        Undefined::Through(event) => Error::Impacts { t, event },
+    }
 }
 
 type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
@@ -62,20 +88,36 @@ where
             return Ok(run);
         }
         self.method.check()?;
-        self.duration.map_or(Ok(()), |duration| positive("the duration", duration))?;
+        self.duration.map_or(Ok(()), |duration| not_negative("the duration", duration))?;
         self.every.map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
-        let node = self.on_constraints(self.start.finite()?)?;
-        let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
-        let far = |a: T, b: T| (a - b).abs() > tolerance * (T::one() + a.abs());
-        let moved = node.q.iter().zip(&self.start.q).any(|(a, b)| far(*a, *b));
-        let changed = node.v.iter().zip(&self.start.v).any(|(a, b)| far(*a, *b));
-        if moved || changed {
-            return Err(Error::OffConstraints { t: to_f64(node.t) });
+        let start = self.start.finite()?;
+        let far = |a: T, b: T| {
+            let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
+            // Also where one of them is not a number.
+            !((a - b).abs() <= tolerance * (T::one() + a.abs()))
+        };
+        // Going nowhere makes quaternions unit.
+        let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
+        let off = |i: &usize| unit.get(*i).zip(start.q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
+        // From the back: what is not a number may have spread to the place in front of the quaternion.
+        if let Some(coordinate) = (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
+            return Err(Error::Quaternion { coordinate });
         }
-        self.events.begin(&node);
+        let node = self.on_constraints(start)?;
+        let moved = node.q.iter().zip(&start.q).any(|(a, b)| far(*a, *b));
+        let changed = node.v.iter().zip(&start.v).any(|(a, b)| far(*a, *b));
+        let t = to_f64(node.t);
+        if moved || changed {
+            return Err(Error::OffConstraints { t });
+        }
+        self.events.begin(&node).map_err(|reason| failure(reason, t))?;
         Ok(Progress {
+            clock: Clock::new(self.duration, self.every, self.system.inputs.period()),
             node,
+            elapsed: 0.0,
+            ahead: (0.0, node.t),
+            firing: None,
             memory: self.method.memory(),
             step: None,
             cursor: T::zero(),
@@ -95,10 +137,11 @@ where
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
     ) -> Due<T, NQ, NV, NU> {
         loop {
-            let sample = match run.step {
-                Some(step) => self.along(run, &step)?,
-                None if self.at_end(run) && run.shown => return Ok(None),
-                None => self.at_node(run)?,
+            let sample = match (run.step, run.firing.is_some()) {
+                (Some(step), true) => self.fire(run, &step)?,
+                (Some(step), false) => self.along(run, &step)?,
+                _ if self.at_end(run) && run.shown => return Ok(None),
+                _ => self.at_node(run)?,
             };
             if sample.is_some() {
                 return Ok(sample);
@@ -106,41 +149,27 @@ where
         }
     }
 
-    fn end(&self) -> Option<T> {
-        self.duration.map(|duration| self.start.t + duration)
-    }
-
     fn at_end(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
-        run.stopped || self.end().is_some_and(|end| run.node.t >= end)
+        run.stopped || run.clock.end().is_some_and(|end| run.elapsed >= end)
     }
 
-    /// Time of a sample, not later than the end; `None` if every node is one.
-    fn sample_time(&self, count: u64) -> Option<T> {
-        let end = self.end();
-        // Counts are exact up to 2⁵³.
-        let t = snapped(self.start.t + self.every? * constant(count as f64), end);
-        Some(end.map_or(t, |end| t.min(end)))
-    }
-
-    /// Time of a control instant. Up to rounding on a sample or the end is on it.
-    fn control_time(&self, count: u64) -> Option<T> {
-        let (start, period) = (self.start.t, self.system.inputs.period()?);
-        let t = start + period * constant(count as f64);
-        let nearest = self.every.map(|every| start + every * ((t - start) / every).round());
-        Some(snapped(snapped(t, nearest), self.end()))
+    /// The time at an instant of the run.
+    fn time(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+        let end = self.duration.filter(|_| run.clock.end() == Some(elapsed));
+        end.map_or_else(|| after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Where the next step must end at the latest.
-    fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<T> {
-        let sample = self.sample_time(run.sample).filter(|_| S::FIXED);
-        let stops = [self.end(), self.control_time(run.control), sample];
-        stops.into_iter().flatten().reduce(|a, b| a.min(b))
+    fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+        let sample = run.clock.sample(run.sample).filter(|_| S::FIXED);
+        let stops = [run.clock.end(), run.clock.control(run.control), sample];
+        stops.into_iter().flatten().reduce(f64::min)
     }
 
     /// Between two steps: renews the inputs, emits the node if it is a sample, otherwise takes a step.
     fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
         self.renew(run);
-        let due = self.sample_time(run.sample).map_or(!run.shown, |t| run.node.t >= t);
+        let due = run.clock.sample(run.sample).map_or(!run.shown, |sample| run.elapsed >= sample);
         if due {
             run.sample += 1;
             run.shown = true;
@@ -148,15 +177,32 @@ where
                 return Ok(Some(self.sample(run.node, None)));
             }
         }
-        let until = self.next_stop(run);
+        let stop = self.next_stop(run);
+        let until = stop.map(|stop| constant(stop - run.elapsed));
         let dense = E::COUNT > 0;
-        let step = self.system.advance(&self.method, &mut run.memory, &run.node, until, dense)?;
-        if dense || self.sample_time(run.sample).is_some_and(|t| t < step.end.t) {
+        let (origin, start) = (run.node.t, run.node.timed(T::zero()));
+        let step = self.system.advance(&self.method, &mut run.memory, origin, &start, until, dense)?;
+        let arrived = stop.filter(|_| until == Some(step.end.t));
+        let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
+        run.ahead = (elapsed, self.time(run, elapsed));
+        if dense || run.clock.sample(run.sample).is_some_and(|sample| sample < elapsed) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
-            (run.node, run.shown) = (step.end, false);
+            self.go_ahead(run, &step);
         }
         Ok(None)
+    }
+
+    /// To the end of a step.
+    fn go_ahead(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
+        let (elapsed, t) = run.ahead;
+        (run.node, run.elapsed, run.step, run.shown) = (step.end.timed(t), elapsed, None, false);
+    }
+
+    /// A state on a step, with the time of the run.
+    fn state(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
+        let state = step.at(&self.system, theta);
+        state.timed(origin + state.t)
     }
 
     /// Along a step: emits the next sample inside or the next event, otherwise goes to its end.
@@ -168,27 +214,29 @@ where
         if run.hit.is_none() {
             self.search(run, step)?;
         }
-        let event = run.hit.map(|hit| (hit, step.at(&self.system, hit.theta)));
-        let limit = event.map_or(step.end.t, |(_, state)| state.t);
-        if let Some(t) = self.sample_time(run.sample).filter(|t| *t < limit) {
+        let length = run.ahead.0 - run.elapsed;
+        let event = run.hit.map(|hit| (hit, run.elapsed + to_f64(hit.theta * step.end.t)));
+        let limit = event.map_or(run.ahead.0, |(_, elapsed)| elapsed);
+        if let Some(due) = run.clock.sample(run.sample).filter(|due| *due < limit) {
             run.sample += 1;
             if run.quiet {
                 return Ok(None);
             }
-            let theta = (t - step.start.t) / (step.end.t - step.start.t);
-            let state = self.on_constraints(State { t, ..step.at(&self.system, theta) })?;
+            let theta = constant((due - run.elapsed) / length);
+            let state = self.state(run.node.t, step, theta).timed(self.time(run, due));
+            let state = self.on_constraints(state)?;
             return Ok(Some(self.sample(state, None)));
         }
         match event {
-            Some((hit, state)) => {
-                let state = self.on_constraints(state)?;
-                self.fire(run, hit, state, step).map(Some)
+            Some((hit, elapsed)) => {
+                let state = self.on_constraints(self.state(run.node.t, step, hit.theta))?;
+                let limit = hit.theta + together();
+                let (next, jumped, stopped) = (0, false, false);
+                run.firing = Some(Firing { state, elapsed, limit, next, jumped, stopped });
             }
-            None => {
-                (run.node, run.step, run.shown) = (step.end, None, false);
-                Ok(None)
-            }
+            None => self.go_ahead(run, step),
         }
+        Ok(None)
     }
 
     /// A state brought onto the constraints, if there are any.
@@ -205,9 +253,10 @@ where
         if E::COUNT == 0 {
             return Ok(());
         }
-        let system = &self.system;
+        let (system, origin, end) = (&self.system, run.node.t, step.end.timed(run.ahead.1));
         let path = |theta: T| {
-            if theta < T::one() { step.at(system, theta) } else { step.end }
+            let state = step.at(system, theta);
+            if theta < T::one() { state.timed(origin + state.t) } else { end }
         };
         for part in 1..=SEARCHES {
             let to = constant::<T>(f64::from(part) / f64::from(SEARCHES));
@@ -217,7 +266,7 @@ where
             run.hit = self
                 .events
                 .locate(&path, run.cursor, to)
-                .map_err(|Undefined| Error::NotFinite { t: to_f64(step.start.t) })?;
+                .map_err(|reason| failure(reason, to_f64(origin)))?;
             if let Some(hit) = run.hit {
                 run.cursor = hit.theta;
                 return Ok(());
@@ -228,34 +277,55 @@ where
         Ok(())
     }
 
+    /// Lets the next event of an instant act; behind the last goes on.
     fn fire(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
-        hit: Hit<T>,
-        mut state: State<T, NQ, NV>,
         step: &Step<T, NQ, NV>,
-    ) -> Result<Sample<T, NQ, NV, NU>, Error> {
+    ) -> Due<T, NQ, NV, NU> {
+        let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
-        let flow = self.events.act(hit.index, &mut state);
-        if flow == Flow::Jump {
-            let soon = (step.end.t - step.start.t) * constant(SOON);
-            if run.jump.is_some_and(|(index, t)| index == hit.index && state.t - t < soon) {
-                return Err(Error::Impacts { t: to_f64(state.t) });
+        let Some(index) = self.events.due(firing.next, firing.limit) else {
+            if firing.jumped {
+                self.events.rebound(firing.limit);
             }
-            run.jump = Some((hit.index, state.t));
+            if firing.jumped || firing.stopped {
+                (run.node, run.elapsed, run.step) = (firing.state, firing.elapsed, None);
+                (run.shown, run.stopped) = (true, firing.stopped);
+                self.method.disturb(&mut run.memory, Jump::State);
+            }
+            return Ok(None);
+        };
+        let moment = step.end.t * constant(SOON);
+        let mechanism = self.system.mechanism;
+        let later = |state: &State<T, NQ, NV>| {
+            let q = mechanism.integrate(&state.q, &(state.v * moment));
+            State { t: state.t + moment, q, ..*state }
+        };
+        match self.events.act(index, &mut firing.state, &later) {
+            Flow::Go => {}
+            Flow::Stop => firing.stopped = true,
+            Flow::Jump => {
+                let soon = (run.ahead.0 - run.elapsed) * SOON;
+                let again = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
+                if run.jump.is_some_and(again) {
+                    return Err(Error::Impacts { t: to_f64(firing.state.t), event: index });
+                }
+                run.jump = Some((index, firing.elapsed));
+                firing.jumped = true;
+                firing.state = self.on_constraints(firing.state)?;
+            }
         }
-        if flow != Flow::Go {
-            (run.node, run.step, run.shown) = (state, None, true);
-            run.stopped = flow == Flow::Stop;
-            self.method.disturb(&mut run.memory, Jump::State);
-        }
-        Ok(self.sample(state, Some(hit.index)))
+        let sample = self.sample(firing.state, Some(index));
+        firing.next = index + 1;
+        run.firing = Some(firing);
+        Ok(Some(sample))
     }
 
     /// Begins a control period if one is due.
     fn renew(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
-        if self.control_time(run.control).is_some_and(|control| t >= control) {
+        if run.clock.control(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
             self.system.inputs.renew(t, &q, &v);
             self.method.disturb(&mut run.memory, Jump::Inputs);

@@ -245,7 +245,10 @@ fn impacts_without_end_are_an_error() {
         let run = run.impact(Crossing::Falling, |_, q, _| q[0], move |_, _, v| v * -part).duration(30.0);
         let rest = (1.0 + part) / (1.0 - part);
         for end in [run.clone().finish(), run.method(Rk4::step(0.01)).finish()] {
-            assert!(matches!(end, Err(Error::Impacts { t }) if (t - rest).abs() < 1e-4), "{part}: {end:?}");
+            assert!(
+                matches!(end, Err(Error::Impacts { t, event: 0 }) if (t - rest).abs() < 1e-4),
+                "{part}: {end:?}"
+            );
         }
     }
 }
@@ -254,7 +257,10 @@ fn impacts_without_end_are_an_error() {
 fn an_event_that_is_not_a_number_is_an_error() {
     let ball = falling();
     let end = simulate(&ball).duration(1.0).until(|t, _, _| if t < 0.5 { 1.0 } else { f64::NAN }).finish();
-    assert!(matches!(end, Err(Error::NotFinite { .. })), "{end:?}");
+    assert!(matches!(end, Err(Error::Event { event: 0, .. })), "{end:?}");
+    let run = simulate(&ball).event(Crossing::Rising, |_, q, _| q[0] - 1.0).duration(1.0);
+    let end = run.event(Crossing::Either, |_, _, _| f64::NAN).finish();
+    assert_eq!(end, Err(Error::Event { t: 0.0, event: 1 }));
 }
 
 #[test]
@@ -305,4 +311,115 @@ fn generic_code_can_simulate() {
     assert!(
         gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs() < 1e-8
     );
+}
+
+/// A plastic impact leaves nothing that could hold the ball: an error, not a fall through the floor.
+#[test]
+fn a_plastic_impact_is_an_error() {
+    let ball = falling();
+    for part in [0.0, -1e-9, 1e-12, 1e-7, 1e-5, 1e-3] {
+        let run = simulate(&ball).from([0.5], [0.0]).duration(30.0);
+        let run = run.impact(Crossing::Falling, |_, q, _| q[0], move |_, _, v| v * -part);
+        let runs = [
+            run.clone().finish(),
+            run.clone().method(Rk4::step(0.01)).finish(),
+            run.clone().sample_every(0.3).method(ImplicitMidpoint::step(0.01)).finish(),
+            run.method(SemiImplicitEuler::step(0.001)).finish(),
+        ];
+        for end in runs {
+            assert!(
+                matches!(end, Err(Error::Impacts { t, event: 0 }) if (t - 1.0).abs() < 1e-2),
+                "{part}: {end:?}"
+            );
+        }
+    }
+    // Where nothing presses, it stays where it is; and it goes on where the impact lets it through.
+    let free = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let run = simulate(&free).from([0.5], [-1.0]).duration(3.0);
+    let end = run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.0).finish().unwrap();
+    assert!(end.q[0].abs() < 1e-14 && end.v[0] == 0.0, "{end:?}");
+    let end = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.5).finish().unwrap();
+    assert!((end.q[0] + 1.25).abs() < 1e-12, "{end:?}");
+    // A push at an instant.
+    let run = simulate(&free).duration(3.0).impact(
+        Crossing::Rising,
+        |t, _, _| t - 1.0,
+        |_, _, v| v.add_scalar(2.0),
+    );
+    assert!((run.finish().unwrap().q[0] - 4.0).abs() < 1e-12);
+}
+
+/// Events of one instant all act, in the order of declaration.
+#[test]
+fn events_that_coincide_all_act() {
+    let ball = falling();
+    let run = simulate(&ball).from([0.5], [0.0]).duration(4.0);
+    let first =
+        run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).until(|_, q, _| q[0] * 3.0);
+    let end = first.finish().unwrap();
+    assert!((end.t - 1.0).abs() < 1e-12 && end.event == Some(1) && end.v[0] > 0.0, "{end:?}");
+    let last = run.clone().until(|_, q, _| q[0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
+    let end = last.finish().unwrap();
+    assert!((end.t - 1.0).abs() < 1e-12 && end.event == Some(1) && end.v[0] > 0.0, "{end:?}");
+    // Reports before and after the impact, each bounce once.
+    let run = run
+        .event(Crossing::Either, |_, q, _| q[0])
+        .impact(Crossing::Falling, |_, q, _| q[0] * 0.7, |_, _, v| -v)
+        .event(Crossing::Either, |_, q, _| q[0] * 5.0);
+    for method in [Rk4::step(0.01), Rk4::step(0.3)] {
+        let events: Vec<_> = run.clone().method(method).filter_map(|s| s.unwrap().event).collect();
+        assert_eq!(events, [0, 1, 2, 0, 1, 2]);
+    }
+}
+
+/// A quaternion that is not of unit length is no orientation.
+#[test]
+fn quaternions_at_the_start_are_unit() {
+    let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
+    for q in [[0.0; 7], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.7]] {
+        let end = simulate(&body).from(q, [1.0; 6]).duration(0.1).finish();
+        assert!(
+            matches!(end, Err(Error::Quaternion { coordinate }) if coordinate.starts_with('q')),
+            "{end:?}"
+        );
+    }
+    assert!(
+        simulate(&body).from([0.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.8], [1.0; 6]).duration(0.1).finish().is_ok()
+    );
+}
+
+/// A run of no length is its start.
+#[test]
+fn a_run_may_be_its_start() {
+    let oscillator = oscillator::<f64>();
+    let run = simulate(&oscillator).from([1.0], [2.0]).start_at(3.0).duration(0.0);
+    let end = run.clone().finish().unwrap();
+    assert_eq!((end.t, end.q[0], end.v[0]), (3.0, 1.0, 2.0));
+    assert_eq!(run.clone().count(), 1);
+    assert_eq!(run.sample_every(0.1).method(Rk4::step(0.1)).count(), 1);
+}
+
+/// In single precision periods of a millisecond last as long after an hour as at the start.
+#[test]
+fn single_precision_keeps_time() {
+    let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
+    let start = 8192.0;
+    let calls = Cell::new(0);
+    let control = |_: f32, _: &_, _: &_| {
+        calls.set(calls.get() + 1);
+        SVector::from([0.0])
+    };
+    let run = simulate(&mass).from([0.0], [1.0]).start_at(start).duration(100.0).control_every(1e-3, control);
+    for fixed in [true, false] {
+        calls.set(0);
+        let run = run.clone().sample_every(2e-3);
+        let (count, end) = if fixed {
+            run.method(Rk4::step(1e-3)).fold((0, 0.0), |(n, _), s| (n + 1, s.unwrap().q[0]))
+        } else {
+            run.fold((0, 0.0), |(n, _), s| (n + 1, s.unwrap().q[0]))
+        };
+        assert_eq!((count, calls.get()), (50_001, 100_001));
+        // Each of 10⁵ steps adds its rounding.
+        assert!((end - 100.0).abs() < 0.1, "{end}");
+    }
 }

@@ -1,0 +1,80 @@
+//! A system whose time is counted from the start of a step.
+
+use super::{Dynamics, State};
+use crate::Real;
+use crate::constraint::{ConstraintError, Projected};
+use nalgebra::SVector;
+
+/// A system `t` seconds after an origin of time: what single precision can tell apart within a step it can tell apart
+/// wherever the step is.
+pub(super) struct Local<'a, D, T> {
+    pub(super) system: &'a mut D,
+    pub(super) origin: T,
+}
+
+impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics<T, NQ, NV>
+    for Local<'_, D, T>
+{
+    fn time(&self, t: T) -> T {
+        self.origin + t
+    }
+
+    fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ> {
+        self.system.integrate(q, dv)
+    }
+
+    fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.tangent_rate(dv, v)
+    }
+
+    fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.acceleration(self.origin + t, q, v)
+    }
+
+    fn is_constrained(&self) -> bool {
+        self.system.is_constrained()
+    }
+
+    fn project(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
+        self.system.project(self.origin + t, q, v)
+    }
+
+    fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.momentum(self.origin + t, q, v)
+    }
+
+    fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.momentum_rate(self.origin + t, q, v)
+    }
+
+    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.inertial_rate(self.origin + t, q, v)
+    }
+
+    fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.velocity(self.origin + t, q, p, v)
+    }
+
+    fn impulse(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        h: T,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.system.impulse(self.origin + t, q, v, h, p)
+    }
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
+    /// The state with time counted from another instant.
+    pub(crate) fn timed(self, t: T) -> Self {
+        Self { t, ..self }
+    }
+}

@@ -1,0 +1,119 @@
+//! When samples, control periods and the end of a run are due: instants counted in integers.
+//!
+//! A run does not add up its steps. The `k`-th instant is `k` periods after the start, in double precision whatever the
+//! numbers of the mechanism are, and steps between two instants count time from their own start, so that in single
+//! precision, too, a period of a millisecond lasts that long after hours.
+
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+
+/// Largest denominator of a ratio of two periods that is taken for exact.
+const MOST_PARTS: u32 = 64;
+
+/// The instants of a run, in seconds after its start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    end: Option<f64>,
+    every: Option<f64>,
+    period: Option<f64>,
+    /// The sample and the control instant that are at the end.
+    last: [Option<u64>; 2],
+    /// `period / every` as a ratio of integers.
+    ratio: Option<[u64; 2]>,
+}
+
+/// `a / b` as a ratio of integers, if it is that to rounding.
+fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
+    let near = |x: f64| {
+        (1..=MOST_PARTS).find_map(|parts| {
+            let scaled = x * f64::from(parts);
+            // Whole numbers this large are not told apart.
+            let whole = (scaled + 0.5) as u64;
+            let exact = whole > 0 && (scaled - whole as f64).abs() <= rounding * scaled;
+            exact.then_some([whole, u64::from(parts)])
+        })
+    };
+    if a >= b { near(a / b) } else { near(b / a).map(|[whole, parts]| [parts, whole]) }
+}
+
+impl Clock {
+    /// For a run of the given length, with samples and control instants at these intervals.
+    pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
+        let rounding = 8.0 * to_f64(epsilon::<T>());
+        let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
+        let whole = |interval: Option<f64>| {
+            let [count, parts] = ratio(end?, interval?, rounding)?;
+            (parts == 1).then_some(count)
+        };
+        let last = [whole(every), whole(period)];
+        let ratio = every.zip(period).and_then(|(every, period)| ratio(period, every, rounding));
+        Self { end, every, period, last, ratio }
+    }
+
+    /// The end of the run.
+    pub(super) fn end(&self) -> Option<f64> {
+        self.end
+    }
+
+    /// A sample, not later than the end; `None` if every step is one.
+    pub(super) fn sample(&self, count: u64) -> Option<f64> {
+        // Counts are exact up to 2⁵³.
+        let due = self.every? * count as f64;
+        Some(self.end.filter(|end| due > *end || self.last[0] == Some(count)).unwrap_or(due))
+    }
+
+    /// A control instant. Where it is a sample or the end, it is exactly there.
+    pub(super) fn control(&self, count: u64) -> Option<f64> {
+        let plain = self.period? * count as f64;
+        if self.last[1] == Some(count) {
+            return self.end;
+        }
+        let on_sample = self.ratio.and_then(|[samples, periods]| {
+            let parts = count.checked_mul(samples)?;
+            if parts.checked_rem(periods)? == 0 { self.sample(parts.checked_div(periods)?) } else { None }
+        });
+        Some(on_sample.unwrap_or(plain))
+    }
+}
+
+/// The time so many seconds after the start.
+pub(super) fn after<T: Real>(start: T, elapsed: f64) -> T {
+    start + constant::<T>(elapsed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten million samples at a millisecond in single precision: none is lost, none comes twice.
+    #[test]
+    fn instants_are_counted() {
+        let clock = Clock::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
+        let mut last = -1.0;
+        let mut count = 0;
+        loop {
+            let t = clock.sample(count).expect("there are samples");
+            assert!(t > last, "{count}: {t}");
+            assert_eq!(clock.control(count), Some(t));
+            (last, count) = (t, count + 1);
+            if clock.end() == Some(t) {
+                break;
+            }
+        }
+        assert_eq!(count, 10_000_001);
+    }
+
+    #[test]
+    fn instants_that_coincide_are_the_same() {
+        let clock = Clock::new(Some(0.9), Some(0.1), Some(0.3));
+        assert_eq!(
+            [clock.control(1), clock.control(2), clock.control(3)],
+            [clock.sample(3), clock.sample(6), Some(0.9)]
+        );
+        let clock = Clock::new(Some(10.0), Some(0.05), Some(0.02));
+        assert_eq!((clock.control(5), clock.control(1)), (clock.sample(2), Some(0.02)));
+        // Periods that have nothing in common keep their own.
+        let clock = Clock::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
+        assert_eq!(clock.control(3), Some(3.0 * core::f64::consts::SQRT_2));
+    }
+}
