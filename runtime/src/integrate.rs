@@ -1,10 +1,5 @@
 //! Integrators: [`DormandPrince`], [`Rk4`], [`ImplicitMidpoint`], [`Rosenbrock`], [`SemiImplicitEuler`].
 //!
-//! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with
-//! `q = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore stay unit
-//! and every method keeps its order for ball and free joints (Runge–Kutta–Munthe-Kaas methods: Hairer, Lubich and
-//! Wanner, *Geometric Numerical Integration* (2006), IV.8).
-//!
 //! | method | order | step | for |
 //! | --- | --- | --- | --- |
 //! | [`DormandPrince`] | 5 | adaptive | the default: accuracy on request, dense output |
@@ -13,7 +8,13 @@
 //! | [`Rosenbrock`] | 2 | fixed | stiff springs and dashpots: stable with any step |
 //! | [`SemiImplicitEuler`] | 1 | fixed | games and learning: one evaluation per step |
 //!
-//! [`simulate`](crate::simulate()) is the way to use them; [`Method`] is what it needs of one.
+//! [`simulate`](crate::simulate()) runs them: `.method(Rk4::step(1e-3))`. A method of your own implements [`Method`]; the other
+//! types here are what it works with.
+//!
+//! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with
+//! `q = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore stay unit
+//! and every method keeps its order for ball and free joints (Runge–Kutta–Munthe-Kaas methods: Hairer, Lubich and
+//! Wanner, *Geometric Numerical Integration* (2006), IV.8).
 
 mod constrained;
 mod dormand_prince;

@@ -4,6 +4,8 @@ use super::{Dynamics, State};
 use crate::Real;
 use nalgebra::SVector;
 
+/// How a state moves within a step.
+///
 /// A polynomial of degree four in `θ` over [0, 1], in the nested form of Hairer, Nørsett and Wanner, *Solving
 /// Ordinary Differential Equations I* (1993), II.6: `y = r₁ + θ (r₂ + (1−θ) (r₃ + θ (r₄ + (1−θ) r₅)))`.
 #[derive(Clone, Copy, Debug)]
