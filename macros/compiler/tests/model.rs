@@ -337,7 +337,8 @@ fn noise_is_no_inertia() {
     let link = |mass: &str, moment: &str| {
         format!(
             "<link name='a'><inertial><mass value='{mass}'/>
-             <inertia ixx='0' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='0'/></inertial></link>"
+             <inertia ixx='0' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='0'/></inertial></link>
+             <link name='b'/><joint name='j' type='JOINT'><parent link='b'/><child link='a'/></joint>"
         )
     };
     let mistake = |moment: &str| {
@@ -350,8 +351,14 @@ fn noise_is_no_inertia() {
     for (mass, moment, real) in
         [("0", "1e-18", true), ("0", "2e-18", false), ("2", "1e-16", true), ("2", "3e-16", false)]
     {
-        let expected = if real { "q:\nframe a on ground".to_string() } else { mistake(moment) };
-        check_urdf(&link(mass, moment), &expected);
+        let text = link(mass, moment);
+        let moving = text.replace("JOINT", "revolute");
+        match real {
+            true => assert!(facts("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
+            false => check_urdf(&moving, &mistake(moment)),
+        }
+        // What is fixed to the ground enters no equation.
+        check_urdf(&text.replace("JOINT", "fixed"), "q:\nframe b on ground\nframe a on ground");
     }
 }
 

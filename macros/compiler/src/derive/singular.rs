@@ -27,7 +27,7 @@ pub fn check<'g>(
         report_nothing(model, singular[0], cx);
         return false;
     }
-    if let Some(bare) = bare_base(model) {
+    if let Some(bare) = bare_base(model, &singular) {
         // Only what would remain with a base that has mass is another mistake.
         let mut with_mass = model.clone();
         with_mass.links[bare].inertia = unit(model.graph);
@@ -50,10 +50,14 @@ fn unit(graph: &Graph) -> Inertia<'_> {
     Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::scalar(graph.one()))
 }
 
-/// A link that moves freely and has neither mass nor inertia.
-fn bare_base(model: &Model<'_>) -> Option<usize> {
-    let nothing = Inertia::zero(model.graph);
-    model.links.iter().position(|l| matches!(l.motion, Motion::Free { .. }) && l.inertia == nothing)
+/// A link that moves freely and has no mass, or no moment of inertia about some axis.
+fn bare_base(model: &Model<'_>, singular: &[usize]) -> Option<usize> {
+    model.links.iter().position(|link| match link.motion {
+        Motion::Free { v, .. } => {
+            link.inertia.mass.is_zero() || singular.iter().any(|k| (v..v + 6).contains(k))
+        }
+        _ => false,
+    })
 }
 
 /// Reports a mechanism of which no part has inertia.
@@ -66,13 +70,17 @@ fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     cx.error(place.clone(), what).help(mend).help(LEAVE_OUT);
 }
 
-/// Reports a free base without mass.
+/// Reports a free base without mass or moments of inertia.
 fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
     let Motion::Free { v, .. } = model.links[link].motion else { return };
     let place = &model.velocities[v].1;
     let body = model.frames.iter().find(|frame| frame.massive && frame.link == Some(LinkId(link)));
     let name = body.map_or("the base", |body| body.name.as_str());
-    let diagnostic = cx.error(place.clone(), format!("`{name}` moves freely and has no mass of its own"));
+    let what = match model.links[link].inertia.mass.is_zero() {
+        true => "no mass of its own",
+        false => "no moment of inertia about some axis",
+    };
+    let diagnostic = cx.error(place.clone(), format!("`{name}` moves freely and has {what}"));
     diagnostic.help(format!(
         "whatever a free base carries by joints, it needs mass and inertia: give them to `{name}`"
     ));

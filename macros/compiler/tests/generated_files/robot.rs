@@ -1,0 +1,337 @@
+//! A random robot: as a file, as the order of its coordinates, and as places of its links in a motion.
+
+use super::jets::{self, Jet, Matrix, Vector};
+use super::{Random, State};
+use std::fmt::Write;
+
+const KINDS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
+
+pub struct Link {
+    name: String,
+    pub mass: f64,
+    /// In the link's axes.
+    pub com: [f64; 3],
+    /// About the centre of mass, in the link's axes.
+    pub inertia: [[f64; 3]; 3],
+    inertial: String,
+    /// None for the root.
+    joint: Option<Joint>,
+}
+
+struct Joint {
+    name: String,
+    kind: usize,
+    parent: usize,
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+    axis: [f64; 3],
+    locked: bool,
+    /// The link whose joint leads, factor, offset.
+    mimic: Option<(usize, f64, f64)>,
+}
+
+pub struct Robot {
+    pub free: bool,
+    pub links: Vec<Link>,
+    /// In which order links and joints are written.
+    shuffle: Vec<usize>,
+}
+
+/// `R_z(yaw) R_y(pitch) R_x(roll)`.
+fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
+    let about = |k: usize, angle| {
+        jets::turn(std::array::from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle))
+    };
+    jets::product(&jets::product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
+}
+
+impl Link {
+    fn random(k: usize, random: &mut Random) -> Link {
+        // The inertia of four point masses in the axes of an inertial frame, about their centre.
+        let points: [([f64; 3], f64); 4] =
+            std::array::from_fn(|_| (random.numbers(), 1.0 + random.number().abs()));
+        let mass: f64 = points.iter().map(|(_, m)| m).sum();
+        let center: [f64; 3] =
+            std::array::from_fn(|i| points.iter().map(|(p, m)| m * p[i]).sum::<f64>() / mass);
+        let mut own = [[0.0; 3]; 3];
+        for (p, m) in points {
+            let r: [f64; 3] = std::array::from_fn(|i| p[i] - center[i]);
+            for (i, row) in own.iter_mut().enumerate() {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    *entry += m * (if i == j { jets::dot(r, r) } else { 0.0 } - r[i] * r[j]);
+                }
+            }
+        }
+        let (com, rpy) = (random.numbers(), random.numbers::<3>().map(|angle| 3.0 * angle));
+        let turned = fixed_axes(rpy);
+        let columns: [[f64; 3]; 3] = std::array::from_fn(|j| {
+            jets::inertia(&turned, &own, std::array::from_fn(|i| f64::from(u8::from(i == j))))
+        });
+        let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
+        let inertial = format!(
+            "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
+            spaced(com),
+            spaced(rpy)
+        );
+        let inertia = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        Link { name: format!("l{k}"), mass, com, inertia, inertial, joint: None }
+    }
+}
+
+fn spaced(numbers: [f64; 3]) -> String {
+    numbers.map(|x| format!("{x:?}")).join(" ")
+}
+
+impl Joint {
+    fn random(child: usize, links: &[Link], random: &mut Random) -> Joint {
+        let kind = random.below(KINDS.len());
+        let axis = match (KINDS[kind], random.below(3)) {
+            // Where x and y point is a convention: about a coordinate axis the other two in cyclic order.
+            ("planar", k) => std::array::from_fn(|i| if i == k { 2.0 } else { 0.0 }),
+            (_, 0) => random.numbers::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
+            (_, k) => std::array::from_fn(|i| if i == k { random.number() - 2.0 } else { 0.0 }),
+        };
+        let leaders: Vec<usize> = (1..child).filter(|k| links[*k].leads()).collect();
+        let follows = kind < 3 && !leaders.is_empty() && random.below(4) == 0;
+        Joint {
+            name: format!("{}{child}", ["j", "J", "a", "joint_"][random.below(4)]),
+            kind,
+            parent: random.below(child),
+            xyz: random.numbers(),
+            rpy: if random.below(3) == 0 { [0.0; 3] } else { random.numbers::<3>().map(|angle| 3.0 * angle) },
+            axis,
+            locked: !follows && random.below(8) == 0,
+            mimic: follows
+                .then(|| (leaders[random.below(leaders.len())], random.number() * 2.0, random.number())),
+        }
+    }
+}
+
+impl Link {
+    /// Its joint can be followed.
+    fn leads(&self) -> bool {
+        self.joint.as_ref().is_some_and(|j| j.kind < 3 && !j.locked && j.mimic.is_none())
+    }
+
+    /// How many entries its joint has in `q` and `v`.
+    fn sizes(&self, free: bool) -> [usize; 2] {
+        match &self.joint {
+            None if free => [7, 6],
+            None => [0, 0],
+            Some(joint) if joint.locked || joint.mimic.is_some() => [0, 0],
+            Some(joint) => [[1, 1], [1, 1], [1, 1], [0, 0], [7, 6], [3, 3], [4, 3]][joint.kind],
+        }
+    }
+}
+
+impl Robot {
+    pub fn random(random: &mut Random) -> Robot {
+        let n = 2 + random.below(6);
+        let mut links = vec![Link::random(0, random)];
+        for k in 1..n {
+            let mut link = Link::random(k, random);
+            link.joint = Some(Joint::random(k, &links, random));
+            links.push(link);
+        }
+        let mut shuffle: Vec<usize> = (0..2 * n - 1).collect();
+        (1..shuffle.len()).for_each(|k| shuffle.swap(k, random.below(k + 1)));
+        Robot { free: random.below(2) == 0, links, shuffle }
+    }
+
+    pub fn text(&self) -> String {
+        let mut text = String::from("<robot name=\"r\">\n");
+        for k in &self.shuffle {
+            match k.checked_sub(self.links.len()) {
+                None => {
+                    let Link { name, inertial, .. } = &self.links[*k];
+                    let _ = writeln!(text, "<link name=\"{name}\">{inertial}</link>");
+                }
+                Some(k) => self.write_joint(&mut text, k + 1),
+            }
+        }
+        text + "</robot>"
+    }
+
+    fn write_joint(&self, text: &mut String, child: usize) {
+        let Some(joint) = &self.links[child].joint else { return };
+        let mimic = joint.mimic.map(|(leader, factor, offset)| {
+            let leader = self.links[leader].joint.as_ref().map_or("", |joint| &joint.name);
+            format!("<mimic joint=\"{leader}\" multiplier=\"{factor:?}\" offset=\"{offset:?}\"/>")
+        });
+        let _ = writeln!(
+            text,
+            "<joint name=\"{}\" type=\"{}\"><child link=\"{}\"/><axis xyz=\"{}\"/><origin rpy=\"{}\" xyz=\"{}\"/>{}<parent link=\"{}\"/></joint>",
+            joint.name,
+            KINDS[joint.kind],
+            self.links[child].name,
+            spaced(joint.axis),
+            spaced(joint.rpy),
+            spaced(joint.xyz),
+            mimic.unwrap_or_default(),
+            self.links[joint.parent].name
+        );
+    }
+
+    pub fn locked(&self) -> impl Iterator<Item = &str> {
+        self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|j| j.locked).map(|j| j.name.as_str())
+    }
+
+    /// Counts the types of joints that move.
+    pub fn count(&self, kinds: &mut [usize; 7]) {
+        let joints = self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|joint| !joint.locked);
+        joints.for_each(|joint| kinds[joint.kind] += 1);
+    }
+
+    /// The links depth first, those of one parent by the names of their joints.
+    fn order(&self) -> Vec<usize> {
+        let (mut order, mut open) = (Vec::new(), vec![0]);
+        while let Some(link) = open.pop() {
+            order.push(link);
+            let joint = |k: usize| self.links[k].joint.as_ref();
+            let mut children: Vec<usize> =
+                (1..self.links.len()).filter(|k| joint(*k).is_some_and(|j| j.parent == link)).collect();
+            children.sort_by_key(|k| std::cmp::Reverse(joint(*k).map(|j| j.name.clone())));
+            open.extend(children);
+        }
+        order
+    }
+
+    /// Names of the entries of `q`.
+    pub fn coordinates(&self) -> Vec<String> {
+        const PLACE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+        let mut names = Vec::new();
+        for link in self.order() {
+            let name = self.links[link].joint.as_ref().map_or("root_joint", |joint| &joint.name);
+            match self.links[link].sizes(self.free) {
+                [0, _] => {}
+                [1, _] => names.push(name.to_string()),
+                [3, _] => names.extend(["x", "y", "angle"].map(|entry| format!("{name}.{entry}"))),
+                [n, _] => names.extend(PLACE[7 - n..].iter().map(|entry| format!("{name}.{entry}"))),
+            }
+        }
+        names
+    }
+
+    /// By link, the first entries of its joint.
+    fn entries(&self) -> Vec<[usize; 2]> {
+        let (mut entries, mut next) = (vec![[0; 2]; self.links.len()], [0; 2]);
+        for link in self.order() {
+            entries[link] = next;
+            let [q, v] = self.links[link].sizes(self.free);
+            next = [next[0] + q, next[1] + v];
+        }
+        entries
+    }
+
+    /// Unit quaternions, all else as it comes.
+    pub fn state(&self, random: &mut Random) -> State {
+        let entries = self.entries();
+        let count = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
+        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.number()).collect() };
+        let (mut q, v, a) = (numbers(count(0)), numbers(count(1)), numbers(count(1)));
+        for (link, [first, _]) in self.links.iter().zip(entries) {
+            let [n, _] = link.sizes(self.free);
+            if n == 4 || n == 7 {
+                let quaternion = &mut q[first + n - 4..first + n];
+                let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+                quaternion.iter_mut().for_each(|x| *x /= norm);
+            }
+        }
+        State { q, v, a }
+    }
+
+    /// Whether a link moves at all.
+    pub fn moves(&self, link: usize) -> bool {
+        match &self.links[link].joint {
+            None => self.free,
+            Some(joint) => (joint.kind != 3 && !joint.locked) || self.moves(joint.parent),
+        }
+    }
+
+    /// Axes and origin of every link in the ground.
+    pub fn motion(&self, state: &State) -> Vec<(Matrix, Vector)> {
+        let entries = self.entries();
+        let mut places: Vec<(Matrix, Vector)> = Vec::new();
+        for (k, link) in self.links.iter().enumerate() {
+            let zero = [Jet::constant(0.0); 3];
+            let Some(joint) = &link.joint else {
+                let still = (fixed_axes([0.0; 3]), zero);
+                places.push(if self.free { floating(state, entries[k]) } else { still });
+                continue;
+            };
+            let start = (fixed_axes(joint.rpy), joint.xyz.map(Jet::constant));
+            let moved = match joint.mimic {
+                _ if joint.locked => (fixed_axes([0.0; 3]), zero),
+                Some((leader, factor, offset)) => {
+                    let angle = plain(state, entries[leader]);
+                    joint.moved(angle * Jet::constant(factor) + Jet::constant(offset))
+                }
+                None if joint.kind < 3 => joint.moved(plain(state, entries[k])),
+                None => joint.placed(state, entries[k]),
+            };
+            let there = then(&places[joint.parent], &start);
+            places.push(then(&there, &moved));
+        }
+        places
+    }
+}
+
+impl Joint {
+    fn unit(&self) -> [f64; 3] {
+        let length = jets::dot(self.axis, self.axis).sqrt();
+        self.axis.map(|x| x / length)
+    }
+
+    /// What turns about or slides along the axis.
+    fn moved(&self, coordinate: Jet) -> (Matrix, Vector) {
+        match KINDS[self.kind] {
+            "prismatic" => (fixed_axes([0.0; 3]), self.unit().map(|n| Jet::constant(n) * coordinate)),
+            _ => (jets::turn(self.unit(), coordinate), [Jet::constant(0.0); 3]),
+        }
+    }
+
+    /// What has several coordinates, or none.
+    fn placed(&self, state: &State, [q, v]: [usize; 2]) -> (Matrix, Vector) {
+        let zero = [Jet::constant(0.0); 3];
+        match KINDS[self.kind] {
+            "floating" => floating(state, [q, v]),
+            "planar" => {
+                let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
+                let mut shift = zero;
+                shift[(normal + 1) % 3] = plain(state, [q, v]);
+                shift[(normal + 2) % 3] = plain(state, [q + 1, v + 1]);
+                (jets::turn(self.unit(), plain(state, [q + 2, v + 2])), shift)
+            }
+            "spherical" => (spun(state, [q, v]), zero),
+            _ => (fixed_axes([0.0; 3]), zero),
+        }
+    }
+}
+
+/// A coordinate in time.
+fn plain(state: &State, [q, v]: [usize; 2]) -> Jet {
+    Jet::new(state.q[q], state.v[v], state.a[v])
+}
+
+fn three(list: &[f64], at: usize) -> [f64; 3] {
+    std::array::from_fn(|k| list[at + k])
+}
+
+fn spun(state: &State, [q, v]: [usize; 2]) -> Matrix {
+    jets::spin(std::array::from_fn(|k| state.q[q + k]), three(&state.v, v), three(&state.a, v))
+}
+
+/// Position and quaternion; linear and angular velocity in the axes of what moves: `p' = R v`, `p'' = R (v' + ω × v)`.
+fn floating(state: &State, [q, v]: [usize; 2]) -> (Matrix, Vector) {
+    let rotation = spun(state, [q + 3, v + 3]);
+    let (speed, turning) = (three(&state.v, v), three(&state.v, v + 3));
+    let rate = jets::sum(three(&state.a, v), jets::cross(turning, speed));
+    let ground =
+        |own: [f64; 3]| -> [f64; 3] { rotation.map(|row| (0..3).map(|k| row[k].value() * own[k]).sum()) };
+    let (first, second) = (ground(speed), ground(rate));
+    (rotation, std::array::from_fn(|k| Jet::new(state.q[q + k], first[k], second[k])))
+}
+
+fn then(a: &(Matrix, Vector), b: &(Matrix, Vector)) -> (Matrix, Vector) {
+    (jets::product(&a.0, &b.0), jets::plus(&a.1, &jets::times(&a.0, &b.1)))
+}
