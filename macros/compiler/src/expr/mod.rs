@@ -16,6 +16,7 @@ pub mod print;
 pub mod replace;
 pub mod rotation;
 pub mod trigonometry;
+pub mod unit;
 
 pub use graph::Graph;
 pub use handle::Expr;

@@ -10,8 +10,9 @@ use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
 use crate::expr::polynomial::{Polynomial, Rank, Ring};
 use crate::expr::trigonometry::simplified;
+use crate::expr::unit::on_unit_sphere;
 use crate::expr::{Expr, Function, Node, Symbol};
-use crate::model::{Model, Quantity};
+use crate::model::{Chart, Model, Quantity};
 
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,7 @@ pub use written::written;
 /// more would be too long.
 const OPERATIONS: [usize; 2] = [200, 500];
 /// Most terms, of all equations together, that anybody would read.
-const READABLE: usize = 220;
+const READABLE: usize = 150;
 /// Most terms before they are shortened.
 const LONG: usize = 400;
 
@@ -71,7 +72,17 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let mut forces = normals(&mut normal, &right)?;
     motion.extend(normals(&mut normal, &kept)?);
     forces.resize(motion.len(), Polynomial::default());
-    readable(normal.ring, lagrangian, motion, forces)
+    readable(normal.ring, &quaternions(model), lagrangian, motion, forces)
+}
+
+/// The components of all unit quaternions.
+fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
+    let firsts = model.charts.iter().filter_map(|chart| match chart {
+        Chart::Ball(q, _) => Some(*q),
+        Chart::Free(q, _) => Some(q + 3),
+        Chart::Plain(..) => None,
+    });
+    firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q + k).symbol())).collect()
 }
 
 /// What the inputs and the multipliers contribute, by velocity.
@@ -126,6 +137,7 @@ fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynom
 /// Shortened, and few enough terms.
 fn readable(
     mut ring: Ring,
+    quaternions: &[[Symbol; 4]],
     lagrangian: Polynomial,
     motion: Vec<Polynomial>,
     forces: Vec<Polynomial>,
@@ -137,7 +149,10 @@ fn readable(
     let mut left = READABLE;
     let mut short = |p: &Polynomial| {
         let p = without_noise(&ring, p);
-        let p = simplified(&mut ring, &p)?;
+        let mut p = simplified(&mut ring, &p)?;
+        for quaternion in quaternions {
+            p = on_unit_sphere(&mut ring, &p, quaternion)?;
+        }
         left = left.checked_sub(p.terms.len())?;
         p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
     };

@@ -158,9 +158,11 @@ fn length_decides() {
     assert!(text.contains("m x19'' + k (x19 - x18) = 0\n"), "{text}");
     let text = equations_of("-g * z", FREE);
     assert!(text.contains("a pose.wx' + (c - b) pose.wy pose.wz = 0\n"), "{text}");
+    let text = equations_of("-g * z", DISK);
+    assert!(text.contains("1/4 m radius² pose.wz' + 1/4 m radius² pose.wx pose.wy\n"), "{text}");
     let text = equations_of("-g * z", SPHERE);
-    assert!(text.contains("\npose.z - radius = 0\n") || text.contains("\n-radius + pose.z = 0\n"), "{text}");
-    for item in [masses(5), masses(20), FREE.to_string(), SPHERE.to_string()] {
+    assert!(text.contains("\n-radius + pose.z = 0\n"), "{text}");
+    for item in [masses(5), masses(20), FREE.to_string(), SPHERE.to_string(), DISK.to_string()] {
         with_model("-g * z", &item, |model| check(&model));
     }
 }

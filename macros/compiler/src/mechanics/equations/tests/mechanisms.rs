@@ -197,3 +197,12 @@ pub fn masses(n: usize) -> String {
     }
     format!("struct Masses {{ g: f64, m: f64, k: f64, {items} }}")
 }
+
+/// A disk that rolls.
+pub const DISK: &str = "
+struct RollingDisk {
+    g: f64, m: f64, radius: f64,
+    #[body(mass = m, inertia = disk(m, radius, y))] disk: Body,
+    #[joint(ground -> disk)] pose: Free,
+    #[constraint(rolls(disk.circle(radius, y), ground.plane(z)))] contact: Rolling,
+}";

@@ -1,0 +1,99 @@
+//! Fewer terms where the squares of some symbols have the sum one, as those of a unit quaternion: what has the same factor
+//! before all four squares needs none of them.
+
+use super::node::Symbol;
+use super::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
+
+/// Relative difference of coefficients that are taken to be equal.
+const ROUNDING: f64 = 1e-11;
+
+/// The same on the unit sphere of the symbols, in fewer terms if that is possible.
+pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
+    let place = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
+    let Some(atoms) = symbols.iter().map(place).collect::<Option<Vec<usize>>>() else {
+        return Some(p.clone());
+    };
+    let squares: Option<Vec<Monomial>> =
+        atoms.iter().map(|k| Monomial::atom(*k).times(Monomial::atom(*k))).collect();
+    let (squares, mut terms) = (squares?, p.terms.clone());
+    loop {
+        let heads = terms
+            .iter()
+            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.over(*s)));
+        let mut heads: Vec<Monomial> = heads.collect();
+        heads.sort_unstable();
+        heads.dedup();
+        ring.spend(heads.len() * terms.len())?;
+        let Some(shorter) = heads.iter().find_map(|head| shorter(&terms, *head, &squares)) else {
+            return Some(Polynomial::sum(terms));
+        };
+        terms = shorter;
+    }
+}
+
+/// `a h x² + b h y² + … + c h` with `h` times the sum of squares less or more, if that leaves fewer terms.
+fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
+    let places: Vec<Monomial> = squares.iter().filter_map(|s| head.times(*s)).chain([head]).collect();
+    let of = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
+    let before: Vec<f64> = places.iter().map(of).collect();
+    let count = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
+    let size = before.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
+    let clean = |c: f64| if c.abs() <= ROUNDING * size { 0.0 } else { c };
+    let last = before.len().checked_sub(1)?;
+    let tries = before.iter().enumerate().map(|(k, c)| if k == last { -c } else { *c });
+    let moved = tries.map(|shift| -> Vec<f64> {
+        let all = before.iter().enumerate();
+        all.map(|(k, c)| clean(if k == last { c + shift } else { c - shift })).collect()
+    });
+    let best = moved.min_by_key(|list| count(list)).filter(|list| count(list) < count(&before))?;
+    let mut out: Vec<Term> = terms.iter().filter(|t| !places.contains(&t.monomial)).copied().collect();
+    let kept = places.iter().zip(best).filter(|(_, coefficient)| *coefficient != 0.0);
+    out.extend(kept.map(|(monomial, coefficient)| Term { monomial: *monomial, coefficient }));
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::polynomial::Rank;
+
+    /// `w x y z` as they stand.
+    #[test]
+    fn squares_of_a_unit_quaternion_vanish() {
+        let mut ring = Ring::new(|_| Rank::Position);
+        let symbols = [0, 1, 2, 3].map(Symbol);
+        let q = symbols.map(|s| ring.atom(Atom::Symbol(s)).unwrap());
+        let product = |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.times(q[*k])).unwrap();
+        let polynomial = |list: &[(f64, &[usize])]| {
+            let terms = list.iter().map(|(c, m)| Term { monomial: product(m), coefficient: *c });
+            Polynomial::sum(terms.collect())
+        };
+        for (from, to) in [
+            (
+                polynomial(&[(2.0, &[0, 0]), (2.0, &[1, 1]), (2.0, &[2, 2]), (2.0, &[3, 3])]),
+                polynomial(&[(2.0, &[])]),
+            ),
+            (
+                polynomial(&[
+                    (8.0, &[0, 0, 0, 1]),
+                    (8.0, &[0, 1, 1, 1]),
+                    (8.0, &[0, 1, 2, 2]),
+                    (5.0, &[0, 1, 3, 3]),
+                    (1.0, &[2]),
+                ]),
+                polynomial(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
+            ),
+            // One less three squares is the fourth.
+            (
+                polynomial(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
+                polynomial(&[(1.0, &[3, 3])]),
+            ),
+            (
+                polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+                polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+            ),
+        ] {
+            assert_eq!(on_unit_sphere(&mut ring, &from, &symbols), Some(to));
+        }
+    }
+}
