@@ -44,8 +44,8 @@ use std::path::PathBuf;
 /// depends on time) and stand in the rustdoc of the struct. The guide, `linkwork::guide`, explains everything from the
 /// beginning.
 ///
-/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its elements. In the
-/// other order they see fields of types that have no values, and rustc reports several errors for each.
+/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its elements. The
+/// other order is an error that says so.
 ///
 /// **Mistakes** are compile errors at the token, all of them at once; those of a file carry its line and column.
 ///

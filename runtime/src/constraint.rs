@@ -93,8 +93,10 @@ pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVect
 /// Accelerations `v̇` and multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
-/// A mechanism with `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
-/// velocities alone: what `#[mechanism]` implements where joints close loops or constraints are declared. Time `t` is in
+/// What mechanisms with closed loops, rolling or other constraints offer, for generic code.
+///
+/// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
+/// velocities alone. `#[mechanism]` implements the trait where joints close loops or constraints are declared. Time `t` is in
 /// seconds; mechanisms that do not contain it take any.
 ///
 /// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both, while the mass

@@ -3,13 +3,13 @@
 //! A field's type says what it is, its attribute how it is placed; [`mechanism`](macro@crate::mechanism) shows an example.
 //! The compiler reads these types and removes the fields: there are no values of them.
 //!
-//! | | |
+//! | what | types |
 //! | --- | --- |
 //! | bodies | [`Body`], [`Particle`] |
 //! | joints with one degree of freedom | [`Pin`] (revolute), [`Sleeve`] (prismatic), [`Screw`] (helical) |
-//! | with two | [`Collar`] (cylindrical), [`Slot`], [`Universal`], [`Stage`] |
-//! | with three | [`Ball`] (spherical), [`Planar`], [`Stage`] |
-//! | with six, with none | [`Free`] (floating), [`Weld`] (fixed) |
+//! | joints with two | [`Collar`] (cylindrical), [`Slot`], [`Universal`], [`Stage`] |
+//! | joints with three | [`Ball`] (spherical), [`Planar`], [`Stage`] |
+//! | joints with six, with none | [`Free`] (floating), [`Weld`] (fixed) |
 //! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
 //! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
 //! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |

@@ -152,3 +152,35 @@ mod testing;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;
+
+/// The equations that the README shows are those of its example.
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// pub struct CartPole {
+///     pub cart_mass: f64,
+///     pub pole_mass: f64,
+///     pub pole_length: f64,
+///     #[body(mass = cart_mass)]
+///     cart: Body,
+///     #[body(mass = pole_mass, com = pole_length / 2 * y, inertia = rod(pole_mass, pole_length, y))]
+///     pole: Body,
+///     #[joint(ground -> cart, along = x)]
+///     rail: Sleeve,
+///     #[joint(cart -> pole, about = z)]
+///     hinge: Pin,
+///     #[acts(on = cart, along = x)]
+///     push: Force,
+/// }
+///
+/// let readme = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md"));
+/// let equations: Vec<_> = CartPole::EQUATIONS.lines().take_while(|line| !line.starts_with("L is")).collect();
+/// assert!(equations.len() > 6);
+/// for line in equations {
+///     assert!(readme.contains(line), "{line}");
+/// }
+/// ```
+#[cfg(doctest)]
+struct ReadmeEquations;

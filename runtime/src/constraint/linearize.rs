@@ -6,7 +6,9 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// The motion to first order about a state, in `NP` independent coordinates and `NS` independent speeds:
+/// The motion to first order about a state, in independent coordinates and speeds.
+///
+/// With `NP` independent coordinates and `NS` independent speeds
 /// `ẋ = A x + B δu` with `x` the displacements of the coordinates (body-axes motions for ball and free joints), then the
 /// changes of the speeds. `NX = NP + NS`.
 ///

@@ -5,7 +5,9 @@ use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// A mechanism whose violated constraints decay by themselves: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of
+/// A mechanism whose violated constraints decay by themselves.
+///
+/// Baumgarte's stabilization: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of
 /// constraints and integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators then
 /// leave the state as it is, whether it fulfils the constraints or not; the violation is small, not zero.
 ///
