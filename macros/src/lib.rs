@@ -94,6 +94,9 @@ use std::path::PathBuf;
 /// `generalized_forces` are generated, the dynamics and the trait `Mechanism` are not. Files that describe shapes and joints
 /// alone are read so; what such a file says of masses is skipped.
 ///
+/// A mechanism has 128 degrees of freedom at most, and 1024 bodies: everything is written out for each of them. Masses, moments
+/// and lengths that are given by numbers must leave room for products of theirs to be finite.
+///
 /// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`. A fixed root of this
 /// name is the ground, and one of the frames. A link `world` that joints name and the file does not declare is its root.
 /// What fixed joints hold to a fixed root enters no equation: its mass properties are not checked.

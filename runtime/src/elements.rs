@@ -34,7 +34,7 @@
 //!
 //! # Units
 //!
-//! Units are SI, angles in radians. Units of parameters are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes
+//! Units are SI, angles in radians, or `degrees(90)`. Units of parameters are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes
 //! `l` a length, and a parameter that would have to be two things at once is a compile error. A number has any unit:
 //! `-9.81 * y` is an acceleration, `l + 0.1` a length. But ½, 2 or π beside a parameter are plain factors, and an expression
 //! without parameters is held to nothing. `#[unit(N * m / rad)]` on a parameter says its unit where nothing else does. The

@@ -44,10 +44,27 @@ impl From<Span> for Place {
 pub struct Diagnostic {
     place: Place,
     message: String,
+    notes: Vec<String>,
     help: Vec<String>,
 }
 
 impl Diagnostic {
+    /// A mistake without notes and help.
+    pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { place: place.into(), message: message.into(), notes: Vec::new(), help: Vec::new() }
+    }
+
+    /// Adds a line that says what else the mistake has to do with.
+    pub fn note(&mut self, text: impl Into<String>) -> &mut Diagnostic {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// True if nothing says how to mend it.
+    pub fn is_bare(&self) -> bool {
+        self.help.is_empty()
+    }
+
     /// Adds a line that says how to mend it.
     pub fn help(&mut self, text: impl Into<String>) -> &mut Diagnostic {
         self.help.push(text.into());
@@ -77,9 +94,10 @@ impl Diagnostic {
             Some(at) => format!("{}:{}:{}: {}", at.file, at.line, at.column, self.message),
             None => self.message.clone(),
         };
-        for (k, line) in self.help.iter().enumerate() {
-            text.push_str(if k == 0 { "\n\n= help: " } else { "\n= help: " });
-            text.push_str(line);
+        let notes = self.notes.iter().map(|line| ("note", line));
+        for (k, (word, line)) in notes.chain(self.help.iter().map(|line| ("help", line))).enumerate() {
+            let gap = if k == 0 { "\n\n" } else { "\n" };
+            text.push_str(&format!("{gap}= {word}: {line}"));
         }
         text
     }
@@ -97,6 +115,7 @@ pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
 #[derive(Default, Debug)]
 pub struct Diagnostics {
     errors: Vec<Diagnostic>,
+    unread: bool,
 }
 
 impl Diagnostics {
@@ -105,9 +124,24 @@ impl Diagnostics {
         Diagnostics::default()
     }
 
+    /// A list that nobody reads: it asks whether something is a mistake.
+    pub fn unread() -> Diagnostics {
+        Diagnostics { unread: true, ..Diagnostics::default() }
+    }
+
+    /// True if the user will read the list.
+    pub fn is_read(&self) -> bool {
+        !self.unread
+    }
+
+    /// How many mistakes there are.
+    pub fn len(&self) -> usize {
+        self.errors.len()
+    }
+
     /// Reports a mistake. The message is lower case without a full stop, the user's words in backticks.
     pub fn error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
-        self.errors.push(Diagnostic { place: place.into(), message: message.into(), help: Vec::new() });
+        self.add(Diagnostic::new(place, message));
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
@@ -121,6 +155,11 @@ impl Diagnostics {
                 diagnostic.help(help);
             }
         }
+    }
+
+    /// Adds a mistake.
+    pub fn add(&mut self, one: Diagnostic) {
+        self.errors.push(one);
     }
 
     /// Adds what another list holds.

@@ -489,14 +489,19 @@ fn mistakes_are_reported_together_and_once() {
         "this axis is not of unit length
         = help: its length is 1.4142135623730951; write `unit(…)` around it
         this axis has no direction: it is zero
+        = help: write `x`, `y`, `z` or another vector of unit length
         the mass of `a` cannot be negative, but it is -1
+        = help: a mass is zero or more, kg; gravity has the sign
         expected a vector, found a scalar
         = help: multiply it by a direction, as in `length * y`
         this coordinate is an angle
         = help: what acts on it is a Torque",
     );
     // A body that failed to parse is not unknown where it is joined.
-    check("#[body(mass = )] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,", "`mass` has no value");
+    check(
+        "#[body(mass = )] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
+        "`mass` has no value\n= help: write `mass = …`",
+    );
     check(
         "m: f64, #[body(mass = m * l)] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
         "unknown name `l`\n= help: expected `m`, `x`, `y`, `z` or `pi`",

@@ -59,11 +59,20 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         // Rustdoc would show a literal, with all its escapes.
         let _ = writeln!(out, "/// {about}\npub const {name}: &'static str = [{text:?}][0];");
     }
-    out.push_str(
+}
+
+/// The index of a frame by its name. A mechanism that failed to compile knows every name: what its frames are called is
+/// not known, and its own mistakes are said already.
+pub fn write_frame_index(out: &mut String, failed: bool) {
+    let found = "::linkwork::__private::frame_index(&Self::FRAMES, name)";
+    let value = match failed {
+        true => format!("match {found} {{ None => ::core::option::Option::Some(0), found => found }}"),
+        false => found.to_string(),
+    };
+    let _ = writeln!(
+        out,
         "/// Index in `FRAMES` of the frame with a name; `frame!` checks it at compile time.
         #[must_use]
-        pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {
-            ::linkwork::__private::frame_index(&Self::FRAMES, name)
-        }\n",
+        pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {{ {value} }}"
     );
 }

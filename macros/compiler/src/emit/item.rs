@@ -1,7 +1,7 @@
 //! The whole output: struct, inherent functions, trait, frames.
 
 use super::absent::{Absent, write_absent};
-use super::constants::write_constants;
+use super::constants::{write_constants, write_frame_index};
 use super::constraints::{self, Constraints};
 use super::dispatch::Bodies;
 use super::docs::struct_docs;
@@ -131,6 +131,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let s = signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &output.equations, &output.constants);
+    write_frame_index(&mut methods, false);
     let mut bodies = Bodies::new(interface.detect);
     for f in &output.functions {
         bodies.write_function(&mut methods, f, &s);
@@ -186,6 +187,7 @@ pub fn emit_failed(
     let s = signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &Written::default(), constants);
+    write_frame_index(&mut methods, true);
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }

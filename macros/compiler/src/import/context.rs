@@ -23,6 +23,7 @@ pub(super) struct Cx<'a> {
     added: (usize, usize, u32),
     diagnostics: &'a mut Diagnostics,
     mistakes: usize,
+    habits: Vec<&'static str>,
 }
 
 impl<'a> Cx<'a> {
@@ -35,7 +36,7 @@ impl<'a> Cx<'a> {
             blocks.push(position);
         }
         let (path, span) = (Rc::from(path.text.as_str()), path.place.span);
-        Cx { text, path, span, blocks, added: (0, 0, 0), diagnostics, mistakes: 0 }
+        Cx { text, path, span, blocks, added: (0, 0, 0), diagnostics, mistakes: 0, habits: Vec::new() }
     }
 
     /// Places are from now on those of a text that has `more` than the file, in a line, from the byte at `offset` on.
@@ -104,6 +105,16 @@ impl<'a> Cx<'a> {
             let message = format!("`{}` has more mistakes; these are the first {MISTAKES_SHOWN}", self.path);
             self.diagnostics.error(self.span, message);
         }
+    }
+
+    /// Reports a mistake that a file has all over, once: `help` tells it from others.
+    pub(super) fn habit(&mut self, place: &Place, message: String, help: &'static str) {
+        if self.habits.contains(&help) {
+            self.mistakes += 1;
+            return;
+        }
+        self.habits.push(help);
+        self.error(place, message, |d| d.help(help));
     }
 
     /// True if this file had a mistake.

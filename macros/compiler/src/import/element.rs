@@ -105,7 +105,8 @@ pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<N
     let found = node.attribute_node(attribute)?;
     let (text, place) = (found.value().to_string(), cx.place(found.range_value().start));
     if text.trim().is_empty() {
-        cx.error(&place, format!("empty `{attribute}` of {}", tag(node)), |d| d);
+        let help = format!("write a name: `{attribute}=\"…\"`");
+        cx.error(&place, format!("empty `{attribute}` of {}", tag(node)), |d| d.help(help));
         return None;
     }
     Some(Name { text, place })
@@ -126,11 +127,19 @@ pub(super) fn numbers<const N: usize>(
     let found = node.attribute_node(attribute)?;
     let (text, start) = (found.value(), found.range_value().start);
     let place = cx.place(start);
+    if text.contains(',') {
+        // One habit is one mistake, however many vectors of the file have it.
+        let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
+        let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
+        cx.habit(&place, message, if N == 1 { POINT } else { SEPARATE });
+        return None;
+    }
     let count = text.split_ascii_whitespace().count();
     if count != N {
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
         let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
-        cx.error(&place, message, |d| if text.contains(',') { d.help(SEPARATE) } else { d });
+        let missing = if N == 1 { POINT } else { SPACES };
+        cx.error(&place, message, |d| d.help(missing));
         return None;
     }
     // References (`&#32;`) in the value move its words away from their places in the file.
@@ -144,18 +153,21 @@ pub(super) fn numbers<const N: usize>(
             Ok(number) if number.is_finite() => value[k] = number + 0.0,
             Ok(_) => {
                 good = false;
-                cx.error(&cx.place(start + offset), format!("{} is not a finite number", quote(word)), |d| d);
+                let message = format!("{} is not a finite number", quote(word));
+                cx.error(&cx.place(start + offset), message, |d| d.help(DIGITS));
             }
             Err(_) => {
                 good = false;
                 let message = format!("{} is not a number", quote(word));
-                let comma = word.contains(',');
-                cx.error(&cx.place(start + offset), message, |d| if comma { d.help(COMMA) } else { d });
+                cx.error(&cx.place(start + offset), message, |d| d.help(DIGITS));
             }
         }
     }
     good.then_some(Placed { value, place })
 }
 
-const SEPARATE: &str = "write spaces between the numbers, and a decimal point";
-const COMMA: &str = "write a decimal point, and spaces between numbers";
+const SEPARATE: &str =
+    "write spaces between the numbers instead of commas, and a decimal point; so everywhere in the file";
+const POINT: &str = "write one number, with a decimal point";
+const SPACES: &str = "write as many numbers, with spaces between them";
+const DIGITS: &str = "write digits, as in `-0.5` or `1e-3`";

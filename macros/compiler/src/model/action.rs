@@ -105,8 +105,9 @@ impl<'g> Builder<'_, 'g> {
             let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
             cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
                 .help(format!("write `{key} = …`"));
+            return None;
         }
-        self.scope.scalar(free, cx)
+        if *is_angle { self.scope.plane_angle(free, cx) } else { self.scope.scalar(free, cx) }
     }
 
     /// Linear springs and dashpots on a coordinate; false for everything else.
@@ -445,8 +446,14 @@ impl<'g> Builder<'_, 'g> {
             let mut known = self.joint_names();
             known.extend(self.placeable.iter().cloned());
             known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
-            cx.error(place.clone(), format!("unknown joint or body `{name}`"))
-                .suggest(name, known.iter().map(String::as_str));
+            if !self.scope.is_news(name, cx) {
+                return;
+            }
+            let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));
+            error.suggest(name, known.iter().map(String::as_str));
+            if error.is_bare() {
+                error.help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+            }
         }
     }
 }

@@ -27,11 +27,18 @@ pub fn always(e: Expr<'_>, value: f64) -> bool {
 impl<'g> Scope<'_, 'g> {
     /// A direction: a vector of unit length, or normalised if `normalise` says so.
     pub fn unit_vector(&self, e: &syntax::Expr, normalise: bool, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
+        if let Some(n) = e.literal().filter(|n| *n != 0.0) {
+            let sign = if n < 0.0 { "-" } else { "" };
+            cx.error(e.place.clone(), "expected a direction, found a number")
+                .help(format!("an axis is `{sign}x`, `{sign}y` or `{sign}z`, or a vector of unit length"));
+            return None;
+        }
         let v = self.own_vector(e, cx)?;
         let v = v.values().map_or(v, |n| Vec3::numbers(self.graph, n));
         let squared = v.dot(v);
         if v.is_zero() || always(squared, 0.0) {
-            cx.error(e.place.clone(), "this axis has no direction: it is zero");
+            cx.error(e.place.clone(), "this axis has no direction: it is zero")
+                .help("write `x`, `y`, `z` or another vector of unit length");
             return None;
         }
         if always(squared, 1.0) {

@@ -1,11 +1,12 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
 use super::embed;
+use super::figures::Range;
 use super::gradients::Gradients;
-use super::joint::{Elementary, coordinate_names, full_name, own_coordinate};
+use super::joint::{self, Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
 use super::masses::MassProperties;
-use super::resolve::Scope;
+use super::resolve::{Scope, Value};
 use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
 use super::world::{Level, PlacedKind, View, World};
@@ -13,16 +14,22 @@ use super::{
     Chart, Constraint, Coordinate, CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Model, Motion,
     NamedFrame, Opened, Pose, Quantity, reaction,
 };
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::syntax::{
-    Action, ActionKind, Description, Endpoint, ExprKind, Inertias, Joint, JointKind, Target,
+    Action, ActionKind, Description, Endpoint, ExprKind, Inertias, Joint, JointKind, ScalarType, Target,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
 const MAX_VELOCITIES: usize = 128;
+/// Parameters that nothing uses: so many are told one by one.
+const FEW: usize = 3;
+
+/// What to do with more.
+const TOO_MANY: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
+
 /// Most bodies of a mechanism.
 const MAX_BODIES: usize = 1024;
 
@@ -73,7 +80,8 @@ pub fn build_model<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Model<'g>> {
     if description.bodies.len() + description.particles.len() > MAX_BODIES {
-        cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"));
+        cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"))
+            .help("each body becomes code of its own: divide the mechanism, or weld bodies that do not move into one");
         return None;
     }
     if description.bodies.is_empty() && description.particles.is_empty() {
@@ -104,7 +112,8 @@ fn build<'g>(
         cx.error(
             description.name.place.clone(),
             format!("{n} degrees of freedom, more than {MAX_VELOCITIES}"),
-        );
+        )
+        .help(TOO_MANY);
         return None;
     }
     builder.number_open_coordinates(opening.map_or(&[], |(joints, _)| joints));
@@ -207,13 +216,18 @@ impl<'a, 'g> Builder<'a, 'g> {
             definitions: &description.definitions,
             view: View::new(Level::Constant, None).into(),
             world: World::default().into(),
+            single: description.scalar == ScalarType::F32,
+            unknown: BTreeSet::new().into(),
+            failed: BTreeSet::new().into(),
+            constrains: false.into(),
             known: BTreeMap::new().into(),
         };
         for name in all.clone().filter(|n| n.text == GROUND) {
-            cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move");
+            cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move")
+                .help("choose another name, or remove the body: joints begin at `ground` as it is");
         }
         check_names(description, cx);
-        let gravity = description.gravity.as_ref().and_then(|e| scope.own_vector(e, cx));
+        let gravity = description.gravity.as_ref().and_then(|e| read_gravity(e, &scope, cx));
         let friction_speed = match &description.friction_speed {
             Some(e) => scope.scalar(e, cx).unwrap_or(graph.one()),
             None => graph.num(FRICTION_SPEED),
@@ -221,7 +235,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         if let (Some(e), Some(s)) = (&description.friction_speed, friction_speed.value())
             && s <= 0.0
         {
-            cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"));
+            cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
+                .help("around it Coulomb's law is smooth; 0.01 is usual");
         }
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
         let places = vec![None; held.len()];
@@ -343,7 +358,10 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// The joint's frame on the body of one of its ends.
     pub fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
-            Some(at) => self.scope.own_vector(at, cx),
+            Some(at) => self.scope.own_vector(at, cx).filter(|v| {
+                let range = Range::of(&self.description.scalar);
+                v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
+            }),
             None => Some(Vec3::zero(self.scope.graph)),
         };
         let rotation = self.scope.rotation(&end.rotated, cx);
@@ -356,9 +374,11 @@ impl<'a, 'g> Builder<'a, 'g> {
         let motions = self.scope.motions(joint, cx);
         let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
         let start = self.joint_parent(&joint.parent.body, cx);
-        if let (Some(motions), Some(on_parent), Some(on_child), Some((link, pose))) =
-            (motions, on_parent, on_child, start)
-        {
+        // What has a mistake is placed somehow, so that what depends on it is read as well.
+        let motions = motions.unwrap_or_else(|| joint::somehow(self.scope.graph, joint));
+        let on_parent = on_parent.unwrap_or_else(|| self.somewhere(false));
+        let on_child = on_child.unwrap_or_else(|| self.somewhere(false));
+        if let Some((link, pose)) = start {
             let frame = pose.then(&on_parent);
             self.transmit(j, link, &frame.rotation);
             let (joints, _) = self.opening.unwrap_or_default();
@@ -368,7 +388,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             };
             let (link, pose) = match self.embedding(j) {
                 Some(_) => {
-                    let Some(solved) = self.embedded_pose(j, cx) else { return };
+                    let solved = self.embedded_pose(j, cx).unwrap_or_else(|| self.somewhere(true));
                     self.settle(link, frame.then(&solved))
                 }
                 None => self.add_chain(j, &motions, link, frame),
@@ -380,6 +400,16 @@ impl<'a, 'g> Builder<'a, 'g> {
             self.places[child] = Some((link, pose));
         }
         self.add_passive(j, joint, cx);
+    }
+
+    /// A place for what has a mistake, with figures that nothing else has: where it should have been does not matter.
+    pub fn somewhere(&self, moves: bool) -> Pose<'g> {
+        let g = self.scope.graph;
+        let mut translation = Vec3::numbers(g, [0.731, 0.417, 0.593]);
+        if moves {
+            translation += Vec3::axis(g, 0) * Quantity::Time.expr(g);
+        }
+        Pose { rotation: Rotation::identity(g), translation }
     }
 
     /// True if every body has its place.
@@ -489,11 +519,22 @@ impl<'a, 'g> Builder<'a, 'g> {
         if !cx.is_empty() {
             return;
         }
-        for (parameter, used) in self.description.parameters.iter().zip(self.scope.used.borrow().iter()) {
-            if !used && !parameter.text.starts_with('_') {
-                cx.error(parameter.place.clone(), format!("nothing uses the parameter `{}`", parameter.text))
-                    .help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
-            }
+        let used = self.scope.used.borrow();
+        let unused = self.description.parameters.iter().zip(used.iter());
+        let unused: Vec<_> =
+            unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
+        // A whole attribute that says nothing of what was meant is one mistake.
+        if let [first, rest @ ..] = unused.as_slice()
+            && rest.len() >= FEW
+        {
+            let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
+            cx.error(first.place.clone(), format!("nothing uses the parameters {}", all_of(&list)))
+                .help("remove them, or let their names begin with `_` to keep them for your own use");
+            return;
+        }
+        for parameter in unused {
+            cx.error(parameter.place.clone(), format!("nothing uses the parameter `{}`", parameter.text))
+                .help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
         }
     }
 
@@ -508,10 +549,41 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some(self.coordinates[j].plain.clone())
     }
 
+    /// True for the name of a coordinate that is an angle.
+    pub fn is_angle(&self, e: &crate::syntax::Expr) -> bool {
+        let name = match &e.kind {
+            ExprKind::Name(name) => name.clone(),
+            ExprKind::Field(joint, member) => full_name(joint.name().unwrap_or_default(), &member.text),
+            _ => return false,
+        };
+        let world = self.scope.world.borrow();
+        world.coordinates.iter().any(|(known, _, angle)| *known == name && *angle)
+    }
+
     /// Names of all joints.
     pub fn joint_names(&self) -> Vec<String> {
         self.description.joints.iter().map(|j| j.name.text.clone()).collect()
     }
+}
+
+/// Gravity, a vector in ground axes.
+fn read_gravity<'g>(
+    e: &crate::syntax::Expr,
+    scope: &Scope<'_, 'g>,
+    cx: &mut Diagnostics,
+) -> Option<Vec3<'g>> {
+    if let Some(Value::Scalar(s)) = scope.value(e, &mut Diagnostics::unread())
+        && !s.is_zero()
+    {
+        let (sign, size) = match e.literal() {
+            Some(n) => ("-", n.abs().to_string()),
+            None => ("-", e.spelt()),
+        };
+        cx.error(e.place.clone(), "expected a vector, found a scalar")
+            .help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
+        return None;
+    }
+    scope.own_vector(e, cx)
 }
 
 fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {

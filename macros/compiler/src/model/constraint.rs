@@ -7,7 +7,9 @@ use super::joint::{Elementary, in_plane};
 use super::kinematics::{Spatial, change_axes, symbols_in, time_derivative, velocity_gradient};
 use super::rows::Rows;
 use super::world::{Level, Placed, PlacedKind, View};
-use super::{Constraint, LinkId, Measure, Pose, Quantity, Transmission, contact, mobility, redundancy};
+use super::{
+    Constraint, LinkId, Measure, Pose, Quantity, Transmission, contact, mobility, redundancy, slips,
+};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::{eval, eval_one};
 use crate::expr::replace::replace;
@@ -80,6 +82,9 @@ impl<'g> Builder<'_, 'g> {
                 self.check_joint(&self.description.joints[*j], cx);
                 self.transmit(*j, None, &Rotation::identity(self.scope.graph));
             }
+            for constraint in &self.description.constraints {
+                self.check_constraint(constraint, cx);
+            }
             return;
         }
         let solved: Vec<usize> = self.embedded.iter().map(|e| e.closing).collect();
@@ -102,12 +107,14 @@ impl<'g> Builder<'_, 'g> {
         if let (Formulation::Speeds(_, place), true) =
             (&self.description.formulation, self.model.constraints.is_empty())
         {
-            cx.error(place.clone(), "all speeds are independent: this mechanism has no constraint");
+            cx.error(place.clone(), "all speeds are independent: this mechanism has no constraint")
+                .help("remove this argument");
         }
         let count = self.model.constraints.len();
         if count > MAX_CONSTRAINTS {
             let place = self.description.name.place.clone();
-            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}"));
+            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}"))
+                .help("each loop costs up to five of them: hold bodies by the tree where you can, or divide the mechanism");
             return;
         }
         for j in &solved {
@@ -176,7 +183,8 @@ impl<'g> Builder<'_, 'g> {
             cx.error(
                 place.clone(),
                 format!("{} independent speeds for {free} degrees of freedom", independent.len()),
-            );
+            )
+            .help(format!("name {free}, or leave `independent` out: then they are chosen"));
             return;
         }
         if !cx.is_empty() {
@@ -429,7 +437,10 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        for (name, residual) in self.difference(constraint, Level::Placement, cx) {
+        self.scope.constrains.set(true);
+        let rows = self.difference(constraint, Level::Placement, cx);
+        self.scope.constrains.set(false);
+        for (name, residual) in rows {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
@@ -437,6 +448,20 @@ impl<'g> Builder<'_, 'g> {
             }
             let rate = time_derivative(self.model.space(), residual);
             self.push_rate((name, &constraint.name.place), measure, Some(residual), rate);
+        }
+    }
+
+    /// Reads what a constraint says, for its mistakes alone.
+    fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        let holonomic = constraint.kind == ConstraintKind::Holonomic;
+        match constraint.kind {
+            ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
+                self.scope.constrains.set(holonomic);
+                let level = if holonomic { Level::Placement } else { Level::Motion };
+                let _ = self.difference(constraint, level, cx);
+                self.scope.constrains.set(false);
+            }
+            ConstraintKind::Rolling | ConstraintKind::Slipping => self.check_pair(constraint, cx),
         }
     }
 
@@ -454,7 +479,8 @@ impl<'g> Builder<'_, 'g> {
                 return;
             }
             if is(&[rate], |q| matches!(q, Quantity::Input(_))) {
-                cx.error(place.clone(), "a constraint contains no input");
+                cx.error(place.clone(), "a constraint contains no input")
+                    .help("a motion that is given is an expression of time `t`");
                 return;
             }
             let linear = match is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
@@ -481,7 +507,28 @@ impl<'g> Builder<'_, 'g> {
         use super::resolve::Value;
         let name = &constraint.name.text;
         let view = || View::new(level, Some((None, Pose::identity(self.scope.graph))));
+        let turns = |e: &syntax::Expr| match &e.kind {
+            ExprKind::Call(word, _) => word.text == "angle",
+            _ => self.is_angle(e),
+        };
+        let pair = [Some(&constraint.value), constraint.other.as_ref()];
+        for (side, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+            if let (Some(side), Some(other)) = (side, other)
+                && level == Level::Placement
+                && turns(side)
+                && !slips::check_angle(other, cx)
+            {
+                return Vec::new();
+            }
+        }
         let left = self.scope.with_view(view(), |scope| scope.value(&constraint.value, cx));
+        if left.is_none() {
+            // What the other side says is told as well.
+            if let Some(other) = &constraint.other {
+                let _ = self.scope.with_view(view(), |scope| scope.value(other, cx));
+            }
+            return Vec::new();
+        }
         let vector = matches!(left, Some(Value::Vector(_)));
         let mut sides = vec![&constraint.value];
         sides.extend(&constraint.other);

@@ -3,7 +3,7 @@
 use super::resolve::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
-use crate::syntax::{self, BinaryOp, ExprKind, Name};
+use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 
 /// The solids with the names of their arguments.
 pub const SOLIDS: [(&str, &[&str]); 14] = [
@@ -52,8 +52,30 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             ExprKind::Call(solid, arguments) => self.solid(solid, arguments, cx),
-            _ => {
-                cx.error(e.place.clone(), "expected an inertia").help(
+            kind => {
+                let found = match kind {
+                    ExprKind::Tuple(_) => ", found a list",
+                    ExprKind::Number(_) => ", found a number",
+                    _ => "",
+                };
+                let error = cx.error(e.place.clone(), format!("expected an inertia{found}"));
+                match kind {
+                    ExprKind::Tuple(items) if items.len() == 3 => {
+                        let items: Vec<String> = items.iter().map(syntax::Expr::spelt).collect();
+                        error.help(format!("write `diagonal({})`", items.join(", ")));
+                    }
+                    ExprKind::Number(n) => {
+                        error.help(format!("write `diagonal({n}, {n}, {n})` for one moment about all axes"));
+                    }
+                    ExprKind::Binary(..) if e.parts().iter().any(|part| is_solid(part)) => {
+                        error.help("solids are added with `+`; twice a solid has twice the mass");
+                    }
+                    ExprKind::Binary(..) | ExprKind::Name(_) | ExprKind::Neg(_) => {
+                        error.help("write `diagonal(i, i, i)` for one moment `i` about all axes; in a plane only the one about its normal counts");
+                    }
+                    _ => {}
+                }
+                error.help(
                     "write a solid such as `rod(m, l, y)` or `sphere(m, r)`, `diagonal(xx, yy, zz)`, or a 3×3 matrix",
                 );
                 None
@@ -82,7 +104,16 @@ impl<'g> Scope<'_, 'g> {
         let text = solid.text.as_str();
         let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == text) else {
             let known = SOLIDS.iter().map(|(name, _)| *name);
-            cx.error(solid.place.clone(), format!("unknown solid `{text}`")).suggest(text, known);
+            let known: Vec<&str> = known.collect();
+            let error = cx.error(solid.place.clone(), format!("unknown solid `{text}`"));
+            words::point(error, words::SOLIDS, text, &known);
+            let meant = words::meant(words::SOLIDS, text, &known);
+            if let Some((solid, names)) = SOLIDS.iter().find(|(name, _)| Some(*name) == meant) {
+                error.help(format!("it is written `{solid}({})`", names.join(", ")));
+            }
+            if error.is_bare() {
+                error.help("the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`");
+            }
             return None;
         };
         if arguments.len() != names.len() {
@@ -122,7 +153,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> bool {
         for (name, argument) in names.iter().zip(arguments) {
-            let mut silent = Diagnostics::new();
+            let mut silent = Diagnostics::unread();
             let found = match (self.value(argument, &mut silent), *name == "axis") {
                 (Some(Value::Vector(_)), false) => "a vector",
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
@@ -141,7 +172,8 @@ impl<'g> Scope<'_, 'g> {
     fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
         match s.value() {
             Some(n) if n < 0.0 => {
-                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"));
+                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"))
+                    .help("masses, sizes and moments are zero or more");
                 false
             }
             _ => true,
@@ -199,6 +231,11 @@ impl<'g> Scope<'_, 'g> {
             + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
         axis.map_or(Sym3::zero(self.graph), |axis| axisymmetric(axial, transverse, axis))
     }
+}
+
+/// True for a solid with its arguments.
+fn is_solid(e: &syntax::Expr) -> bool {
+    matches!(&e.kind, ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, _)| *solid == word.text))
 }
 
 /// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.

@@ -7,7 +7,7 @@ use super::axis::sample;
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
-use crate::expr::{Expr, Vec3};
+use crate::expr::{Expr, Graph, Vec3};
 use crate::syntax::{self, Joint, JointKind};
 
 /// One motion of a joint.
@@ -153,6 +153,27 @@ impl<'g> Scope<'_, 'g> {
         // The given normal is exact, the product is rounded.
         let normal = about.first().copied().unwrap_or(normal);
         Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
+    }
+}
+
+/// Motions of a joint whose own have a mistake.
+pub fn somehow<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
+    use Elementary::{Slide, Turn};
+    let axis = |k: usize| {
+        let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
+        n.rotate_left(k);
+        Vec3::numbers(graph, n)
+    };
+    match joint.kind {
+        JointKind::Pin | JointKind::Screw => vec![Turn(axis(0))],
+        JointKind::Sleeve => vec![Slide(axis(0))],
+        JointKind::Collar | JointKind::Slot => vec![Slide(axis(0)), Turn(axis(1))],
+        JointKind::Universal => vec![Turn(axis(0)), Turn(axis(1))],
+        JointKind::Planar => vec![Slide(axis(0)), Slide(axis(1)), Turn(axis(2))],
+        JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(axis(k))).collect(),
+        JointKind::Ball => vec![Elementary::Ball],
+        JointKind::Free => vec![Elementary::Free],
+        JointKind::Weld => Vec::new(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Masses: those of bodies and particles go to the links that carry them.
 
 use super::build::Builder;
+use super::figures::Range;
 use super::inertia::check_inertia;
 use super::world::Placed;
 use super::{Inertia, LinkId, Pose};
@@ -42,7 +43,22 @@ impl<'g> Builder<'_, 'g> {
         if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
             && m < 0.0
         {
-            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"));
+            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
+                .help("a mass is zero or more, kg; gravity has the sign");
+        }
+        let range = Range::of(&self.description.scalar);
+        let mut sound = true;
+        if let (Some(e), Some(m)) = (&body.mass, mass) {
+            sound &= range.check_mass(m, &e.place, cx);
+        }
+        if let (Some(e), Some(com)) = (&body.com, com) {
+            sound &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
+        }
+        if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
+            sound = sound && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
+        }
+        if !sound {
+            return None;
         }
         if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
             && self.description.inertias == Inertias::Check
@@ -70,7 +86,8 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             return;
         }
-        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite());
+        let range = Range::of(&self.description.scalar);
+        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.most);
         for (k, body) in self.description.bodies.iter().enumerate() {
             let Some((Some(link), _)) = &self.places[k] else { continue };
             let i = &self.model.links[link.0].inertia;
@@ -78,7 +95,7 @@ impl<'g> Builder<'_, 'g> {
             if all.into_iter().any(infinite) {
                 let name = &body.name;
                 cx.error(name.place.clone(), format!("the figures of `{}` are too large", name.text))
-                    .help("mass times the square of the distance from the joint is not a finite number");
+                    .help("mass times the square of the distance from the joint leaves no room for products");
                 return;
             }
         }
@@ -87,11 +104,15 @@ impl<'g> Builder<'_, 'g> {
     fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
         let graph = self.scope.graph;
         let mass = self.scope.scalar(&particle.mass, cx);
+        if let Some(mass) = mass {
+            Range::of(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
+        }
         if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
             cx.error(
                 particle.mass.place.clone(),
                 format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
-            );
+            )
+            .help("a point without mass is a `Point`");
         }
         let placed = self.scope.world.borrow().places.get(&particle.name.text).cloned();
         if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {

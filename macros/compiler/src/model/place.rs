@@ -7,9 +7,9 @@ use super::kinematics::{joint, symbols_in};
 use super::tree::{GROUND, Order};
 use super::world::{Level, Placed, PlacedKind, View};
 use super::{Inertia, Link, LinkId, Motion, Pose, Quantity};
-use crate::diag::{Diagnostics, Place};
+use crate::diag::{Diagnostics, Place, all_of};
 use crate::expr::{Rotation, Vec3};
-use crate::syntax::{Expr, ExprKind, Name};
+use crate::syntax::{Expr, ExprKind, Name, words};
 
 /// Something to be placed: an index into its list.
 #[derive(Clone, Copy)]
@@ -30,8 +30,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
                 let (name, joint) = (&body.name, &d.joints[*j].name);
                 cx.error(name.place.clone(), format!("`{}` is placed twice", name.text))
+                    .note(format!("the joint `{}` places it as well", joint.text))
                     .help("a body is placed by a joint, or by `at` and `frame`");
-                cx.error(joint.place.clone(), format!("`{}` places it as well", joint.text));
             }
         }
         let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
@@ -52,6 +52,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             if rest.len() == before {
                 self.report_waiting(&rest, order, cx);
+                self.place_somehow(&rest, order);
                 return;
             }
             waiting = rest;
@@ -117,11 +118,54 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             return;
         }
+        // From one to what it waits for, until it comes round again.
+        let next = |at: usize| {
+            let needs = self.needs(rest[at], order);
+            (0..rest.len()).find(|k| needs.contains(&self.provides(rest[*k], order)))
+        };
+        let mut path: Vec<usize> = vec![0];
+        while let Some(k) = path.last().and_then(|at| next(*at)) {
+            if let Some(begin) = path.iter().position(|seen| *seen == k) {
+                path.drain(..begin);
+                break;
+            }
+            path.push(k);
+        }
+        path.sort_unstable();
+        let names: Vec<&Name> = path.iter().map(|k| self.item_name(rest[*k], order)).collect();
+        let Some((first, others)) = names.split_first() else { return };
+        let error = cx.error(first.place.clone(), format!("`{}` is placed by way of itself", first.text));
+        if !others.is_empty() {
+            let list: Vec<String> = others.iter().map(|name| format!("`{}`", name.text)).collect();
+            error.note(format!("it goes round by {}", all_of(&list)));
+        }
+        error
+            .help("its definition is circular: start from the ground or from a body that is held by a joint");
+    }
+
+    /// The name of the place that an item provides.
+    fn provides(&self, item: Item, order: &Order) -> String {
+        match item {
+            Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
+            _ => self.item_name(item, order).text.clone(),
+        }
+    }
+
+    /// Places what waits in vain, so that what depends on it is read as well.
+    fn place_somehow(&mut self, rest: &[Item], order: &Order) {
         for item in rest {
-            let name = self.item_name(*item, order);
-            cx.error(name.place.clone(), format!("`{}` is placed by way of itself", name.text)).help(
-                "its definition is circular: start from the ground or from a body that is held by a joint",
-            );
+            let name = self.provides(*item, order);
+            let (link, pose) = self.settle(None, self.somewhere(true));
+            let (kind, held) = match item {
+                Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
+                Item::Body(k) => (PlacedKind::Body, Some(*k)),
+                Item::Frame(_) => (PlacedKind::Frame, None),
+                Item::Point(_) | Item::Particle(_) => (PlacedKind::Point, None),
+            };
+            if let Some(k) = held {
+                self.places[k] = Some((link, pose.clone()));
+            }
+            self.remember(&name, link, pose, kind);
         }
     }
 
@@ -133,10 +177,9 @@ impl<'a, 'g> Builder<'a, 'g> {
                 self.place_joint(j, child, cx);
             }
             Item::Frame(k) => {
-                if let Some((link, pose)) = self.frame_place(k, cx) {
-                    let (link, pose) = self.settle(link, pose);
-                    self.remember(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
-                }
+                let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
             Item::Point(k) => {
                 let p = &d.points[k];
@@ -148,20 +191,18 @@ impl<'a, 'g> Builder<'a, 'g> {
                     Some(at) => self.offset(home, at, false, cx),
                     None => Some((home.link, home.pose)),
                 });
-                if let Some((link, pose)) = place {
-                    let (link, pose) = self.settle(link, pose);
-                    self.remember(&p.name.text, link, pose, PlacedKind::Point);
-                }
+                let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&p.name.text, link, pose, PlacedKind::Point);
             }
             Item::Body(k) => self.place_body(k, cx),
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
                 let free = !carries(d, &p.name.text);
-                if let Some((link, pose)) = self.spot(at, free, cx) {
-                    let (link, pose) = self.settle(link, pose);
-                    self.remember(&p.name.text, link, pose, PlacedKind::Point);
-                }
+                let (link, pose) = self.spot(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
     }
@@ -201,8 +242,15 @@ impl<'a, 'g> Builder<'a, 'g> {
                 None
             }
             None => {
+                if !self.scope.is_news(name, cx) {
+                    return None;
+                }
                 let known: Vec<&str> = world.places.keys().map(String::as_str).chain([GROUND]).collect();
-                cx.error(e.place.clone(), format!("unknown body or frame `{name}`")).suggest(name, known);
+                let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
+                words::point(error, words::BODIES, name, &known);
+                if error.is_bare() {
+                    error.help("a frame starts with the axes of a body or another frame: `#[frame(ground, z(angle))]`");
+                }
                 None
             }
         }
@@ -218,9 +266,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             Some(at) => self.spot(at, true, cx),
             None => axes.as_ref().map(|a| (a.link, a.pose.clone())),
         };
-        let (Some(axes), Some((link, mut pose))) = (axes, origin) else { return };
-        // The axes in those of the link that the origin is given in.
-        pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
+        let (link, pose) = match (axes, origin) {
+            (Some(axes), Some((link, mut pose))) => {
+                // The axes in those of the link that the origin is given in.
+                pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
+                (link, pose)
+            }
+            _ => (None, self.somewhere(true)),
+        };
         let (link, pose) = self.settle(link, pose);
         self.places[k] = Some((link, pose.clone()));
         self.remember(&body.name.text, link, pose, PlacedKind::Body);

@@ -1,15 +1,18 @@
 //! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
 
 use super::axis::check_rotation_matrix;
+use super::slips::{
+    DOMAIN, MATRIX, VECTOR, check_angle, degrees, is_rotation, report_matrix, report_rotation, wrong_count,
+};
 use super::tree::GROUND;
 use super::world::{Level, View, World};
 use super::{LinkId, Quantity, Rotation};
 use crate::diag::Diagnostics;
 use crate::expr::diff::TINY;
 use crate::expr::{Expr, Extreme, Function, Graph, Mat3, Vec3};
-use crate::syntax::{self, BinaryOp, ExprKind, Name};
+use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What names mean where an expression stands.
 pub struct Scope<'a, 'g> {
@@ -37,6 +40,14 @@ pub struct Scope<'a, 'g> {
     pub view: RefCell<View<'g>>,
     /// What is placed so far, and how it moves.
     pub world: RefCell<World<'g>>,
+    /// Names without a value that were told: each once, most likely a declaration is missing.
+    pub unknown: RefCell<BTreeSet<String>>,
+    /// Numbers are `f32`.
+    pub single: bool,
+    /// Definitions whose mistakes were told.
+    pub failed: RefCell<BTreeSet<String>>,
+    /// A constraint on configurations is being read.
+    pub constrains: std::cell::Cell<bool>,
     /// Definitions that were looked up for the one whose value is asked for: each once, however often the others name it.
     pub known: RefCell<Known<'g>>,
 }
@@ -78,8 +89,9 @@ impl Value<'_> {
 const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 /// Functions of the language beside the elementary ones.
-const FUNCTIONS: [&str; 18] = [
+const FUNCTIONS: [&str; 19] = [
     "atan2",
+    "degrees",
     "pow",
     "min",
     "max",
@@ -117,12 +129,18 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
     }
 
+    /// True where a name that is not known is met for the first time: later it is no news.
+    pub fn is_news(&self, name: &str, cx: &Diagnostics) -> bool {
+        !cx.is_read() || self.unknown.borrow_mut().insert(name.to_string())
+    }
+
     /// A scalar.
     pub fn scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         match self.value(e, cx)? {
             Value::Scalar(s) => Some(s),
             Value::Vector(_) => {
-                cx.error(e.place.clone(), "expected a scalar, found a vector");
+                cx.error(e.place.clone(), "expected a scalar, found a vector")
+                    .help("its length is `norm(v)`, its component along a direction `dot(v, x)`");
                 None
             }
         }
@@ -161,6 +179,10 @@ impl<'a, 'g> Scope<'a, 'g> {
     pub fn rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         let mut whole = Some(Rotation::identity(self.graph));
         for step in steps {
+            if !is_rotation(step) {
+                report_rotation(step, cx);
+                return None;
+            }
             let next = self.rotation_step(step, cx);
             whole = whole.zip(next).map(|(whole, next)| whole.then(&next));
         }
@@ -172,10 +194,12 @@ impl<'a, 'g> Scope<'a, 'g> {
             ExprKind::Call(axis, arguments) => {
                 let k = ["x", "y", "z"].iter().position(|a| *a == axis.text);
                 match (k, axis.text.as_str(), arguments.as_slice()) {
-                    (Some(k), _, [angle]) => return Some(Rotation::about_axis(k, self.scalar(angle, cx)?)),
+                    (Some(k), _, [angle]) => {
+                        return Some(Rotation::about_axis(k, self.plane_angle(angle, cx)?));
+                    }
                     (_, "eigenaxis", [n, angle]) => {
                         let n = self.unit_vector(n, false, cx);
-                        let angle = self.scalar(angle, cx);
+                        let angle = self.plane_angle(angle, cx);
                         return Some(Rotation::eigenaxis(n?, angle?));
                     }
                     (_, "quaternion", [x, y, z, w]) => {
@@ -183,7 +207,8 @@ impl<'a, 'g> Scope<'a, 'g> {
                         let q = [parts[0]?, parts[1]?, parts[2]?, parts[3]?];
                         let square = q.iter().fold(self.graph.zero(), |sum, c| sum + c.square());
                         if square.value().is_some_and(|n| (n - 1.0).abs() > 1e-9) {
-                            cx.error(step.place.clone(), "this quaternion is not of unit length");
+                            cx.error(step.place.clone(), "this quaternion is not of unit length")
+                                .help("its four numbers are x, y, z, w, and their squares add up to one");
                             return None;
                         }
                         return Some(Rotation::quaternion(q));
@@ -198,9 +223,13 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
             _ => {}
         }
-        cx.error(step.place.clone(), "expected a rotation")
-            .help("write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`");
+        report_rotation(step, cx);
         None
+    }
+
+    /// An angle, rad. A plain number beyond a full turn is most likely meant in degrees.
+    pub fn plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        if check_angle(e, cx) { self.scalar(e, cx) } else { None }
     }
 
     /// A 3×3 matrix written as an array of rows.
@@ -209,13 +238,14 @@ impl<'a, 'g> Scope<'a, 'g> {
         let rows = match &e.kind {
             ExprKind::Array(rows) if rows.len() == 3 => rows,
             _ => {
-                cx.error(
-                    e.place.clone(),
-                    "expected a 3×3 matrix `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`",
-                );
+                report_matrix(e, cx);
                 return None;
             }
         };
+        if rows.iter().all(|row| !matches!(row.kind, ExprKind::Array(_) | ExprKind::Tuple(_))) {
+            report_matrix(e, cx);
+            return None;
+        }
         for (i, row) in rows.iter().enumerate() {
             match &row.kind {
                 ExprKind::Array(entries) if entries.len() == 3 => {
@@ -224,7 +254,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                     }
                 }
                 _ => {
-                    cx.error(row.place.clone(), "expected a row of three numbers");
+                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX);
                     return None;
                 }
             }
@@ -241,7 +271,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             Value::Vector(terms) => terms.iter().any(|(_, v)| v.0.iter().any(infinite)),
         };
         if bad {
-            cx.error(e.place.clone(), "the value of this is not a finite number");
+            cx.error(e.place.clone(), "the value of this is not a finite number")
+                .help("the largest number is about 1e308: use smaller figures");
             return None;
         }
         Some(value)
@@ -249,7 +280,16 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     fn any_value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         match &e.kind {
-            ExprKind::Number(n) => Some(Value::Scalar(self.graph.num(*n))),
+            ExprKind::Number(n) => {
+                let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
+                if self.single && (small || n.abs() > f64::from(f32::MAX)) {
+                    let what = if small { "small" } else { "large" };
+                    cx.error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
+                        .help("use `f64`, or other units");
+                    return None;
+                }
+                Some(Value::Scalar(self.graph.num(*n)))
+            }
             ExprKind::Name(name) => self.name(name, e, cx),
             ExprKind::Field(inner, member) => self.member(inner, member, cx),
             ExprKind::Neg(inner) => Some(match self.value(inner, cx)? {
@@ -267,34 +307,42 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Some(self.own_axes(vector))
             }
             ExprKind::Method(_, method, _) => {
-                let diagnostic =
-                    cx.error(method.place.clone(), format!("`.{}(…)` has no value here", method.text));
-                if is_function(&method.text) {
-                    diagnostic.help(format!("write `{}(…)`", method.text));
-                } else if matches!(method.text.as_str(), "powi" | "powf") {
-                    diagnostic.help("write `pow(a, n)`");
-                }
+                self.report_method(e, method, cx);
                 None
             }
             ExprKind::Array(items) => {
-                cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()));
+                cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()))
+                    .help(VECTOR);
                 None
             }
-            ExprKind::Tuple(_) => {
-                cx.error(e.place.clone(), "expected a scalar or a vector, found a list")
-                    .help("a vector is written `[a, b, c]` or `a * x + b * y + c * z`");
+            ExprKind::Tuple(items) => {
+                let error = cx.error(e.place.clone(), "expected a scalar or a vector, found a list");
+                match items.as_slice() {
+                    [a, b, c] => error.help(format!(
+                        "write `[{}, {}, {}]` for a vector",
+                        a.spelt(),
+                        b.spelt(),
+                        c.spelt()
+                    )),
+                    _ => error.help(VECTOR),
+                };
                 None
             }
         }
     }
 
     fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
-            self.used.borrow_mut()[k] = true;
-            return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
+        // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
+        let taken = ["x", "y", "z"].contains(&name) && self.parameters.iter().any(|p| p.text == name);
+        if taken {
+            return None;
         }
         if let Some(k) = ["x", "y", "z"].iter().position(|a| *a == name) {
             return Some(self.own_axes(Vec3::axis(self.graph, k)));
+        }
+        if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
+            self.used.borrow_mut()[k] = true;
+            return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
         if let Some((_, value)) = CONSTANTS.iter().find(|(c, _)| *c == name) {
             return Some(Value::Scalar(self.graph.num(*value)));
@@ -318,8 +366,13 @@ impl<'a, 'g> Scope<'a, 'g> {
             if self.level() >= Level::Motion {
                 known.extend(self.inputs.iter().map(|i| i.text.as_str()));
             }
-            cx.error(e.place.clone(), format!("unknown name `{name}`"))
-                .suggest(name, known.into_iter().chain(["x", "y", "z", "pi"]));
+            if !self.is_news(name, cx) {
+                return None;
+            }
+            let rates: Vec<&str> = world.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
+            known.extend(["x", "y", "z", "pi"]);
+            let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
+            words::point_name(error, name, &known, &rates);
         }
         None
     }
@@ -332,9 +385,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
         let ExprKind::Name(body) = &inner.kind else {
             let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
-            if ["x", "y", "z"].contains(&member.text.as_str()) {
-                diagnostic.help(format!("a component of a vector is `dot(vector, {})`", member.text));
-            }
+            let axis = ["x", "y", "z"].into_iter().find(|axis| *axis == member.text).unwrap_or("x");
+            diagnostic.help(format!("a component of a vector is `dot(vector, {axis})`"));
             return None;
         };
         if body == "self" {
@@ -343,18 +395,43 @@ impl<'a, 'g> Scope<'a, 'g> {
             return None;
         }
         if body != GROUND && !self.bodies.contains(body) {
+            if self.report_joint_member(body, inner, member, cx) {
+                return None;
+            }
             if let Some(what) = self.what(body) {
                 cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
                     .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
                 return None;
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
-            cx.error(inner.place.clone(), format!("unknown body `{body}`")).suggest(body, known);
+            let known: Vec<&str> = known.collect();
+            if !self.is_news(body, cx) {
+                return None;
+            }
+            let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
+            if matches!(body.as_str(), "body" | "this" | "own" | "local" | "frame" | "me") {
+                error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
+                return None;
+            }
+            words::point(error, words::BODIES, body, &known);
             return None;
         }
         let Some(k) = ["x", "y", "z"].iter().position(|a| *a == member.text) else {
-            cx.error(member.place.clone(), format!("a body has no `{}`", member.text))
-                .help("its axes are `x`, `y` and `z`");
+            let help = match member.text.as_str() {
+                "position" | "pos" | "r" | "origin" | "p" => format!("its place is `r({body} / ground)`"),
+                "velocity" | "vel" | "v" | "speed" => {
+                    format!("its velocity is `v({body} / ground / ground)`")
+                }
+                "acceleration" | "acc" => format!("its acceleration is `a({body} / ground / ground)`"),
+                "omega" | "w" | "angular_velocity" | "rate" if body != GROUND => {
+                    format!("it turns by `omega({body} / ground)`")
+                }
+                "mass" | "m" | "inertia" | "com" | "length" | "radius" | "l" | "I" | "height" | "width" => {
+                    "its figures have no names here: name the parameter that it is".to_string()
+                }
+                _ => "its axes are `x`, `y` and `z`, and `body.at(vector)` is a place".to_string(),
+            };
+            cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
             return None;
         };
         self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
@@ -374,7 +451,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             (BinaryOp::Sub, Scalar(a), Scalar(b)) => Scalar(a - b),
             (BinaryOp::Mul, Scalar(a), Scalar(b)) => Scalar(a * b),
             (BinaryOp::Div, _, Scalar(b)) if b.is_zero() => {
-                cx.error(e.place.clone(), "division by zero");
+                cx.error(e.place.clone(), "division by zero")
+                    .help("the divisor is the number zero, or cancels to it");
                 return None;
             }
             (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
@@ -414,12 +492,17 @@ impl<'a, 'g> Scope<'a, 'g> {
             let [argument] = arguments else {
                 return wrong_count(function, 1, cx);
             };
+            let turns = matches!(f, Function::Sin | Function::Cos | Function::Tan);
+            if turns && !check_angle(argument, cx) {
+                return None;
+            }
             let s = self.scalar(argument, cx)?.call(*f);
             if let crate::expr::Node::Call(f, inner) = s.node()
                 && let Some(number) = self.graph.expr(inner).value()
             {
                 let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
-                cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()));
+                cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()))
+                    .help(DOMAIN);
                 return None;
             }
             return Some(Value::Scalar(s));
@@ -429,6 +512,10 @@ impl<'a, 'g> Scope<'a, 'g> {
             _ => wrong_count(function, 2, cx),
         };
         match text {
+            "degrees" => match arguments {
+                [angle] => self.scalar(angle, cx).map(|angle| Value::Scalar(degrees(angle))),
+                _ => wrong_count(function, 1, cx),
+            },
             "atan2" => two_scalars(cx).map(|(y, x)| Value::Scalar(y.atan2(x))),
             "pow" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.pow(b))),
             "min" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Min, b))),
@@ -449,12 +536,24 @@ impl<'a, 'g> Scope<'a, 'g> {
                 let [a] = arguments else {
                     return wrong_count(function, 1, cx);
                 };
+                if let Some(Value::Scalar(s)) = self.value(a, &mut Diagnostics::unread())
+                    && !s.is_zero()
+                {
+                    let help = if text == "norm" {
+                        "the size of a scalar is `abs(a)`"
+                    } else {
+                        "a scalar has no direction"
+                    };
+                    cx.error(a.place.clone(), "expected a vector, found a scalar").help(help);
+                    return None;
+                }
                 let (axes, v) = self.common_axes(&[a], cx)?;
                 if text == "norm" {
                     return Some(Value::Scalar(v[0].length()));
                 }
                 if v[0].is_zero() {
-                    cx.error(a.place.clone(), "the zero vector has no direction");
+                    cx.error(a.place.clone(), "the zero vector has no direction")
+                        .help("a direction is a vector of some length");
                     return None;
                 }
                 Some(Value::Vector(vec![(axes, unit(v[0]))]))
@@ -464,8 +563,17 @@ impl<'a, 'g> Scope<'a, 'g> {
             "reaction_force" | "reaction_torque" => self.reaction(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
             _ => {
-                let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS);
-                cx.error(function.place.clone(), format!("unknown function `{text}`")).suggest(text, known);
+                let known: Vec<&str> = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).collect();
+                let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
+                let greek = words::spelt_otherwise(text, &known);
+                match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
+                    (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
+                    (_, true) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
+                    _ => words::point(error, words::FUNCTIONS, text, &known),
+                }
+                if error.is_bare() {
+                    error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
+                }
                 None
             }
         }
@@ -473,7 +581,7 @@ impl<'a, 'g> Scope<'a, 'g> {
 }
 
 /// True for a function of the language that has a value.
-fn is_function(name: &str) -> bool {
+pub fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name) || Function::ALL.iter().any(|(known, _)| *known == name)
 }
 
@@ -485,12 +593,6 @@ fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes,
         }
     }
     a
-}
-
-fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option<T> {
-    let plural = if count == 1 { "" } else { "s" };
-    cx.error(function.place.clone(), format!("`{}` takes {count} argument{plural}", function.text));
-    None
 }
 
 /// A vector divided by its length. The zero vector has no direction; the result is zero then, not NaN.

@@ -3,6 +3,7 @@
 
 use super::build::Builder;
 use super::kinematics::symbols_in;
+use super::resolve::Value;
 use super::world::{Level, Placed, View};
 use super::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity};
 use crate::diag::{Diagnostics, Place};
@@ -263,9 +264,7 @@ impl<'g> Builder<'_, 'g> {
             let view = View::new(Level::Reaction, ground());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
-            if cx.is_empty() {
-                let _ = self.scope.with_view(view, |scope| scope.value(&e, cx));
-            }
+            let _ = self.scope.with_view(view, |scope| scope.value(&e, cx));
         }
     }
 
@@ -273,7 +272,14 @@ impl<'g> Builder<'_, 'g> {
         let home = Some((None, Pose::identity(self.scope.graph)));
         let view = View::new(Level::Reaction, home);
         if !output.vector {
-            return self.scope.with_view(view, |scope| scope.scalar(&output.value, cx)).map(|s| vec![s]);
+            return match self.scope.with_view(view, |scope| scope.value(&output.value, cx))? {
+                Value::Scalar(s) => Some(vec![s]),
+                Value::Vector(_) => {
+                    cx.error(output.value.place.clone(), "expected a scalar, found a vector")
+                        .help("declare it as a `Vector`, or take a component, `dot(v, x)`");
+                    None
+                }
+            };
         }
         let terms = self.scope.with_view(view, |scope| scope.terms(&output.value, cx));
         let axes = match &output.resolved_in {

@@ -3,7 +3,7 @@
 use super::resolve::Scope;
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::GROUND;
-use crate::syntax::{Description, Expr, ExprKind, Name};
+use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
 /// Index into bodies and jointed particles together.
@@ -110,7 +110,8 @@ pub fn find_tree(
             if held.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
-            cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text));
+            cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text))
+                .help("a joint is between two bodies, or the ground and a body");
             continue;
         }
         match child {
@@ -196,5 +197,15 @@ fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut 
         return;
     }
     let known: Vec<&str> = held.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
-    cx.error(place, format!("unknown body `{}`", name.text)).suggest(&name.text, known);
+    if !scope.is_news(&name.text, cx) {
+        return;
+    }
+    let error = cx.error(place, format!("unknown body `{}`", name.text));
+    match crate::diag::nearest(&name.text, &known) {
+        Some(_) => drop(error.suggest(&name.text, known)),
+        None => words::point(error, words::BODIES, &name.text, &known),
+    }
+    if error.is_bare() {
+        error.help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));
+    }
 }

@@ -7,7 +7,7 @@ use super::tree::GROUND;
 use super::{Coordinate, LinkId, Pose, Quantity};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::syntax::{self, BinaryOp, ExprKind, Name};
+use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
 /// What an expression may depend on.
@@ -234,6 +234,9 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
+        if cx.is_read() && self.failed.borrow().contains(name) {
+            return None;
+        }
         let outermost = self.view.borrow().defining.is_empty();
         let key = {
             let view = self.view.borrow();
@@ -244,7 +247,11 @@ impl<'g> Scope<'_, 'g> {
         } else if let Some(known) = self.known.borrow().get(&key) {
             return known.clone();
         }
+        let before = cx.len();
         let value = self.define(d, e, cx);
+        if value.is_none() && cx.is_read() && cx.len() > before {
+            self.failed.borrow_mut().insert(name.clone());
+        }
         self.known.borrow_mut().insert(key, value.clone());
         value
     }
@@ -252,11 +259,13 @@ impl<'g> Scope<'_, 'g> {
     fn define(&self, d: &syntax::Definition, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = &d.name.text;
         if self.view.borrow().defining.contains(name) {
-            cx.error(d.name.place.clone(), format!("`{name}` is defined by itself"));
+            cx.error(d.name.place.clone(), format!("`{name}` is defined by itself"))
+                .help("a definition stands for an expression of others");
             return None;
         }
         if self.view.borrow().defining.len() > 64 {
-            cx.error(d.name.place.clone(), "definitions are nested too deeply");
+            cx.error(d.name.place.clone(), "definitions are nested too deeply")
+                .help("write some of them out");
             return None;
         }
         // Directions without a name are the ground's, wherever the definition is used.
@@ -269,7 +278,9 @@ impl<'g> Scope<'_, 'g> {
             (Value::Scalar(_), false) | (Value::Vector(_), true) => Some(value),
             (_, vector) => {
                 let (is, said) = if vector { ("a scalar", "Vector") } else { ("a vector", "Scalar") };
-                cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {said}"));
+                let other = if vector { "Scalar" } else { "Vector" };
+                cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {said}"))
+                    .help(format!("declare it as a `{other}`"));
                 None
             }
         }
@@ -298,6 +309,12 @@ impl<'g> Scope<'_, 'g> {
                 .help("reactions stand in outputs: `#[output(reaction_force(joint))]`");
             return false;
         }
+        let motion = matches!(needed, Level::Motion | Level::Acceleration);
+        if self.level() == Level::Placement && motion && self.constrains.get() {
+            cx.error(place.clone(), format!("{what} cannot stand here"))
+                .help("a constraint on velocities is a `Nonholonomic`");
+            return false;
+        }
         let only = match self.level() {
             Level::Constant => "only numbers and parameters",
             Level::Placement => "only numbers, parameters, coordinates and time",
@@ -315,7 +332,9 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let [argument] = arguments else {
-            cx.error(function.place.clone(), "`rate` takes one coordinate");
+            let first = arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
+            cx.error(function.place.clone(), "`rate` takes one coordinate")
+                .help(format!("write `rate({first})`"));
             return None;
         };
         let name = match &argument.kind {
@@ -329,7 +348,17 @@ impl<'g> Scope<'_, 'g> {
         let world = self.world.borrow();
         let Some((_, c, _)) = world.coordinates.iter().find(|(n, ..)| *n == name) else {
             let known = world.coordinates.iter().map(|(n, ..)| n.as_str());
-            cx.error(argument.place.clone(), "`rate` takes a coordinate").suggest(&name, known);
+            let known: Vec<&str> = known.collect();
+            let error = cx.error(argument.place.clone(), "`rate` takes a coordinate");
+            match &argument.kind {
+                ExprKind::Call(inner, _) if matches!(inner.text.as_str(), "rate" | "r" | "v") => {
+                    error.help("velocities and accelerations of points are `v(point / point / frame)` and `a(point / point / frame)`");
+                }
+                _ => drop(error.suggest(&name, known)),
+            }
+            if error.is_bare() {
+                error.help("a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a `Coordinate`");
+            }
             return None;
         };
         if !self.allowed(Level::Motion, &format!("the rate of `{name}`"), &function.place, cx) {
@@ -350,7 +379,8 @@ impl<'g> Scope<'_, 'g> {
             cx.error(
                 function.place.clone(),
                 "`angle` takes two vectors, and a third about which it is directed",
-            );
+            )
+            .help("write `angle(a, b)` or `angle(a, b, normal)`");
             return None;
         }
         let (_, v) = self.common_axes(&all, cx)?;
@@ -401,9 +431,16 @@ impl<'g> Scope<'_, 'g> {
                 .help("name a body, a particle or a point");
             return;
         }
+        if !self.is_news(name, cx) {
+            return;
+        }
         let world = self.world.borrow();
         let known: Vec<&str> = world.places.keys().map(String::as_str).chain([GROUND]).collect();
-        cx.error(place.clone(), format!("unknown point `{name}`")).suggest(name, known);
+        let error = cx.error(place.clone(), format!("unknown point `{name}`"));
+        words::point(error, words::BODIES, name, &known);
+        if error.is_bare() {
+            error.help("name a body, a particle or a point, or write `body.at(length * x)`");
+        }
     }
 
     /// Something with axes: a body or a frame.
@@ -423,9 +460,16 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             None => {
+                if !self.is_news(name, cx) {
+                    return None;
+                }
                 let world = self.world.borrow();
                 let known: Vec<&str> = world.places.keys().map(String::as_str).chain([GROUND]).collect();
-                cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
+                let error = cx.error(e.place.clone(), format!("unknown frame `{name}`"));
+                words::point(error, words::BODIES, name, &known);
+                if error.is_bare() {
+                    error.help("name a body or a frame");
+                }
                 None
             }
         }

@@ -72,13 +72,57 @@ pub fn article(word: &str) -> &'static str {
     if word.starts_with(['A', 'I']) { "an" } else { "a" }
 }
 
+/// Reports ends that are written as those of a joint or without their keys. True if there are any.
+fn unnamed_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> bool {
+    let spans = keys.contains(&"between");
+    let between = |a: &Expr, b: &Expr| match spans {
+        true => format!("write `between = ({}, {})`", a.spelt(), b.spelt()),
+        false => "say what it acts on: `on = …`".to_string(),
+    };
+    if let Some((a, b)) = arguments.take_arrow() {
+        cx.error(a.place.to(&b.place), format!("{} {kind} is no joint", article(kind))).help(between(&a, &b));
+        return true;
+    }
+    if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
+        return false;
+    }
+    if let Some((place, a, b)) = arguments.take_ends() {
+        cx.error(place, format!("{} {kind} has no such ends", article(kind))).help(between(&a, &b));
+        return true;
+    }
+    let plain = arguments.plain();
+    let (Some(first), Some(last)) = (plain.first(), plain.last()) else { return false };
+    let help = match plain {
+        [one] if keys.contains(&"on") => format!("write `on = {}`", one.spelt()),
+        [a, b, ..] => between(a, b),
+        _ => "write `between = (first, second)`".to_string(),
+    };
+    cx.error(first.place.to(&last.place), "expected `name = value`").help(help);
+    arguments.take_plain();
+    true
+}
+
 /// `on = …`, or `between = (…, …)` where the element can span two points.
 fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<Target> {
+    if unnamed_target(kind, arguments, keys, cx) {
+        return None;
+    }
     let Some(place) = arguments.place_of("between") else {
         if !keys.contains(&"on") {
             return arguments.need_expr("between", "(first, second)", "acts", keys, cx).and(None);
         }
-        return arguments.need_expr("on", "joint", "acts", keys, cx).map(Target::On);
+        let on = arguments.need_expr("on", "joint", "acts", keys, cx)?;
+        let (ExprKind::Tuple(ends) | ExprKind::Array(ends)) = &on.kind else {
+            return Some(Target::On(on));
+        };
+        let help = match ends.as_slice() {
+            [a, b] if keys.contains(&"between") => {
+                format!("write `between = ({}, {})`", a.spelt(), b.spelt())
+            }
+            _ => "declare a field for each thing that it acts on".to_string(),
+        };
+        cx.error(on.place, "`on` names one thing, found a list").help(help);
+        return None;
     };
     if !keys.contains(&"between") {
         cx.error(place, format!("{} {kind} does not act between two points", article(kind)))
@@ -87,7 +131,8 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
         return None;
     }
     if let Some(on) = arguments.place_of("on") {
-        cx.error(on, "an element has one of `on` and `between`");
+        cx.error(on, "an element has one of `on` and `between`")
+            .help("`on` names a joint, `between` two points");
         arguments.forget("on");
     }
     match arguments.take_expr("between", cx)? {
@@ -96,7 +141,16 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
             Some(Target::Between(ends.pop()?, second))
         }
         other => {
-            cx.error(other.place, "`between` names two points").help("write `between = (first, second)`");
+            let help = match &other.kind {
+                ExprKind::Array(ends) if ends.len() == 2 => {
+                    format!("write `between = ({}, {})`", ends[0].spelt(), ends[1].spelt())
+                }
+                ExprKind::Name(name) if keys.contains(&"on") => {
+                    format!("write `on = {name}`, or `between = (first, second)`")
+                }
+                _ => "write `between = (first, second)`".to_string(),
+            };
+            cx.error(other.place, "`between` names two points").help(help);
             None
         }
     }

@@ -1,11 +1,16 @@
 //! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
 
 use super::expression::{parse_expr, parse_name};
-use super::{Expr, ExprKind, Name};
-use crate::diag::{Diagnostics, Place};
+use super::{BinaryOp, Expr, ExprKind, Name, words};
+use crate::diag::{Diagnostics, Place, nearest, syn_error};
+
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
+
+mod slips;
+
+use slips::{no_arrow, no_comma, text_alone, unnamed};
 
 /// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions, and
 /// `key = value` in any order.
@@ -16,7 +21,29 @@ pub struct Arguments {
     named: Vec<(Name, Value)>,
     seen: Vec<Name>,
     place: Place,
+    /// The element that they belong to.
+    owner: String,
+    /// Two bodies are joined by an arrow here.
+    joins: bool,
 }
+
+/// Names for the two ends of a thing in other tools.
+const ENDS: [(&str, &str); 14] = [
+    ("parent", "child"),
+    ("from", "to"),
+    ("base", "follower"),
+    ("predecessor", "successor"),
+    ("inboard", "outboard"),
+    ("frame_a", "frame_b"),
+    ("body_a", "body_b"),
+    ("body1", "body2"),
+    ("link1", "link2"),
+    ("point1", "point2"),
+    ("first", "second"),
+    ("start", "end"),
+    ("a", "b"),
+    ("parent_link", "child_link"),
+];
 
 enum Value {
     Expr(Expr),
@@ -28,11 +55,13 @@ impl Arguments {
     /// The arguments of `#[word(…)]`.
     pub fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
+        let joins = attribute.path().is_ident("joint");
         match &attribute.meta {
-            Meta::List(list) => Arguments::parse(list.tokens.clone(), span, cx),
-            Meta::Path(_) => Arguments::parse(TokenStream::new(), span, cx),
+            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, joins, cx),
+            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, joins, cx),
             Meta::NameValue(_) => {
-                cx.error(span, "expected arguments in parentheses");
+                let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
+                cx.error(span, "expected arguments in parentheses").help(format!("write `#[{word}(…)]`"));
                 None
             }
         }
@@ -40,12 +69,17 @@ impl Arguments {
 
     /// Parses the tokens between the parentheses.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
-        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span)).parse2(tokens);
+        Arguments::parse_with(tokens, span, false, cx)
+    }
+
+    fn parse_with(tokens: TokenStream, span: Span, joins: bool, cx: &mut Diagnostics) -> Option<Arguments> {
+        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, joins)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
             // The end of the input has no place of its own.
             Err(error) if error.to_string().starts_with("unexpected end") => {
-                cx.error(span, "unexpected end of the arguments");
+                cx.error(span, "unexpected end of the arguments")
+                    .help("something is missing behind the last word");
                 return None;
             }
             Err(error) => {
@@ -56,7 +90,7 @@ impl Arguments {
         let mut first: Vec<(Name, Value)> = Vec::new();
         for (key, value) in std::mem::take(&mut arguments.named) {
             if first.iter().any(|(other, _)| other.text == key.text) {
-                cx.error(key.place, format!("`{}` is given twice", key.text));
+                cx.error(key.place, format!("`{}` is given twice", key.text)).help("remove one of the two");
             } else {
                 first.push((key, value));
             }
@@ -92,6 +126,16 @@ impl Arguments {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
+    /// The expressions without a key, which stay.
+    pub fn plain(&self) -> &[Expr] {
+        &self.plain
+    }
+
+    /// True if nothing is left.
+    pub fn is_empty(&self) -> bool {
+        self.named.is_empty() && self.plain.is_empty() && self.equation.is_none() && self.relation.is_none()
+    }
+
     /// The expressions without a key.
     pub fn take_plain(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
@@ -102,6 +146,22 @@ impl Arguments {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let at = self.plain.iter().position(is_word)?;
         Some(self.plain.remove(at).place)
+    }
+
+    /// Reports a value or parentheses behind a word that stands alone; the word counts as given. True if there are any.
+    pub fn check_word(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
+        let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
+        let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
+        let named = self.take(word);
+        let Some(place) = call.or(named.as_ref().map(|(name, _)| name.place.clone())) else { return false };
+        let off = match &named {
+            Some((_, Value::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
+            _ => false,
+        };
+        let help = if off { "leave it out".to_string() } else { format!("write `{word}` alone") };
+        cx.error(place.clone(), format!("`{word}` is a word without a value")).help(help);
+        self.plain.push(Expr { kind: ExprKind::Name(word.to_string()), place });
+        true
     }
 
     /// The expression of a key, if given.
@@ -130,10 +190,19 @@ impl Arguments {
         known: &[&str],
         cx: &mut Diagnostics,
     ) -> Option<Expr> {
-        // A key that is not known is reported as such: most likely it is the missing one.
+        // A key that is not known is reported as such: most likely it is the missing one. So is a value without a key.
         if self.place_of(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
+            if let [value] = self.plain.as_slice()
+                && attribute != "constraint"
+                && !value.name().is_some_and(|word| known.contains(&word))
+            {
+                cx.error(value.place.clone(), "expected `name = value`")
+                    .help(format!("write `{key} = {}`", value.spelt()));
+                self.plain.clear();
+                return None;
+            }
             cx.error(self.place.clone(), format!("missing `{key}`"))
                 .help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
         }
@@ -150,20 +219,30 @@ impl Arguments {
     }
 
     /// The word of a key, one of a few.
-    pub fn take_word(&mut self, key: &str, words: &[&str], cx: &mut Diagnostics) -> Option<(String, Place)> {
+    pub fn take_word(
+        &mut self,
+        key: &str,
+        choices: &[&str],
+        cx: &mut Diagnostics,
+    ) -> Option<(String, Place)> {
         let (name, value) = self.take(key)?;
         match value {
-            Value::Expr(Expr { kind: ExprKind::Name(word), place }) if words.contains(&word.as_str()) => {
+            Value::Expr(Expr { kind: ExprKind::Name(word), place }) if choices.contains(&word.as_str()) => {
                 Some((word, place))
             }
             Value::Expr(Expr { kind: ExprKind::Name(word), place }) => {
-                cx.error(place, format!("unknown choice `{word}` for `{key}`"))
-                    .suggest(&word, words.iter().copied());
+                let said = if key == "formulation" { words::FORMULATIONS } else { &[] };
+                words::point(
+                    cx.error(place, format!("unknown choice `{word}` for `{key}`")),
+                    said,
+                    &word,
+                    choices,
+                );
                 None
             }
             _ => {
                 cx.error(name.place, format!("expected a word for `{key}`"))
-                    .suggest("", words.iter().copied());
+                    .suggest("", choices.iter().copied());
                 None
             }
         }
@@ -199,13 +278,67 @@ impl Arguments {
     }
 
     /// The relation `parent -> child`.
-    pub fn take_relation(&mut self, cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
+    pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
         if self.relation.is_none() {
-            let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
+            let (place, ends) = self.seeming_ends(known);
             self.plain.clear();
-            cx.error(place, "a joint says which bodies it joins")
-                .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move");
+            let diagnostic = cx.error(place, "a joint says which bodies it joins");
+            match ends {
+                Some([parent, child]) => diagnostic.help(format!("write `{parent} -> {child}`")),
+                None => diagnostic
+                    .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move"),
+            };
         }
+        self.relation.take()
+    }
+
+    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away if it has keys.
+    fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
+        let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
+        if let Some((place, a, b)) = self.take_ends() {
+            return (place, spelt(&a, &b));
+        }
+        let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
+        match self.plain.as_slice() {
+            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, spelt(a, b)),
+            [a] => return (place, Some(["parent".to_string(), a.spelt()])),
+            [a, b, ..] => return (place, spelt(a, b)),
+            [] => {}
+        }
+        let stranger = |(name, value): &(Name, Value)| {
+            !known.contains(&name.text.as_str()) && matches!(value, Value::Expr(_))
+        };
+        let Some(at) = self.named.iter().position(stranger) else { return (place, None) };
+        let (name, value) = self.named.remove(at);
+        let Value::Expr(value) = value else { return (name.place, None) };
+        let ends = match (&value.kind, name.text.as_str()) {
+            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => spelt(&two[0], &two[1]),
+            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.spelt(), "child".to_string()]),
+            (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
+                Some(["parent".to_string(), value.spelt()])
+            }
+            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.spelt()]),
+            _ => None,
+        };
+        (name.place, ends)
+    }
+
+    /// Two ends with names of their own, such as `from = a, to = b`.
+    pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
+        let given = |key: &str| {
+            self.named.iter().any(|(name, value)| name.text == key && matches!(value, Value::Expr(_)))
+        };
+        let (a, b) = ENDS.into_iter().find(|(a, b)| given(a) && given(b))?;
+        let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
+        let mut end = |key: &str| match self.take(key) {
+            Some((_, Value::Expr(e))) => Some(e),
+            _ => None,
+        };
+        Some((place, end(a)?, end(b)?))
+    }
+
+    /// The relation `a -> b` of what is no joint.
+    pub fn take_arrow(&mut self) -> Option<(Expr, Expr)> {
         self.relation.take()
     }
 
@@ -225,21 +358,51 @@ impl Arguments {
         first.map(|e| (e, None))
     }
 
-    /// Reports what was not taken; `whose` is the element with its article.
+    /// Says which element they belong to.
+    pub fn owned_by(mut self, name: &Name) -> Arguments {
+        self.owner.clone_from(&name.text);
+        self
+    }
+
+    /// Reports what was not taken; `whose` is the element with its article. Arguments with one answer are one mistake.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
-        for (name, _) in self.named.drain(..) {
-            let error = cx.error(name.place, format!("{whose} has no argument `{}`", name.text));
-            match elsewhere(whose, &name.text) {
-                Some(help) => error.help(help),
-                None => error.suggest(&name.text, known.iter().copied()),
+        let (owner, example) = (&self.owner, words::example(whose));
+        let mut answers: Vec<String> = Vec::new();
+        for (name, value) in self.named.drain(..) {
+            let word = name.text.as_str();
+            let near = nearest(word, known).is_some();
+            let help = match elsewhere(whose, word) {
+                Some(help) => Some(help.to_string()),
+                None => words::argument_help(whose, owner, word, known),
             };
+            let help = help.or((!near && known.len() < 2).then(|| format!("write `{example}`")));
+            if let Some(help) = &help {
+                if answers.contains(help) {
+                    continue;
+                }
+                answers.push(help.clone());
+            }
+            let error = cx.error(name.place, format!("{whose} has no argument `{word}`"));
+            match help {
+                Some(help) => error.help(help),
+                None => error.suggest(word, known.iter().copied()),
+            };
+            if whose == "`#[mechanism]`" && error.is_bare() {
+                error.help(match value {
+                    Value::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
+                    _ => "the documentation of `mechanism` lists its arguments",
+                });
+            }
         }
-        for e in self.plain.drain(..) {
-            cx.error(e.place, "expected `name = value`").suggest("", known.iter().copied());
+        if let Some(e) = self.plain.drain(..).next() {
+            unnamed(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equation.take() {
-            cx.error(left.place.to(&right.place), "expected `name = value`")
-                .suggest("", known.iter().copied());
+            let error = cx.error(left.place.to(&right.place), "expected `name = value`");
+            match left.name().filter(|name| known.contains(name)) {
+                Some(name) => error.help(format!("write `{name} = {}`", right.spelt())),
+                None => error.suggest("", known.iter().copied()),
+            };
         }
         if let Some((parent, child)) = self.relation.take() {
             cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
@@ -251,7 +414,7 @@ impl Arguments {
 /// What to do where an argument is not known that says something all the same.
 fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
     match (whose, name) {
-        (_, "rotation" | "axes") => Some(
+        ("a Body", "rotation" | "axes" | "rpy" | "orientation") => Some(
             "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",
         ),
         ("a Rolling constraint", "friction" | "speed") => {
@@ -261,7 +424,7 @@ fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments> {
+fn parse_arguments(input: ParseStream<'_>, span: Span, joins: bool) -> syn::Result<Arguments> {
     let mut arguments = Arguments {
         relation: None,
         equation: None,
@@ -269,12 +432,14 @@ fn parse_arguments(input: ParseStream<'_>, span: Span) -> syn::Result<Arguments>
         named: Vec::new(),
         seen: Vec::new(),
         place: span.into(),
+        owner: String::new(),
+        joins,
     };
     while !input.is_empty() {
         parse_argument(input, &mut arguments)?;
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(super::expression::unexpected(input));
+                return Err(no_comma(input));
             }
             input.parse::<Token![,]>()?;
         }
@@ -292,32 +457,41 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         let key = parse_name(input)?;
         input.parse::<Token![=]>()?;
         if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn::Error::new(key.place.span, format!("`{}` has no value", key.text)));
+            let message = format!("`{}` has no value", key.text);
+            return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
         }
         let value = parse_value(input)?;
         arguments.named.push((key, value));
         return Ok(());
     }
+    if input.peek(LitStr) {
+        return Err(text_alone(&input.parse()?));
+    }
     let first = parse_expr(input)?;
+    if let Some(error) = no_arrow(input, &first, arguments) {
+        return Err(error);
+    }
     if input.peek(Token![->]) {
         let arrow: Token![->] = input.parse()?;
         if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn::Error::new(arrow.spans[1], "nothing stands behind this arrow"));
+            let help = format!("write `{} -> child`", first.spelt());
+            return Err(syn_error(arrow.spans[1], "nothing stands behind this arrow", &help));
         }
         let second = parse_expr(input)?;
         if arguments.relation.is_some() {
-            return Err(syn::Error::new(arrow.spans[0], "a second `parent -> child`"));
+            let help = "a joint has two ends; write a joint for each `parent -> child`";
+            return Err(syn_error(arrow.spans[0], "a second `parent -> child`", help));
         }
         arguments.relation = Some((first, second));
     } else if (input.peek(Token![=]) && !input.peek(Token![=>])) || input.peek(Token![==]) {
         let sign = input.span();
         let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
         if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn::Error::new(sign, "nothing stands behind this sign"));
+            return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
         }
         let second = parse_expr(input)?;
         if arguments.equation.is_some() {
-            return Err(syn::Error::new(sign, "a second equation"));
+            return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
         }
         arguments.equation = Some((first, second));
     } else {

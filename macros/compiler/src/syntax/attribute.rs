@@ -6,7 +6,7 @@ use super::expression::name;
 use super::skipped::Skipped;
 use super::{
     Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, guard, home,
-    skipped,
+    skipped, words,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
@@ -99,7 +99,7 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-const REQUESTS: [&str; 7] =
+pub(super) const REQUESTS: [&str; 7] =
     ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
 
 /// Most that `snap` may change a frame by, rad and m.
@@ -146,10 +146,14 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         home,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
+    // A type that is not known is told once.
+    let mut strangers: Vec<Ident> = Vec::new();
     for field in item.fields {
-        if type_name(&field.ty).is_some_and(|kind| refused.contains(&kind)) {
+        let kind = type_name(&field.ty);
+        if kind.as_ref().is_some_and(|kind| refused.contains(kind) || strangers.contains(kind)) {
             continue;
         }
+        strangers.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
     }
     let mut requests = Requests::default();
@@ -162,9 +166,12 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     {
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
-        cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
-            "remove the type parameter, or give it to a parameter: then all generated functions use it",
-        );
+        // It is most likely meant by a type that is not known.
+        if strangers.is_empty() {
+            cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
+                "remove the type parameter, or give it to a parameter: then all generated functions use it",
+            );
+        }
     }
     check_duplicates(&description, cx);
     Some(Mechanism { description, shell, urdf, requests })
@@ -270,7 +277,7 @@ fn read_field(
     let Some(ident) = field.ident.clone() else { return };
     let field_name = name(&ident);
     if ident == "_" {
-        cx.error(ident.span(), "a field of a mechanism needs a name");
+        cx.error(ident.span(), "a field of a mechanism needs a name").help("write a name, such as `_unused`");
         return;
     }
     let Some(kind) = type_name(&field.ty) else {
@@ -296,6 +303,12 @@ fn read_field(
         shell.parameters.push(field);
     }
     description.parameters.push(field_name);
+}
+
+/// True for the types of parameters and elements.
+fn is_known(kind: &Ident, generic: Option<&str>) -> bool {
+    let kind = kind.to_string();
+    matches!(kind.as_str(), "f64" | "f32") || Some(kind.as_str()) == generic || element::is_element(&kind)
 }
 
 fn unify_scalar(
@@ -385,8 +398,9 @@ fn read_options(
     cx: &mut Diagnostics,
 ) -> Option<UrdfOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
+    let mistaken: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_word(word, cx)).collect();
     let asked = words_given(&mut arguments);
-    *requests = read_requests(&asked, &mut arguments, description, cx);
+    *requests = read_requests(&asked, &mistaken, &mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
@@ -399,8 +413,13 @@ fn read_options(
     if path.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
-                cx.error(place, format!("`{option}` is an option of a file"))
-                    .help("add `urdf = \"path/to/robot.urdf\"`, or remove the option");
+                let error = cx.error(place, format!("`{option}` is an option of a file"));
+                if option == "base" {
+                    error.help(
+                        "what moves freely has a field of its own: `#[joint(ground -> body)] pose: Free`",
+                    );
+                }
+                error.help("add `urdf = \"path/to/robot.urdf\"`, or remove the option");
                 arguments.forget(option);
             }
         }
@@ -491,6 +510,7 @@ fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
 /// What the words among the arguments ask for.
 fn read_requests(
     asked: &[(&str, Place)],
+    mistaken: &[&str],
     arguments: &mut Arguments,
     description: &Description,
     cx: &mut Diagnostics,
@@ -508,7 +528,8 @@ fn read_requests(
         skipped: Skipped::default(),
     };
     for (word, place) in asked {
-        if description.parameters.is_empty() && ["sensitivities", "prepare"].contains(word) {
+        let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
+        if description.parameters.is_empty() && without {
             cx.error(
                 place.clone(),
                 format!("`{word}` has no meaning here: this mechanism has no parameters"),
@@ -518,16 +539,21 @@ fn read_requests(
     }
     for e in arguments.take_plain() {
         match e.name() {
-            None => cx.error(e.place.clone(), "expected `name = value`"),
+            None => cx.error(e.place.clone(), "expected `name = value`").help("write `gravity = -9.81 * y`"),
             Some(word) if REQUESTS.contains(&word) => {
-                cx.error(e.place.clone(), format!("`{word}` stands here twice"))
+                cx.error(e.place.clone(), format!("`{word}` stands here twice")).help("remove one of the two")
             }
-            Some(word) if OPTIONS.contains(&word) => cx
-                .error(e.place.clone(), format!("`{word}` says nothing"))
-                .help(format!("write `{word} = …`")),
+            Some(word) if OPTIONS.contains(&word) => {
+                let value = if word == "gravity" { "-9.81 * y" } else { "…" };
+                cx.error(e.place.clone(), format!("`{word}` says nothing"))
+                    .help(format!("write `{word} = {value}`"))
+            }
             Some(word) => {
                 let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
                 let error = cx.error(e.place.clone(), format!("unknown word `{word}`"));
+                if words::explain(error, words::REQUESTS, word, &[]) {
+                    continue;
+                }
                 if nearest(word, &REQUESTS).is_some() {
                     error.suggest(word, REQUESTS);
                 }
@@ -561,8 +587,9 @@ pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) {
     for pair in sorted.windows(2) {
         let (first, second) = (pair[0].1, pair[1].1);
         if first.text == second.text {
-            cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text));
-            cx.error(first.place.clone(), format!("`{}` is first used here", first.text));
+            cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text))
+                .note("another field has this name as well")
+                .help("name one of the two otherwise");
         }
     }
 }

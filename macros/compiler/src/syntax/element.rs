@@ -5,13 +5,13 @@ use super::arguments::Arguments;
 use super::expression::parse_expr;
 use super::{
     ActionKind, Body, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind, Frame,
-    FreeCoordinate, Joint, JointKind, Name, Particle, Point, SlipFriction,
+    FreeCoordinate, Joint, JointKind, Name, Particle, Point, SlipFriction, words,
 };
-use crate::diag::{Diagnostics, Place};
+use crate::diag::{Diagnostics, Place, nearest, one_of, syn_error};
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
-use syn::{Attribute, Ident, Meta};
+use syn::{Attribute, Ident, LitStr, Meta, Token};
 
 /// The attributes of the language.
 pub const ATTRIBUTES: [&str; 12] = [
@@ -64,33 +64,6 @@ const OTHERS: [(&str, &[&str]); 12] = [
     ("Vector", &["define", "output"]),
 ];
 
-/// Words of other trades, and the element that they mean.
-const SYNONYMS: [(&str, &str); 23] = [
-    ("Link", "Body"),
-    ("RigidBody", "Body"),
-    ("PointMass", "Particle"),
-    ("Mass", "Particle"),
-    ("Revolute", "Pin"),
-    ("Continuous", "Pin"),
-    ("Hinge", "Pin"),
-    ("Prismatic", "Sleeve"),
-    ("Slider", "Sleeve"),
-    ("Helical", "Screw"),
-    ("Cylindrical", "Collar"),
-    ("Cardan", "Universal"),
-    ("Hooke", "Universal"),
-    ("Spherical", "Ball"),
-    ("Floating", "Free"),
-    ("SixDof", "Free"),
-    ("Fixed", "Weld"),
-    ("Rigid", "Weld"),
-    ("Damper", "Dashpot"),
-    ("Motor", "Torque"),
-    ("Actuator", "Torque"),
-    ("Thruster", "Force"),
-    ("f16", "f32"),
-];
-
 /// Types of Rust that are no parameter.
 const NUMBERS: [&str; 12] =
     ["i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
@@ -102,17 +75,25 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
             .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
     } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
         cx.error(place, format!("field `{}` has a type that a mechanism cannot have", field.text))
-            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …)");
-    } else if let Some((_, word)) = SYNONYMS.iter().find(|(synonym, _)| *synonym == kind) {
-        cx.error(place, format!("unknown element type `{kind}`")).help(format!("did you mean `{word}`?"));
+            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …); a vector is three parameters, `[a, b, c]` in expressions");
     } else {
         let types = element_types();
-        let near = crate::diag::nearest(kind, &types).is_some();
-        let diagnostic = cx.error(place, format!("unknown element type `{kind}`")).suggest(kind, types);
-        if !near {
+        let diagnostic = cx.error(place, format!("unknown element type `{kind}`"));
+        let near = crate::diag::nearest(kind, &types);
+        if near.is_some_and(|near| near.eq_ignore_ascii_case(kind))
+            || !words::explain_element(diagnostic, kind, &types)
+        {
+            diagnostic.suggest(kind, types);
+        }
+        if diagnostic.is_bare() {
             diagnostic.help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
         }
     }
+}
+
+/// True for an element type of the language.
+pub fn is_element(kind: &str) -> bool {
+    element_types().contains(&kind)
 }
 
 /// Every element type of the language.
@@ -140,6 +121,7 @@ pub fn read_element(
             Some(word) => own_arguments(name, &kind_name, word, attributes, cx),
             None => no_arguments(name, &kind_name, attributes, cx),
         };
+        let arguments = arguments.map(|arguments| arguments.owned_by(name));
         if let Some(mut arguments) = arguments {
             read_other(name, &kind_name, word.as_deref(), &mut arguments, description, cx);
         }
@@ -156,9 +138,10 @@ pub fn read_element(
             return;
         }
     };
-    let Some(mut arguments) = own_arguments(name, &kind_name, expected, attributes, cx) else {
+    let Some(arguments) = own_arguments(name, &kind_name, expected, attributes, cx) else {
         return;
     };
+    let mut arguments = arguments.owned_by(name);
     match (expected, joint) {
         ("body", _) => {
             let body = read_body(name, &mut arguments, cx);
@@ -218,8 +201,20 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
         }
     };
     let whole = |input: ParseStream<'_>| {
+        if input.peek(LitStr) {
+            let text: LitStr = input.parse()?;
+            let help = format!("write it without quotes: `#[unit({})]`", text.value());
+            return Err(syn_error(text.span(), "expected a unit, found a text", &help));
+        }
         let unit = parse_expr(input)?;
-        if input.is_empty() { Ok(unit) } else { Err(super::expression::unexpected(input)) }
+        if input.is_empty() {
+            return Ok(unit);
+        }
+        let help = match input.peek(Token![^]) {
+            true => "write `m2` for a power of a unit",
+            false => "units are products and quotients: `#[unit(N * m / rad)]`, `#[unit(kg * m2)]`",
+        };
+        Err(syn_error(input.span(), "expected `*` or `/`", help))
     };
     whole.parse2(tokens).map_err(|error| cx.syn(error)).ok()
 }
@@ -239,7 +234,8 @@ fn own_arguments(
         let span = path.segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         if word == expected {
             if found.is_some() {
-                cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text));
+                cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text))
+                    .help("write all arguments into one");
             } else {
                 found = Some(Arguments::of(attribute, cx));
             }
@@ -247,17 +243,7 @@ fn own_arguments(
             cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
                 .help(format!("expected `#[{expected}(…)]`"));
             return None;
-        } else if word == "cfg" || word == "cfg_attr" {
-            cx.error(span, "an element cannot be conditional").help(CONDITIONS);
-        } else if !matches!(
-            word.as_str(),
-            "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated"
-        ) {
-            let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
-            diagnostic.suggest(&word, ATTRIBUTES);
-            if crate::diag::nearest(&word, &ATTRIBUTES).is_none() {
-                diagnostic.help("an element does not stay in the struct; only parameters can have attributes of other crates");
-            }
+        } else if !check_foreign(&word, span, kind, cx) {
             return None;
         }
     }
@@ -266,6 +252,43 @@ fn own_arguments(
             .help(format!("add {}", example(expected)));
     }
     found.flatten()
+}
+
+/// Reports an attribute that is none of the language's, unless it is one of Rust's own that may stand. False after an
+/// unknown one: most likely it is the one that the element needs.
+fn check_foreign(word: &str, span: Span, kind: &str, cx: &mut Diagnostics) -> bool {
+    match word {
+        "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
+        "cfg" | "cfg_attr" => {
+            cx.error(span, "an element cannot be conditional").help(CONDITIONS);
+            return true;
+        }
+        _ => {}
+    }
+    let own = attributes_of(kind);
+    let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
+    if own.is_empty() {
+        diagnostic.help(format!("{} `{kind}` has no attribute", article(kind)));
+    } else if nearest(word, own).is_some() {
+        diagnostic.suggest(word, own.iter().copied());
+        return false;
+    } else {
+        let list: Vec<String> = own.iter().map(|word| format!("`#[{word}(…)]`")).collect();
+        diagnostic.help(format!("expected {}", one_of(&list)));
+    }
+    diagnostic
+        .help("an element does not stay in the struct; only parameters can have attributes of other crates");
+    false
+}
+
+/// The attributes of the language that belong to an element.
+fn attributes_of(kind: &str) -> &'static [&'static str] {
+    match kind {
+        "Body" => &["body"],
+        "Particle" => &["particle"],
+        _ if JOINTS.iter().any(|(joint, _)| *joint == kind) => &["joint"],
+        _ => OTHERS.iter().find(|(other, _)| *other == kind).map_or(&["acts"], |(_, own)| *own),
+    }
 }
 
 fn example(attribute: &str) -> &'static str {
@@ -315,9 +338,9 @@ fn read_joint(
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Joint> {
-    let ends = arguments.take_relation(cx);
-    let about = arguments.take_list("about", cx);
-    let along = arguments.take_list("along", cx);
+    let ends = arguments.take_relation(&["about", "along", "pitch", "lead", "branch"], cx);
+    let about = read_axes("about", arguments, cx);
+    let along = read_axes("along", arguments, cx);
     let pitch = arguments.take_expr("pitch", cx);
     let lead = arguments.take_expr("lead", cx);
     let branch = arguments.take_expr("branch", cx);
@@ -343,6 +366,7 @@ fn read_joint(
     }
     arguments.finish(&format!("a {}", kind_word(kind)), allowed, cx);
     let (parent, child) = ends?;
+    let (about, along) = (about?, along?);
     Some(Joint {
         name: name.clone(),
         kind,
@@ -359,6 +383,25 @@ fn read_joint(
         branch,
         driven: false,
     })
+}
+
+/// One axis or several. Three numbers in parentheses are a vector, which is written otherwise.
+fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Vec<Expr>> {
+    let axes = arguments.take_list(key, cx);
+    let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal).collect();
+    let Some([a, b, c]) = numbers.as_deref() else { return Some(axes) };
+    let axis = match [*a, *b, *c] {
+        [1.0, 0.0, 0.0] => "x".to_string(),
+        [0.0, 1.0, 0.0] => "y".to_string(),
+        [0.0, 0.0, 1.0] => "z".to_string(),
+        [-1.0, 0.0, 0.0] => "-x".to_string(),
+        [0.0, -1.0, 0.0] => "-y".to_string(),
+        [0.0, 0.0, -1.0] => "-z".to_string(),
+        _ => format!("[{a}, {b}, {c}]"),
+    };
+    let place = axes[0].place.to(&axes[2].place);
+    cx.error(place, "expected a direction, found three numbers").help(format!("write `{key} = {axis}`"));
+    None
 }
 
 /// The word of the language for a joint.
@@ -380,12 +423,16 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     Some(end)
                 }
                 "at" if arguments.len() == 1 => {
-                    cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`");
+                    cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`")
+                        .help("write `body.at(a + b).rotated(z(angle))`");
                     None
                 }
                 "at" => {
-                    cx.error(method.place, "expected one vector in `.at(…)`")
-                        .help("write `body.at(length * x)`");
+                    let help = match arguments.as_slice() {
+                        [a, b, c] => format!("write `.at([{}, {}, {}])`", a.spelt(), b.spelt(), c.spelt()),
+                        _ => "write `body.at(length * x)`".to_string(),
+                    };
+                    cx.error(method.place, "expected one vector in `.at(…)`").help(help);
                     None
                 }
                 "rotated" if !arguments.is_empty() => {
@@ -398,14 +445,20 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     None
                 }
                 other => {
-                    cx.error(method.place, format!("unknown method `.{other}(…)` of a body"))
-                        .suggest(other, ["at", "rotated"]);
+                    let error = cx.error(method.place, format!("unknown method `.{other}(…)` of a body"));
+                    words::point(error, words::METHODS, other, &["at", "rotated"]);
                     None
                 }
             }
         }
-        _ => {
-            cx.error(e.place, "expected a body").help("write `ground -> cart`, `arm.at(length * x) -> hand`");
+        kind => {
+            let help = match kind {
+                ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.name().is_some() => {
+                    format!("a point of a body is written `{}.at(vector)`", base.spelt())
+                }
+                _ => "write `ground -> cart`, `arm.at(length * x) -> hand`".to_string(),
+            };
+            cx.error(e.place, "expected a body").help(help);
             None
         }
     }
@@ -425,8 +478,15 @@ fn no_arguments(
 ) -> Option<Arguments> {
     if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)));
+        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)))
+            .help("it is the field alone: remove the attribute");
         return None;
+    }
+    for attribute in attributes {
+        let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
+        if !check_foreign(&spelt(attribute), span, kind, cx) {
+            return None;
+        }
     }
     Arguments::parse(TokenStream::new(), name.place.span, cx)
 }
@@ -453,6 +513,7 @@ fn read_other(
                 Some(start) => {
                     description.frames.push(Frame { name, start, rotations: plain.collect() });
                 }
+                None if !arguments.is_empty() => {}
                 None => {
                     cx.error(name.place.clone(), "a frame starts with the axes of a body or another frame")
                         .help("write `#[frame(ground, z(angle))]`");
@@ -462,7 +523,12 @@ fn read_other(
         }
         "Point" => {
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
-            if on.is_none() && at.is_none() {
+            if let [body, place] = arguments.plain() {
+                let help = format!("write `#[point(on = {}, at = {})]`", body.spelt(), place.spelt());
+                cx.error(body.place.to(&place.place), "expected `name = value`").help(help);
+                return;
+            }
+            if on.is_none() && at.is_none() && arguments.is_empty() {
                 cx.error(name.place.clone(), "a point says where it is")
                     .help("write `#[point(on = body, at = length * x)]`");
             }
@@ -507,10 +573,25 @@ fn read_constraint(
             "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]",
         ),
     };
+    if let (Some((value, None)), [second, ..]) = (&found, arguments.plain()) {
+        let touches = matches!(kind, ConstraintKind::Rolling | ConstraintKind::Slipping);
+        let (message, help) = match touches {
+            true => (format!("expected a pair that {}", kind.verb()), format!("write `{example}`")),
+            false => {
+                let help = format!("write `{} = {}`", value.spelt(), second.spelt());
+                ("expected one equation".to_string(), help)
+            }
+        };
+        cx.error(value.place.to(&second.place), message).help(help);
+        return;
+    }
+    let is_empty = arguments.is_empty();
     arguments.finish(whose, keys, cx);
     let Some((value, other)) = found else {
-        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
-            .help(format!("write `{example}`"));
+        if is_empty {
+            cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+                .help(format!("write `{example}`"));
+        }
         return;
     };
     if let (ConstraintKind::Rolling | ConstraintKind::Slipping, Some(other)) = (kind, &other) {
@@ -534,16 +615,22 @@ fn read_expression(
     let value = plain.pop();
     let word = attribute.unwrap_or("define");
     if !plain.is_empty() {
+        let last = value.as_ref().map_or(&name.place, |e| &e.place);
         cx.error(
-            name.place.clone(),
+            plain[0].place.to(last),
             format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
-        );
+        )
+        .help("declare a field for each");
+        return;
     }
+    let is_empty = arguments.is_empty();
     let keys: &[&str] = if kind == "Vector" { &["resolved_in"] } else { &[] };
     arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
     let Some(value) = value else {
-        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
-            .help(format!("write `#[{word}(expression)]`"));
+        if is_empty {
+            cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+                .help(format!("write `#[{word}(expression)]`"));
+        }
         return;
     };
     match (kind, word) {

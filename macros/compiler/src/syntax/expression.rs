@@ -39,9 +39,10 @@ fn node(kind: ExprKind, place: Place, depth: usize) -> syn::Result<Parsed> {
 fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut left = parse_product(input)?;
     loop {
-        let (op, span) = if input.peek(Token![+]) {
+        let assigns = input.peek(Token![+=]) || input.peek(Token![-=]);
+        let (op, span) = if input.peek(Token![+]) && !assigns {
             (BinaryOp::Add, input.parse::<Token![+]>()?.span)
-        } else if input.peek(Token![-]) && !input.peek(Token![->]) {
+        } else if input.peek(Token![-]) && !assigns && !input.peek(Token![->]) && !input.peek2(Token![->]) {
             (BinaryOp::Sub, input.parse::<Token![-]>()?.span)
         } else {
             return Ok(left);
@@ -54,6 +55,9 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
 fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut left = parse_unary(input)?;
     loop {
+        if input.peek(Token![*=]) || input.peek(Token![/=]) {
+            return Ok(left);
+        }
         let (op, span) = if input.peek(Token![*]) {
             (BinaryOp::Mul, input.parse::<Token![*]>()?.span)
         } else if input.peek(Token![/]) {
@@ -73,7 +77,11 @@ fn behind(
     parse: fn(ParseStream<'_>) -> syn::Result<Parsed>,
 ) -> syn::Result<Parsed> {
     if input.is_empty() || input.peek(Token![,]) {
-        return Err(syn::Error::new(operator, "nothing stands behind this operator"));
+        return Err(syn_error(
+            operator,
+            "nothing stands behind this operator",
+            "write an operand, or remove it",
+        ));
     }
     parse(input)
 }
@@ -97,7 +105,11 @@ fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
 fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut inner = parse_primary(input)?;
     while input.peek(Token![.]) {
-        input.parse::<Token![.]>()?;
+        let dot = input.parse::<Token![.]>()?.span;
+        if !input.peek(Ident::peek_any) {
+            let help = "`body.x` is an axis of a body, `body.at(vector)` a point of it";
+            return Err(syn_error(dot, "expected a name behind this dot", help));
+        }
         let member = parse_name(input)?;
         let depth = inner.1 + 1;
         inner = if input.peek(token::Paren) {
@@ -137,7 +149,8 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let (items, deepest, _) = parse_list(&content)?;
         return node(ExprKind::Array(items), place, deepest + 1);
     }
-    if input.peek(Ident::peek_any) && !input.peek(Token![if]) && !input.peek(Token![match]) {
+    let keyword = input.peek(Token![if]) || input.peek(Token![match]) || input.peek(Token![let]);
+    if input.peek(Ident::peek_any) && !keyword {
         let name = parse_name(input)?;
         let place = name.place.clone();
         if input.peek(token::Paren) {
@@ -163,13 +176,23 @@ fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
 fn no_expression(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {
-        "write `pow(a, n)` for a power"
+        "`*` stands between two factors; write `pow(a, n)` for a power"
+    } else if input.peek(Token![+]) {
+        "remove the `+`: it stands between two terms"
+    } else if input.peek(Token![|]) {
+        "an expression is made of parameters, coordinates and functions of the language; closures are Rust's"
+    } else if input.peek(Token![=]) {
+        "write `name = value`"
+    } else if input.peek(Token![->]) {
+        "write `parent -> child`"
     } else if input.peek(Token![&]) {
         "parameters are named as they are: remove the `&`"
     } else if input.peek(token::Brace) || input.peek(Token![if]) || input.peek(Token![match]) {
         "an expression has no conditions and no blocks; `min`, `max`, `abs` and `signum` may serve"
-    } else {
+    } else if input.is_empty() {
         return input.error(message);
+    } else {
+        "expressions are made of numbers, names, `+`, `-`, `*`, `/`, parentheses and calls"
     };
     syn_error(input.span(), message, help)
 }
@@ -181,8 +204,14 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
         "a joint has two ends; write a joint for each `parent -> child`"
     } else if input.peek(Token![<]) && input.peek2(Token![-]) || input.peek(Token![=>]) {
         "write `parent -> child`"
+    } else if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![!=]) {
+        "there are no comparisons: `min`, `max` and `signum` may serve, and a constraint is an equation, `a = b`"
     } else if input.peek(Token![::]) {
-        "names have no path; the number π is `pi`"
+        "names have no path: the number π is `pi`, a vector `[a, b, c]`, a constant a parameter"
+    } else if input.peek(token::Bracket) {
+        "nothing is counted: coordinates have names, that of a joint or `joint.x` if it has several"
+    } else if input.peek(Token![=]) {
+        "arguments of a function stand in their order, without names"
     } else if input.peek(Token![:]) {
         "write `name = value`"
     } else if input.peek(Token![^]) {
@@ -199,12 +228,23 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
+/// A text in quotes.
+pub fn quoted(text: &str) -> String {
+    format!("\"{text}\"")
+}
+
 fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let literal: Lit = input.parse()?;
     let (digits, suffix) = match &literal {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
-        _ => return Err(syn::Error::new(literal.span(), "expected a number")),
+        // Words like others: what is expected in their place says so.
+        Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), 1),
+        Lit::Str(_) | Lit::Char(_) => {
+            let message = "expected an expression, found a text";
+            return Err(syn_error(literal.span(), message, "write it without quotes"));
+        }
+        _ => return Err(syn_error(literal.span(), "expected a number", "write it in digits, as in `9.81`")),
     };
     if !matches!(suffix.as_str(), "" | "f64" | "f32") {
         let message = format!("a number cannot have the suffix `{suffix}`");
@@ -216,7 +256,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
     match digits.parse::<f64>() {
         Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), 1),
-        _ => Err(syn::Error::new(literal.span(), "this number is too large")),
+        _ => Err(syn_error(literal.span(), "this number is too large", "the largest is about 1e308")),
     }
 }
 

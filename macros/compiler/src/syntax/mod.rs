@@ -12,6 +12,7 @@ pub mod expression;
 pub mod guard;
 pub mod home;
 pub mod skipped;
+pub mod words;
 
 pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
 pub use skipped::Skipped;
@@ -94,6 +95,15 @@ impl Expr {
     pub fn name(&self) -> Option<&str> {
         match &self.kind {
             ExprKind::Name(name) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The number that it is as written, with its sign.
+    pub fn literal(&self) -> Option<f64> {
+        match &self.kind {
+            ExprKind::Number(n) => Some(*n),
+            ExprKind::Neg(inner) => inner.literal().map(|n| -n),
             _ => None,
         }
     }

@@ -293,7 +293,8 @@ fn a_joint_says_what_it_joins_and_how() {
            = help: did you mean `revolute`?
            r.urdf:4:32: `<parent>` without `link`
            = help: expected `<parent link="…"/>`
-           r.urdf:4:54: empty `link` of `<child>`"#,
+           r.urdf:4:54: empty `link` of `<child>`
+           = help: write a name: `link="…"`"#,
     );
     check(
         &chain(&[("ball", "<axes xyz='0 0 1'/>"), ("revolute", "<mimic joint='j1' multipler='2'/>")]),

@@ -131,17 +131,20 @@ fn a_number_is_a_finite_number() {
         ("1.0f", "is not a number"),
         ("−1", "is not a number"),
     ] {
-        let expected = format!("r.urdf:2:39: `{word}` {why}");
+        let expected = format!("r.urdf:2:39: `{word}` {why}\n= help: write digits, as in `-0.5` or `1e-3`");
         check_inertial(&format!("<mass value='{word}'/>{INERTIA}"), &expected);
     }
     check_inertial(
         &format!("<mass value='1 2'/>{INERTIA}"),
-        "r.urdf:2:39: expected a number in `value`, found `1 2`",
+        "r.urdf:2:39: expected a number in `value`, found `1 2`
+         = help: write one number, with a decimal point",
     );
     check_inertial(
         &format!("<origin xyz='0 0'/><mass value=''/>{INERTIA}"),
         "r.urdf:2:39: expected 3 numbers in `xyz`, found `0 0`
-         r.urdf:2:58: expected a number in `value`, found ``",
+         = help: write as many numbers, with spaces between them
+         r.urdf:2:58: expected a number in `value`, found ``
+         = help: write one number, with a decimal point",
     );
 }
 
@@ -150,26 +153,34 @@ fn every_bad_number_has_its_own_place() {
     check_inertial(
         &format!("<origin xyz='0\n  a  nan'/><mass value='1,5'/>{INERTIA}"),
         "r.urdf:2:39: `a` is not a number
+         = help: write digits, as in `-0.5` or `1e-3`
          r.urdf:2:39: `nan` is not a finite number
-         r.urdf:3:25: `1,5` is not a number
-         = help: write a decimal point, and spaces between numbers",
+         = help: write digits, as in `-0.5` or `1e-3`
+         r.urdf:3:25: expected a number in `value`, found `1,5`
+         = help: write one number, with a decimal point",
     );
     check_inertial(
         &format!("<origin xyz='ä  b nan'/><mass value='1'/><!-- ä -->{INERTIA}"),
         "r.urdf:2:39: `ä` is not a number
+         = help: write digits, as in `-0.5` or `1e-3`
          r.urdf:2:42: `b` is not a number
-         r.urdf:2:44: `nan` is not a finite number",
+         = help: write digits, as in `-0.5` or `1e-3`
+         r.urdf:2:44: `nan` is not a finite number
+         = help: write digits, as in `-0.5` or `1e-3`",
     );
     check_inertial(
         &format!("<origin xyz='1,2,3'/><mass value='1'/>{INERTIA}"),
         "r.urdf:2:39: expected 3 numbers in `xyz`, found `1,2,3`
-         = help: write spaces between the numbers, and a decimal point",
+         = help: write spaces between the numbers instead of commas, and a decimal point; so everywhere in the file",
     );
 }
 
 #[test]
 fn long_nonsense_is_shortened() {
-    let expected = format!("r.urdf:2:39: `{}`… is not a number", "x".repeat(60));
+    let expected = format!(
+        "r.urdf:2:39: `{}`… is not a number\n= help: write digits, as in `-0.5` or `1e-3`",
+        "x".repeat(60)
+    );
     check_inertial(&format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)), &expected.replace("`…", "…`"));
 }
 

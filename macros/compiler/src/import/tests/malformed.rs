@@ -65,7 +65,9 @@ fn prefixes_need_no_declaration() {
     check(
         "<robot><d:x/><link name='a'><inertial><mass value='0 0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='z'/></inertial></link></robot>",
         "r.urdf:1:52: expected a number in `value`, found `0 0`
-         r.urdf:1:112: `z` is not a number",
+         = help: write one number, with a decimal point
+         r.urdf:1:112: `z` is not a number
+         = help: write digits, as in `-0.5` or `1e-3`",
     );
 }
 

@@ -100,6 +100,7 @@ fn names_are_given_once() {
     check_robot(
         "<link name=' '/><link/><link nmae='a'/>",
         r#"r.urdf:2:13: empty `name` of `<link>`
+           = help: write a name: `name="…"`
            r.urdf:2:17: `<link>` without `name`
            = help: expected `<link name="…"/>`
            r.urdf:2:30: unknown attribute `nmae` of `<link>`

@@ -93,6 +93,11 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
+    /// Reads a pair, for its mistakes alone.
+    pub fn check_pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        let _ = self.pair(constraint, cx);
+    }
+
     /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
     fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
         let (e, known) = (&constraint.value, constraint.kind.verb());
@@ -104,7 +109,12 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             }
         };
-        let (a, b) = (self.surface(first, &example, cx), self.surface(second, &example, cx));
+        let a = self.surface(first, &example, cx);
+        // Two bodies in the place of two surfaces are one mistake.
+        if a.is_none() && !matches!(second.kind, ExprKind::Method(..)) {
+            return None;
+        }
+        let b = self.surface(second, &example, cx);
         let (mut a, mut b) = (a?, b?);
         if a.home.link == b.home.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")

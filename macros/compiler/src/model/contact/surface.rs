@@ -1,8 +1,9 @@
 //! Surfaces of bodies, as contacts name them: `body.form(arguments)`.
 
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
 use crate::model::build::Builder;
+use crate::model::tree::GROUND;
 use crate::model::world::{Level, Placed, View};
 use crate::syntax::{self, ExprKind};
 use std::f64::consts::FRAC_PI_2;
@@ -68,18 +69,30 @@ impl<'g> Builder<'_, 'g> {
     /// `body.form(arguments)`; `example` is how a pair is written.
     pub fn surface(&self, e: &syntax::Expr, example: &str, cx: &mut Diagnostics) -> Option<Surface<'g>> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
-            cx.error(e.place.clone(), "expected a surface").help(example);
+            let error = cx.error(e.place.clone(), "expected a surface");
+            match e.name() {
+                Some(GROUND) => error.help("write `ground.plane(z)`"),
+                Some(name) => {
+                    error.help(format!("write `{name}.circle(radius, y)`, `{name}.sphere(radius)`, …"))
+                }
+                None => error.help(example),
+            };
             return None;
         };
         let Some((_, names)) = FORMS.iter().find(|(known, _)| *known == word.text) else {
-            cx.error(word.place.clone(), format!("unknown surface `{}`", word.text))
-                .suggest(&word.text, FORMS.iter().map(|(word, _)| *word));
+            let error = cx.error(word.place.clone(), format!("unknown surface `{}`", word.text));
+            error.suggest(&word.text, FORMS.iter().map(|(word, _)| *word));
+            if error.is_bare() {
+                let list: Vec<String> = FORMS.iter().map(|(word, _)| format!("`{word}`")).collect();
+                error.help(format!("the surfaces are {}", all_of(&list)));
+            }
             return None;
         };
         let home = self.scope.place(base, cx);
         if arguments.len() != names.len() {
             let usage = format!("this surface is written `{}({})`", word.text, names.join(", "));
-            cx.error(word.place.clone(), usage);
+            cx.error(word.place.clone(), usage)
+                .help("lengths are in m, angles in rad, axes in those of the body");
             return None;
         }
         if let ("surface", [u, w, point]) = (word.text.as_str(), arguments.as_slice()) {
@@ -127,6 +140,7 @@ fn check_size(name: &str, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostic
                 .help("it is the angle between the axis and the surface, rad");
         }
     } else if n <= 0.0 {
-        cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"));
+        cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"))
+            .help("the axis and the side of a surface are said by its form");
     }
 }

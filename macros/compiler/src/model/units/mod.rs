@@ -3,6 +3,7 @@
 //! values are simplified and know no places.
 
 mod infer;
+mod owner;
 mod places;
 mod ratio;
 mod report;
@@ -68,7 +69,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     if inference.gave_up {
         inference.mismatches.clear();
     }
-    report::report(&mut inference, cx);
+    report::report(d, &mut inference, cx);
     inference.grant();
     let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {

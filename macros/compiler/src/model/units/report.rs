@@ -1,17 +1,20 @@
-//! What does not fit together, said at both places.
+//! What does not fit together: one error for each mistake, with the other places in notes.
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
+use super::owner::{place_of, solid_of};
 use super::si::describe;
 use super::unify::{Dimension, Variable};
-use crate::diag::Diagnostics;
-use crate::syntax::{BinaryOp, Expr, ExprKind};
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
 /// Most places of other uses that one mistake shows.
 const MOST_PLACES: usize = 2;
 
-/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the same mistake.
-pub fn report(inference: &mut Inference<'_>, cx: &mut Diagnostics) {
+/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the same mistake. So
+/// are arguments of one solid.
+pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
+    let mut solids: Vec<&Expr> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
         names_of(&mismatch.origin, inference, &mut names);
@@ -19,9 +22,25 @@ pub fn report(inference: &mut Inference<'_>, cx: &mut Diagnostics) {
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
-        match names.as_slice() {
-            [(v, e)] if one_parameter(&mismatch, *v, e, inference, cx).is_some() => {}
-            _ => several(&mismatch, &names, inference, cx),
+        let solid = solid_of(d, mismatch.origin.at);
+        if let Some((call, _)) = &solid {
+            if solids.iter().any(|known| std::ptr::eq(*known, *call)) {
+                continue;
+            }
+            solids.push(call);
+        }
+        let error = match names.as_slice() {
+            [(v, e)] => one_parameter(d, &mismatch, *v, e, inference),
+            _ => None,
+        };
+        let error = error.or_else(|| several(d, &mismatch, &names, inference));
+        if let Some(mut error) = error {
+            if let Some((_, written)) = solid {
+                error.help(format!("write `{written}`"));
+            } else if error.is_bare() {
+                error.help("a factor is missing, or two things have one name: name another parameter");
+            }
+            cx.add(error);
         }
     }
 }
@@ -69,12 +88,12 @@ fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variabl
 
 /// One parameter that would have to be two things at once.
 fn one_parameter(
+    d: &Description,
     mismatch: &Mismatch<'_>,
     v: Variable,
     here: &Expr,
     inference: &mut Inference<'_>,
-    cx: &mut Diagnostics,
-) -> Option<()> {
+) -> Option<Diagnostic> {
     let name = text(here);
     let is = inference.system.resolve(&Dimension::variable(v))?;
     let (found, expected) =
@@ -88,56 +107,60 @@ fn one_parameter(
     }
     let (is, needed) = (describe(&is), describe(&needed));
     if first.reason == Reason::Unit {
-        cx.error(first.at.place.clone(), format!("`{name}` is declared as {is}, but used as {needed}"));
-        cx.error(here.place.clone(), format!("`{name}` is {needed} here"));
-        return Some(());
+        let message = format!("`{name}` is declared as {is}, but used as {needed}");
+        let mut error = Diagnostic::new(first.at.place.clone(), message);
+        error.note(format!("it is {needed}{}", place_of(d, here)));
+        return Some(error);
     }
-    cx.error(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
-    show(here, v, &is, first, inference, cx);
-    Some(())
+    let mut error =
+        Diagnostic::new(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
+    show(d, here, v, &is, first, inference, &mut error);
+    Some(error)
 }
 
 /// Things that do not fit, at the place where they meet, and what made each of them what it is.
 fn several(
+    d: &Description,
     mismatch: &Mismatch<'_>,
     names: &[(Variable, &Expr)],
     inference: &mut Inference<'_>,
-    cx: &mut Diagnostics,
-) {
+) -> Option<Diagnostic> {
     let (found, expected) =
         (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
-    let (Some(found), Some(expected)) = (found, expected) else { return };
+    let (found, expected) = (found?, expected?);
     let place = match (&mismatch.origin.at.kind, mismatch.origin.reason) {
         (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
         _ => &mismatch.origin.at.place,
     };
-    let diagnostic = cx.error(place.clone(), message(mismatch, &found, &expected));
+    let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
     if names.is_empty() && matches!(mismatch.origin.reason, Reason::Place | Reason::Argument) {
         diagnostic.help("a factor is missing; a number in front has any unit that it needs");
     }
     for (v, e) in names.iter().take(MOST_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            show(e, *v, &describe(&is), origin, inference, cx);
+            show(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
         }
     }
+    Some(diagnostic)
 }
 
 /// Shows where a parameter or a definition has become what it is.
 fn show(
+    d: &Description,
     here: &Expr,
     v: Variable,
     is: &str,
     origin: Origin<'_>,
     inference: &Inference<'_>,
-    cx: &mut Diagnostics,
+    diagnostic: &mut Diagnostic,
 ) {
     let mut names = Vec::new();
     names_of(&origin, inference, &mut names);
     let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
-        Some((_, e)) => cx.error(e.place.clone(), format!("`{name}` is {is} here")),
-        None => cx.error(origin.at.place.clone(), format!("by this `{name}` is {is}")),
+        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", place_of(d, e))),
+        None => diagnostic.note(format!("`{name}` becomes {is}{}", place_of(d, origin.at))),
     };
 }
 

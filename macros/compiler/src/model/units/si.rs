@@ -72,7 +72,7 @@ static UNITS: [(&str, Dimension); 9] = [
 ];
 
 /// Units of other systems, and the one to write instead.
-static OTHERS: [(&str, &str); 16] = [
+static OTHERS: [(&str, &str); 32] = [
     ("mm", "m"),
     ("cm", "m"),
     ("km", "m"),
@@ -89,6 +89,22 @@ static OTHERS: [(&str, &str); 16] = [
     ("deg", "rad"),
     ("rpm", "rad / s"),
     ("Nm", "N * m"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("kilogram", "kg"),
+    ("kilograms", "kg"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("sec", "s"),
+    ("newton", "N"),
+    ("newtons", "N"),
+    ("joule", "J"),
+    ("watt", "W"),
+    ("degrees", "rad"),
+    ("radian", "rad"),
+    ("radians", "rad"),
 ];
 
 /// A dimension with its article and its unit: `a mass (kg)`.

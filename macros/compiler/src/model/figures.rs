@@ -1,0 +1,52 @@
+//! Figures that are too large or too small to compute with: products of two of them must stay finite and reciprocals too.
+
+use crate::diag::{Diagnostics, Place};
+use crate::expr::Expr;
+use crate::syntax::ScalarType;
+
+/// The figures that leave room for computing.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Largest mass and moment: their squares are finite.
+    pub most: f64,
+    /// Largest length: with a mass of one its moment is within the range.
+    pub length: f64,
+    /// Smallest mass and moment beside zero: its reciprocal is finite.
+    pub least: f64,
+    /// The name of the scalar type.
+    pub name: &'static str,
+}
+
+impl Range {
+    /// The range of a scalar type; a type parameter stands for `f64`.
+    pub fn of(scalar: &ScalarType) -> Range {
+        match scalar {
+            ScalarType::F32 => Range { most: 1e18, length: 1e9, least: 1e-36, name: "f32" },
+            _ => Range { most: 1e150, length: 1e75, least: 1e-300, name: "f64" },
+        }
+    }
+
+    /// Reports a mass or a moment outside the range, if it is a number.
+    pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+        let Some(n) = e.value().filter(|n| *n != 0.0) else { return true };
+        if n.abs() > self.most {
+            cx.error(place.clone(), format!("this figure is too large for `{}`: {n:e}", self.name))
+                .help(format!("products of it are not finite; figures up to {:e} leave room", self.most));
+            return false;
+        }
+        if n.abs() < self.least {
+            cx.error(place.clone(), format!("this figure is too small for `{}`: {n:e}", self.name))
+                .help(format!("what is divided by it is not finite; write 0, or more than {:e}", self.least));
+            return false;
+        }
+        true
+    }
+
+    /// Reports a length outside the range, if it is a number.
+    pub fn check_length(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+        let Some(n) = e.value().filter(|n| n.abs() > self.length) else { return true };
+        cx.error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))
+            .help(format!("its square is not finite; lengths up to {:e} m leave room", self.length));
+        false
+    }
+}

@@ -1,0 +1,100 @@
+//! Slips in the grammar of arguments, and what is most likely meant.
+
+use super::Arguments;
+use crate::diag::{Diagnostics, one_of, syn_error};
+use crate::syntax::expression::{parse_expr, quoted, unexpected};
+use crate::syntax::{Expr, ExprKind, words};
+use syn::ext::IdentExt;
+use syn::parse::ParseStream;
+use syn::{Ident, LitStr, Token, token};
+
+/// Reports an expression that stands where `name = value` should.
+pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
+    if let Some(word) = e.name().filter(|word| known.contains(word)) {
+        cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
+        return;
+    }
+    let error = cx.error(e.place.clone(), "expected `name = value`");
+    match (&e.kind, known) {
+        (ExprKind::Call(word, value), _) if known.contains(&word.text.as_str()) && value.len() == 1 => {
+            error.help(format!("write `{} = {}`", word.text, value[0].spelt()))
+        }
+        (_, []) => error.help(format!("write `{example}`")),
+        (_, [one]) => error.help(format!("write `{one} = {}`", e.spelt())),
+        (_, [.., _]) if known.len() <= 8 => {
+            let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
+            error.help(format!("expected {}", one_of(&list)))
+        }
+        _ => error.help(format!("write `{example}`")),
+    };
+}
+
+/// The error where an argument should end: most likely a comma is missing.
+pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
+    if input.peek(Token![;]) {
+        return syn_error(input.span(), "expected `,`", "arguments are separated by `,`");
+    }
+    let ahead = input.fork();
+    match ahead.call(Ident::parse_any) {
+        Ok(word) if ahead.peek(Token![=]) => {
+            let help = format!("arguments are separated by `,`: write `…, {word} = …`");
+            syn_error(input.span(), "expected `,`", &help)
+        }
+        Ok(word) if ahead.is_empty() && words::is_request(&word.to_string()) => {
+            let help = format!("arguments are separated by `,`: write `…, {word}`");
+            syn_error(input.span(), "expected `,`", &help)
+        }
+        _ => unexpected(input),
+    }
+}
+
+/// The error at a text that stands alone.
+pub fn text_alone(text: &LitStr) -> syn::Error {
+    let value = text.value();
+    let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
+    if is_file {
+        let help = format!("write `urdf = {}`", quoted(&value));
+        return syn_error(text.span(), "expected `name = value`, found a text", &help);
+    }
+    syn_error(text.span(), "expected an expression, found a text", "write it without quotes")
+}
+
+/// The error at what stands in the place of the arrow of a joint, or of the sign behind the name of an argument.
+pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> Option<syn::Error> {
+    let is_place =
+        |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
+    let is_arrow = input.peek(Token![->]);
+    let ends = input.is_empty() || input.peek(Token![,]) || input.peek(token::Bracket);
+    if !is_place(first) || ends || input.peek(Token![::]) || (is_arrow && !is_double(input)) {
+        return None;
+    }
+    let span = input.span();
+    let ahead = input.fork();
+    let mut signs = String::new();
+    while let Ok(sign) = ahead.call(syn::parse::ParseBuffer::parse::<proc_macro2::Punct>) {
+        signs.push(sign.as_char());
+    }
+    if arguments.joins && arguments.relation.is_none() && arguments.named.is_empty() {
+        if signs.is_empty() && ahead.peek2(Ident::peek_any) {
+            ahead.call(Ident::parse_any).ok()?;
+        }
+        let second = parse_expr(&ahead).ok().filter(is_place);
+        let equation = matches!(signs.as_str(), "=" | "==");
+        if equation || (signs.is_empty() && second.is_none()) {
+            return None;
+        }
+        let child = second.map_or("child".to_string(), |e| e.spelt());
+        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.spelt())));
+    }
+    if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
+        let help = format!("write `{} = …`", first.spelt());
+        return first.name().map(|_| syn_error(span, "expected `=`", &help));
+    }
+    None
+}
+
+/// True for `->>`.
+fn is_double(input: ParseStream<'_>) -> bool {
+    let ahead = input.fork();
+    ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
+}

@@ -1,0 +1,255 @@
+//! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else reads these
+//! tables but the help of messages.
+
+use super::{BinaryOp, Expr, ExprKind};
+use crate::diag::{Diagnostic, nearest};
+
+mod tables;
+
+pub use tables::*;
+
+/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a space.
+/// Words are looked up in lower case and without underscores.
+pub type Words = &'static [(&'static str, &'static str)];
+
+/// The words for the arguments of an element.
+fn arguments(kind: &str) -> Words {
+    match kind {
+        "Body" => BODY,
+        "Particle" => PARTICLE,
+        "Spring" => SPRING,
+        "Dashpot" => DASHPOT,
+        "Inerter" => INERTER,
+        "Friction" => FRICTION,
+        "Gravity" | "Attraction" => GRAVITY,
+        "Force" => FORCE,
+        "Torque" => TORQUE,
+        "Point" => POINT,
+        "Vector" => VECTOR,
+        "`#[mechanism]`" => OPTIONS,
+        "Pin" | "Sleeve" | "Screw" | "Collar" | "Slot" | "Universal" | "Ball" | "Planar" | "Stage"
+        | "Free" | "Weld" => JOINT,
+        _ => NO_WORDS,
+    }
+}
+
+/// The last word of what an element is called, such as `Pin` of `a Pin`.
+fn kind_of(whose: &str) -> &str {
+    whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
+}
+
+/// How an element is written; `whose` is the element with its article.
+pub fn example(whose: &str) -> &'static str {
+    match kind_of(whose) {
+        "Body" => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
+        "Particle" => "#[particle(mass = m, at = body.at(l * x))]",
+        "Spring" => "#[acts(on = joint, stiffness = k)]",
+        "Dashpot" => "#[acts(on = joint, damping = c)]",
+        "Inerter" => "#[acts(on = joint, inertance = b)]",
+        "Friction" => "#[acts(on = joint, coulomb = f)]",
+        "Gravity" => "#[acts(between = (sun, planet), constant = g)]",
+        "Attraction" => "#[acts(between = (first, second), strength = k)]",
+        "Force" => "#[acts(on = body, along = x)]",
+        "Torque" => "#[acts(on = joint)]",
+        "Frame" => "#[frame(ground, z(angle))]",
+        "Point" => "#[point(on = body, at = length * x)]",
+        "Potential" => "#[energy(expression)]",
+        "Rayleigh" => "#[dissipation(expression)]",
+        "Scalar" | "Vector" => "#[output(expression)]",
+        "Holonomic" => "#[constraint(norm(r(tip / base)) = length)]",
+        "Nonholonomic" => "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]",
+        "Rolling" => "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]",
+        "Slipping" => "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]",
+        "Sleeve" | "Stage" => "#[joint(parent -> child, along = x)]",
+        "Ball" | "Free" | "Weld" => "#[joint(parent -> child)]",
+        "`#[mechanism]`" => "#[mechanism(gravity = -9.81 * y)]",
+        _ => "#[joint(parent -> child, about = z)]",
+    }
+}
+
+/// A word as it is looked up.
+fn key(word: &str) -> String {
+    word.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
+}
+
+/// What a word means, among `known` words if it is one word; none if nothing is known of it.
+pub fn meant(words: Words, word: &str, known: &[&str]) -> Option<&'static str> {
+    let key = key(word);
+    let fits = |meant: &str| meant.contains(' ') || known.is_empty() || known.contains(&meant);
+    let said = |(said, meant): &&(&str, &str)| fits(meant) && said.split(' ').any(|one| one == key);
+    words.iter().find(said).map(|(_, meant)| *meant)
+}
+
+/// True for the words of `#[mechanism]` that stand alone.
+pub fn is_request(word: &str) -> bool {
+    super::attribute::REQUESTS.contains(&word)
+}
+
+/// Adds what is meant by a word, if it is known.
+pub fn explain(diagnostic: &mut Diagnostic, words: Words, word: &str, known: &[&str]) -> bool {
+    match meant(words, word, known) {
+        Some(meant) if meant.contains(' ') => diagnostic.help(meant),
+        Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
+        None => return false,
+    };
+    true
+}
+
+/// Adds what is meant by a word, or the nearest of the known ones, or their list.
+pub fn point(diagnostic: &mut Diagnostic, words: Words, word: &str, known: &[&str]) {
+    if !explain(diagnostic, words, word, known) {
+        diagnostic.suggest(word, known.iter().copied());
+    }
+}
+
+/// Adds what is meant by the type of a field, of the `known` ones. False if nothing is known of it.
+pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
+    let key = key(word);
+    let bare = key.strip_suffix("joint").or(key.strip_suffix("element")).unwrap_or(&key);
+    if let Some(same) = known.iter().find(|name| name.eq_ignore_ascii_case(bare)) {
+        diagnostic.help(format!("did you mean `{same}`?"));
+        return true;
+    }
+    explain(diagnostic, ELEMENTS, if bare.is_empty() { "joint" } else { bare }, &[])
+}
+
+/// Help for an argument that an element does not have; `whose` is the element with its article.
+pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
+    let meant = meant(arguments(kind_of(whose)), word, known)?;
+    Some(match meant.contains(' ') {
+        true => meant.replace("NAME", owner),
+        false => format!("did you mean `{meant}`?"),
+    })
+}
+
+/// The name that a Greek letter spells, or that is spelt so in another case.
+pub fn spelt_otherwise<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let mut letters = word.to_string();
+    for (letter, name) in GREEK {
+        letters = letters.replace(letter, name);
+    }
+    let same = |a: &str, b: &str| key(a) == key(b);
+    known.iter().find(|name| same(&letters, name)).copied()
+}
+
+/// The coordinate whose rate a name seems to be: `hinge_dot`, `hinged`, `dhinge`.
+pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
+    let ends = ["dot", "dt", "d", "rate", "vel", "velocity", "speed", "p"];
+    let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let begin = |stem: &str| {
+        word.strip_suffix(stem).is_some_and(|before| matches!(before, "d" | "d_" | "dot_" | "v_" | "rate_"))
+    };
+    coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
+}
+
+/// True for what Rust's constants are called: their values are not known when a macro runs.
+pub fn is_constant(word: &str) -> bool {
+    word.chars().any(|c| c.is_ascii_uppercase()) && !word.chars().any(|c| c.is_ascii_lowercase())
+}
+
+/// Adds what is meant by a name without a value, of those that are `known`.
+pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
+    if let Some(coordinate) = rate_of(name, coordinates) {
+        diagnostic.help(format!("write `rate({coordinate})` for its rate"));
+    } else if let Some(same) = spelt_otherwise(name, known) {
+        diagnostic.help(format!("did you mean `{same}`?"));
+    } else if explain(diagnostic, NAMES, name, &[]) {
+    } else if nearest(name, known).is_some() {
+        diagnostic.suggest(name, known.iter().copied());
+    } else if is_constant(name) {
+        let parameter = name.to_lowercase();
+        diagnostic.help(format!(
+            "the macro cannot see the value of a constant: declare a parameter, `{parameter}: f64`, or write the number"
+        ));
+    } else {
+        diagnostic.suggest(name, known.iter().copied());
+    }
+    if diagnostic.is_bare() {
+        diagnostic
+            .help(format!("declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"));
+    }
+}
+
+impl Expr {
+    /// The expression as the user would write it, if it is short.
+    pub fn spelt(&self) -> String {
+        let text = spell(self);
+        if text.chars().count() > 60 { "…".to_string() } else { text }
+    }
+}
+
+fn spell(e: &Expr) -> String {
+    let list = |items: &[Expr]| items.iter().map(spell).collect::<Vec<_>>().join(", ");
+    match &e.kind {
+        ExprKind::Number(n) => n.to_string(),
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::Field(base, member) => format!("{}.{}", spell(base), member.text),
+        ExprKind::Method(base, method, items) => format!("{}.{}({})", spell(base), method.text, list(items)),
+        ExprKind::Call(function, items) => format!("{}({})", function.text, list(items)),
+        ExprKind::Neg(inner) => format!("-{}", spell(inner)),
+        ExprKind::Binary(op, left, right, _) => {
+            let sum = |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
+            let product = matches!(op, BinaryOp::Mul | BinaryOp::Div);
+            let operand = |e: &Expr, together: bool| match &e.kind {
+                ExprKind::Binary(..) if together || (product && sum(e)) => format!("({})", spell(e)),
+                _ => spell(e),
+            };
+            let sign = match op {
+                BinaryOp::Add => "+",
+                BinaryOp::Sub => "-",
+                BinaryOp::Mul => "*",
+                BinaryOp::Div => "/",
+            };
+            let together = matches!(op, BinaryOp::Sub | BinaryOp::Div);
+            format!("{} {sign} {}", operand(left, false), operand(right, together))
+        }
+        ExprKind::Tuple(items) => format!("({})", list(items)),
+        ExprKind::Array(items) => format!("[{}]", list(items)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_as_they_are_looked_up() {
+        let all = [
+            ELEMENTS,
+            BODY,
+            PARTICLE,
+            JOINT,
+            SPRING,
+            DASHPOT,
+            INERTER,
+            FRICTION,
+            GRAVITY,
+            FORCE,
+            TORQUE,
+            POINT,
+            VECTOR,
+            OPTIONS,
+            REQUESTS,
+            FORMULATIONS,
+            FUNCTIONS,
+            NAMES,
+            SOLIDS,
+            METHODS,
+            BODIES,
+            ROTATIONS,
+        ];
+        for (said, meant) in all.into_iter().flatten() {
+            assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
+            assert!(!meant.is_empty() && (meant.contains(' ') || !meant.contains('`')), "{meant}");
+        }
+    }
+
+    #[test]
+    fn rates_are_found_by_their_coordinates() {
+        assert_eq!(rate_of("hinge_dot", &["hinge"]), Some("hinge"));
+        assert_eq!(rate_of("dhinge", &["hinge"]), Some("hinge"));
+        assert_eq!(rate_of("theta1dot", &["theta", "theta1"]), Some("theta1"));
+        assert_eq!(rate_of("hinge2", &["hinge"]), None);
+        assert_eq!(spelt_otherwise("θ1", &["theta_1"]), Some("theta_1"));
+    }
+}

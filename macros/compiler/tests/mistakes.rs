@@ -1,0 +1,79 @@
+//! Mistakes as people make them who come from other tools or from a textbook: each gets one error, whose help points at the
+//! word that was meant. A table has what is written, the first line of what is said, and a part of the help.
+
+use linkwork_compiler::check;
+use std::path::Path;
+
+#[path = "mistakes/angles.rs"]
+mod angles;
+#[path = "mistakes/arguments.rs"]
+mod arguments;
+#[path = "mistakes/attributes.rs"]
+mod attributes;
+#[path = "mistakes/elements.rs"]
+mod elements;
+#[path = "mistakes/expressions.rs"]
+mod expressions;
+#[path = "mistakes/figures.rs"]
+mod figures;
+#[path = "mistakes/files.rs"]
+mod files;
+#[path = "mistakes/grammar.rs"]
+mod grammar;
+#[path = "mistakes/joints.rs"]
+mod joints;
+#[path = "mistakes/options.rs"]
+mod options;
+#[path = "mistakes/several.rs"]
+mod several;
+
+/// What is written, the first line of what is said, and a part of the help.
+type Row = (&'static str, &'static str, &'static str);
+
+/// The arguments of the attribute and the fields that a mistake stands among.
+type Setting = fn(&str) -> (String, String);
+
+/// An arm on a hinge.
+const ARM: &str = "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Body,
+    #[joint(ground -> arm, about = z)] hinge: Pin,";
+
+/// A cart on a rail.
+const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
+
+/// The messages about fields.
+fn messages(attribute: &str, fields: &str) -> Vec<String> {
+    let struct_ = format!("struct Machine {{ {fields} }}");
+    match (attribute.parse(), struct_.parse()) {
+        (Ok(attribute), Ok(item)) => check(attribute, item, Path::new(env!("CARGO_TARGET_TMPDIR"))),
+        _ => vec!["these are no tokens".to_string()],
+    }
+}
+
+/// Every row gets its answer, and nothing else.
+fn answers(setting: Setting, rows: &[Row]) {
+    let mut wrong = Vec::new();
+    for (said, message, help) in rows {
+        let (attribute, fields) = setting(said);
+        let found = messages(&attribute, &fields);
+        let good = match found.as_slice() {
+            [one] => {
+                let (first, rest) = one.split_once('\n').unwrap_or((one, ""));
+                first == *message && rest.contains("= help: ") && rest.contains(help)
+            }
+            _ => false,
+        };
+        if !good {
+            wrong
+                .push(format!("{said}\nexpected {message}\n  with {help}\nfound {}", found.join("\n  and ")));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), rows.len(), wrong.join("\n\n"));
+}
+
+/// As many errors as there are mistakes.
+fn counts(rows: &[(&str, &str, usize)]) {
+    for (attribute, fields, count) in rows {
+        let found = messages(attribute, fields);
+        assert!(found.len() == *count, "{fields}\nexpected {count} errors, found\n{}", found.join("\n"));
+    }
+}

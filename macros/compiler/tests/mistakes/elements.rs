@@ -1,0 +1,108 @@
+//! Types of fields, in the words of other tools.
+
+use super::{ARM, CART, Row, answers};
+
+/// Types with the element that is meant.
+const ONE: &[(&str, &str)] = &[
+    ("RevoluteJoint", "Pin"),
+    ("Revolute", "Pin"),
+    ("HingeJoint", "Pin"),
+    ("Rotary", "Pin"),
+    ("PinJoint", "Pin"),
+    ("Pivot", "Pin"),
+    ("PrismaticJoint", "Sleeve"),
+    ("Slide", "Sleeve"),
+    ("Translational", "Sleeve"),
+    ("Piston", "Sleeve"),
+    ("FixedJoint", "Weld"),
+    ("Locked", "Weld"),
+    ("SphericalJoint", "Ball"),
+    ("BallJoint", "Ball"),
+    ("Socket", "Ball"),
+    ("CylindricalJoint", "Collar"),
+    ("HelicalJoint", "Screw"),
+    ("LeadScrew", "Screw"),
+    ("FreeJoint", "Free"),
+    ("FloatingBase", "Free"),
+    ("SixDOF", "Free"),
+    ("Gimbal", "Universal"),
+    ("XYStage", "Stage"),
+    ("Cartesian", "Stage"),
+    ("Rigid_Body", "Body"),
+    ("Segment", "Body"),
+    ("Linkage", "Body"),
+    ("MassPoint", "Particle"),
+    ("ShockAbsorber", "Dashpot"),
+    ("TorsionSpring", "Spring"),
+    ("RotationalSpring", "Spring"),
+    ("LinearSpring", "Spring"),
+    ("Servo", "Torque"),
+    ("Moment", "Torque"),
+    ("Thrust", "Force"),
+    ("CoulombFriction", "Friction"),
+    ("GeneralizedCoordinate", "Coordinate"),
+    ("DynamicSymbol", "Coordinate"),
+    ("Control", "Input"),
+    ("ReferenceFrame", "Frame"),
+    ("Marker", "Point"),
+    ("Site", "Point"),
+    ("PotentialEnergy", "Potential"),
+    ("Dissipation", "Rayleigh"),
+    ("Vec3", "Vector"),
+    ("Real", "f64"),
+    ("Float", "f64"),
+    ("Parameter", "f64"),
+    ("Constant", "f64"),
+];
+
+#[test]
+fn words_of_other_tools_are_understood() {
+    for (said, meant) in ONE {
+        let message = format!("unknown element type `{said}`");
+        let help = format!("did you mean `{meant}`?");
+        for attribute in ["", "#[joint(ground -> arm, about = z)] ", "#[acts(on = hinge)] "] {
+            let fields = format!("{ARM} {attribute}other: {said}");
+            let found = super::messages("", &fields);
+            let good = matches!(found.as_slice(), [one] if one.starts_with(&message) && one.contains(&help));
+            assert!(good, "{fields}\nexpected {help}\nfound {}", found.join("\n"));
+        }
+    }
+}
+
+/// Things that are said in another way.
+const OTHERS: &[Row] = &[
+    ("Mass", "unknown element type `Mass`", "`Body` if it has a size or turns, `Particle` if it is a point"),
+    ("Joint", "unknown element type `Joint`", "`Pin`, `Sleeve`"),
+    ("Gear", "unknown element type `Gear`", "`#[constraint(second + ratio * first = 0)] gear: Holonomic`"),
+    ("Belt", "unknown element type `Belt`", "Holonomic"),
+    ("Rope", "unknown element type `Rope`", "energy = k / 2 * pow(max(stretch, 0), 2)"),
+    ("Tendon", "unknown element type `Tendon`", "max(stretch, 0)"),
+    ("Limit", "unknown element type `Limit`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
+    ("EndStop", "unknown element type `EndStop`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
+    ("Contact", "unknown element type `Contact`", "`Rolling` or `Slipping`"),
+    ("Wheel", "unknown element type `Wheel`", "rolls(wheel.circle(radius, y), ground.plane(z))"),
+    ("Controller", "unknown element type `Controller`", "an input, `Force`, `Torque` or `Input`"),
+    ("Geometry", "unknown element type `Geometry`", "inertia = cuboid(m, a, b, c)"),
+    ("Ground", "unknown element type `Ground`", "`ground` is there already"),
+    ("World", "unknown element type `World`", "`ground` is there already"),
+    ("Lagrangian", "unknown element type `Lagrangian`", "`Potential`"),
+    (
+        "Constraint",
+        "unknown element type `Constraint`",
+        "`Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`",
+    ),
+    ("Output", "unknown element type `Output`", "`Scalar` or `Vector` with `#[output(…)]`"),
+    ("Sensor", "unknown element type `Sensor`", "`Scalar` or `Vector` with `#[output(…)]`"),
+    ("SpringDamper", "unknown element type `SpringDamper`", "a `Spring` and a `Dashpot`, a field for each"),
+    ("Time", "unknown element type `Time`", "time is `t`"),
+    ("bool", "field `other` has a type that a mechanism cannot have", "a field is a parameter"),
+    ("usize", "the parameter `other` cannot have the type `usize`", "parameters are real numbers"),
+    ("[f64; 3]", "field `other` has a type that a mechanism cannot have", "a field is a parameter"),
+    ("Vector3<f64>", "field `other` has a type that a mechanism cannot have", "three parameters"),
+    ("Spaceship", "unknown element type `Spaceship`", "`linkwork::elements` lists them"),
+];
+
+#[test]
+fn other_things_are_said_in_another_way() {
+    answers(|said| (String::new(), format!("{CART} other: {said}")), OTHERS);
+}

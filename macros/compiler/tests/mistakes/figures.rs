@@ -1,0 +1,66 @@
+//! Figures that no computation survives.
+
+use super::{Row, answers, messages};
+
+const ROWS: &[Row] = &[
+    ("mass = 1e308, inertia = sphere(1, 1)", "this figure is too large for `f64`: 1e308", "leave room"),
+    (
+        "mass = -1, inertia = sphere(1, 1)",
+        "the mass of `arm` cannot be negative, but it is -1",
+        "zero or more",
+    ),
+    ("mass = 1e-320, inertia = sphere(1, 1)", "this figure is too small for `f64`: 1e-320", "write 0"),
+    ("mass = 1, com = 1e200 * x", "this length is too large for `f64`: 1e200", "leave room"),
+    (
+        "mass = 1, inertia = diagonal(1e308, 1e308, 1e308)",
+        "this figure is too large for `f64`: 1e308",
+        "leave room",
+    ),
+    ("mass = 1e140, com = 1e70 * x", "the figures of `arm` are too large", "leaves no room"),
+];
+
+#[test]
+fn figures_leave_room() {
+    answers(
+        |said| {
+            let arm = format!("#[body({said})] arm: Body");
+            (String::new(), format!("{arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))
+        },
+        ROWS,
+    );
+}
+
+const SINGLE: &[Row] = &[
+    ("mass = 1e25, inertia = sphere(1, 1)", "this figure is too large for `f32`: 1e25", "leave room"),
+    ("mass = 1, com = 1e20 * x", "this length is too large for `f32`: 1e20", "leave room"),
+    ("mass = 1e300, inertia = sphere(1, 1)", "this number is too large for `f32`: 1e300", "use `f64`"),
+    ("mass = 1e-60, inertia = sphere(1, 1)", "this number is too small for `f32`: 1e-60", "use `f64`"),
+];
+
+#[test]
+fn figures_leave_room_in_single_precision() {
+    answers(
+        |said| {
+            let arm = format!("#[body({said})] arm: Body");
+            ("scalar = f32".to_string(), format!("{arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))
+        },
+        SINGLE,
+    );
+}
+
+/// What the sky and small machines need passes.
+#[test]
+fn figures_of_planets_and_of_small_machines_pass() {
+    for (scalar, mass, length) in [
+        ("f64", "1.989e30", "1.5e11"),
+        ("f64", "1e-15", "1e-6"),
+        ("f32", "1e-9", "1e-4"),
+        ("f32", "1e6", "100"),
+    ] {
+        let arm = format!(
+            "#[body(mass = {mass}, com = {length} * x, inertia = rod({mass}, {length}, x))] arm: Body"
+        );
+        let fields = format!("{arm}, #[joint(ground.at({length} * y) -> arm, about = z)] hinge: Pin");
+        assert_eq!(messages(&format!("scalar = {scalar}"), &fields), Vec::<String>::new(), "{mass} kg");
+    }
+}

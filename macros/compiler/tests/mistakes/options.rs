@@ -1,0 +1,51 @@
+//! Arguments of `#[mechanism]`.
+
+use super::{ARM, Row, answers};
+
+const ROWS: &[Row] = &[
+    (
+        "g = 9.81",
+        "`#[mechanism]` has no argument `g`",
+        "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`",
+    ),
+    ("gravity = 9.81", "expected a vector, found a scalar", "write `gravity = -9.81 * y`"),
+    ("gravity = (0, -9.81, 0)", "expected a scalar or a vector, found a list", "write `[0, -9.81, 0]`"),
+    ("gravity = -y * G", "unknown name `G`", "the macro cannot see the value of a constant"),
+    ("gravity = -9.81 * down", "unknown name `down`", "downwards is `-y` or `-z`"),
+    ("gravity = true", "unknown name `true`", "a value is a number"),
+    ("gravity", "`gravity` says nothing", "write `gravity = -9.81 * y`"),
+    ("no_gravity", "unknown word `no_gravity`", "without `gravity` there is none"),
+    ("derivatives = true", "`derivatives` is a word without a value", "write `derivatives` alone"),
+    ("prepare = \"yes\"", "`prepare` is a word without a value", "write `prepare` alone"),
+    ("batch = false", "`batch` is a word without a value", "leave it out"),
+    ("derivatives()", "`derivatives` is a word without a value", "write `derivatives` alone"),
+    ("jacobian", "unknown word `jacobian`", "did you mean `derivatives`?"),
+    ("gradients", "unknown word `gradients`", "did you mean `derivatives`?"),
+    ("linearize", "unknown word `linearize`", "did you mean `derivatives`?"),
+    ("simd", "unknown word `simd`", "did you mean `batch`?"),
+    ("sparse", "unknown word `sparse`", "did you mean `packed`?"),
+    ("momentum", "unknown word `momentum`", "did you mean `centroidal`?"),
+    ("\"two_links.urdf\"", "expected `name = value`, found a text", "write `urdf = \"two_links.urdf\"`"),
+    ("file = \"two_links.urdf\"", "`#[mechanism]` has no argument `file`", "did you mean `urdf`?"),
+    ("path = \"two_links.urdf\"", "`#[mechanism]` has no argument `path`", "did you mean `urdf`?"),
+    ("mjcf = \"robot.xml\"", "`#[mechanism]` has no argument `mjcf`", "only URDF files can be read"),
+    ("urdf = robot", "expected a string for `urdf`", "write `urdf = \"…\"`"),
+    ("base = free", "`base` is an option of a file", "`#[joint(ground -> body)] pose: Free`"),
+    ("floating_base = true", "`#[mechanism]` has no argument `floating_base`", "did you mean `base = free`?"),
+    ("f32", "unknown word `f32`", "write `scalar = f32`"),
+    ("scalar = f16", "unknown choice `f16` for `scalar`", "expected `f64` or `f32`"),
+    ("precision = f32", "`#[mechanism]` has no argument `precision`", "did you mean `scalar`?"),
+    ("solver = rk4", "`#[mechanism]` has no argument `solver`", "`linkwork::integrate`"),
+    ("dt = 0.01", "`#[mechanism]` has no argument `dt`", "`linkwork::integrate`"),
+    ("units = si", "`#[mechanism]` has no argument `units`", "SI units"),
+    ("formulation = lagrange", "unknown choice `lagrange` for `formulation`", "did you mean `multipliers`?"),
+    ("formulation = kane", "unknown choice `kane` for `formulation`", "did you mean `speeds`?"),
+    ("gravity = -9.81 * y, gravity = 0", "`gravity` is given twice", "remove one"),
+    ("gravity = -9.81 * y derivatives", "expected `,`", "arguments are separated by `,`"),
+    ("name = \"robot\"", "`#[mechanism]` has no argument `name`", "the struct's name"),
+];
+
+#[test]
+fn options() {
+    answers(|said| (said.to_string(), ARM.to_string()), ROWS);
+}

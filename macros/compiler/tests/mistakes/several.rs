@@ -1,0 +1,111 @@
+//! Several mistakes at once: each of them is said, and nothing that follows from another.
+
+use super::{ARM, counts, messages};
+
+const TOOL: &str = "#[body(mass = 1, inertia = sphere(1, 1))] tool: Body,";
+
+#[test]
+fn independent_mistakes_are_said_at_once() {
+    let arm = format!("{ARM} {TOOL}");
+    let rows: Vec<(String, usize)> = vec![
+        // An axis, a mass, a spring on another joint, an output.
+        (
+            "#[body(mass = mas)] arm: Body, #[joint(ground -> arm, about = up)] hinge: Pin,
+            #[acts(on = hinge, stiffness = k)] coil: Spring, #[output(sine(hinge))] seen: Scalar"
+                .to_string(),
+            4,
+        ),
+        // Everything on the arm of a joint with a wrong end is read.
+        (
+            format!(
+                "{arm} #[joint(arm.at(l * x) -> tool, about = z)] wrist: Pin,
+                #[acts(on = tool, along = xx)] push: Force, #[output(r(tip / ground))] seen: Vector,
+                #[constraint(norm(r(tool / ground)) = lenght)] held: Holonomic"
+            ),
+            4,
+        ),
+        // A spring between points whose places are not known, and nothing else.
+        (
+            format!(
+                "{arm} #[joint(arm -> tool, about = z)] wrist: Pin, #[point(on = tool, at = l * x)] tip: Point,
+                #[acts(between = (ground, tip), stiffness = 1)] coil: Spring,
+                #[output(v(tip / ground / ground))] seen: Vector"
+            ),
+            1,
+        ),
+        // A definition that is used everywhere is wrong once.
+        (
+            format!(
+                "{ARM} #[define(sine(hinge))] s: Scalar, #[output(s)] first: Scalar, #[output(2 * s)] second: Scalar,
+                #[acts(on = hinge, value = -s)] motor: Torque"
+            ),
+            1,
+        ),
+        // A particle that cannot be placed moves all the same.
+        (
+            format!(
+                "{ARM} theta: Coordinate, #[particle(mass = 1, at = l * cos(theta) * x)] bead: Particle,
+                #[acts(on = bead, along = x)] push: Force"
+            ),
+            1,
+        ),
+        // A frame that cannot be turned has axes all the same.
+        (
+            format!("{ARM} #[frame(ground, z(omega0 * t))] turned: Frame, #[output(dot(arm.x, turned.x))] seen: Scalar"),
+            1,
+        ),
+        // Two mistakes of grammar.
+        (format!("#[body(mass = 1 com = x)] tool: Body, {ARM} #[acts(hinge)] motor: Torque"), 2),
+        // A unit that is wrong in two places, and another mistake of units.
+        (
+            "l: f64, m: f64, n: f64, #[body(mass = l, com = l * x)] arm: Body,
+            #[joint(ground -> arm, about = z)] hinge: Pin,
+            #[body(mass = m, com = (m + n) * x, inertia = sphere(n, 1))] tool: Body,
+            #[joint(arm -> tool, about = z)] wrist: Pin"
+                .to_string(),
+            2,
+        ),
+    ];
+    let rows: Vec<(&str, &str, usize)> = rows.iter().map(|(fields, n)| ("", fields.as_str(), *n)).collect();
+    counts(&rows);
+}
+
+/// The other place of a conflict is a note of the one error.
+#[test]
+fn conflicts_are_one_error_with_a_note() {
+    for (fields, note) in [
+        ("l: f64, #[body(mass = l, com = l * x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin", "in `mass` of `arm`"),
+        (
+            "#[unit(m)] k: f64, #[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin,
+            #[acts(on = hinge, stiffness = k)] coil: Spring",
+            "in `stiffness` of `coil`",
+        ),
+        (
+            "#[body(mass = 1, com = x, at = x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin",
+            "the joint `hinge` places it as well",
+        ),
+        (
+            "hinge: f64, #[body(mass = hinge, com = x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin",
+            "another field has this name",
+        ),
+    ] {
+        let found = messages("", fields);
+        let good = matches!(found.as_slice(), [one] if one.contains("= note: ") && one.contains(note));
+        assert!(good, "{fields}\nexpected the note {note}\nfound {}", found.join("\n"));
+    }
+}
+
+#[test]
+fn too_many_degrees_of_freedom_are_told_what_to_do() {
+    let mut fields = String::new();
+    for k in 0..132 {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };
+        fields += &format!(
+            "#[body(mass = 1, com = x)] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,"
+        );
+    }
+    let found = messages("", &fields);
+    let good = matches!(found.as_slice(), [one] if one.starts_with("132 degrees of freedom, more than 128")
+        && one.contains("= help: every degree of freedom is written out") && one.contains("divide the mechanism"));
+    assert!(good, "{found:#?}");
+}

@@ -1,0 +1,216 @@
+//! Slips of the hand in the gallery: one token of a mechanism is lost, doubled, exchanged with its neighbour or taken for
+//! another one. Whatever comes of it, it is said in few words, each with what to do about it. Seeded, so that a failure comes
+//! again; `MUTATIONS=20000` tries more than the usual number.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::model::build_model;
+use linkwork_compiler::read;
+use proc_macro2::{Group, TokenStream, TokenTree};
+use quote::ToTokens;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Cases that are tried.
+const CASES: usize = 600;
+/// Most errors that one slip leads to.
+const MOST: usize = 3;
+/// Most tokens of a mechanism that is tried: larger ones take long, and their words are the same.
+const LARGEST: usize = 1500;
+/// Longest time for one case in a debug build, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A mechanism of the gallery.
+struct Subject {
+    name: String,
+    arguments: TokenStream,
+    item: TokenStream,
+}
+
+/// The mechanisms of the gallery.
+fn gallery() -> Vec<Subject> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let mut all = Vec::new();
+    for file in files.iter().filter(|file| file.extension().is_some_and(|end| end == "rs")) {
+        let text = std::fs::read_to_string(file).unwrap();
+        for item in syn::parse_file(&text).unwrap().items {
+            let syn::Item::Struct(mut item) = item else { continue };
+            let is_mechanism =
+                |a: &syn::Attribute| a.path().segments.last().is_some_and(|s| s.ident == "mechanism");
+            let Some(at) = item.attrs.iter().position(is_mechanism) else { continue };
+            let arguments = match item.attrs.remove(at).meta {
+                syn::Meta::List(list) => list.tokens,
+                _ => TokenStream::new(),
+            };
+            item.attrs.clear();
+            let name = item.ident.to_string();
+            all.push(Subject { name, arguments, item: item.into_token_stream() });
+        }
+    }
+    all.retain(|subject| count(&subject.item) <= LARGEST && !subject.arguments.to_string().contains("urdf"));
+    all
+}
+
+/// All tokens, groups and what is in them.
+fn count(tokens: &TokenStream) -> usize {
+    let inner = |token: TokenTree| match token {
+        TokenTree::Group(group) => 1 + count(&group.stream()),
+        _ => 1,
+    };
+    tokens.clone().into_iter().map(inner).sum()
+}
+
+/// A generator of numbers (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
+    }
+}
+
+/// What is done to one token.
+#[derive(Clone, Copy, Debug)]
+enum Slip {
+    Lost,
+    Doubled,
+    Exchanged,
+    /// One letter of a word is another one, or a number has another digit.
+    Misspelt,
+    /// It is taken for another token of the mechanism.
+    Mistaken,
+}
+
+const SLIPS: [Slip; 5] = [Slip::Lost, Slip::Doubled, Slip::Exchanged, Slip::Misspelt, Slip::Mistaken];
+
+/// All leaves.
+fn leaves(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
+    for token in tokens.clone() {
+        match &token {
+            TokenTree::Group(group) => leaves(&group.stream(), found),
+            _ => found.push(token),
+        }
+    }
+}
+
+/// The tokens with a slip at one of them, counted from the outside in.
+fn slip(
+    tokens: TokenStream,
+    at: &mut usize,
+    slip_: Slip,
+    others: &[TokenTree],
+    random: &mut Random,
+) -> TokenStream {
+    let mut out: Vec<TokenTree> = Vec::new();
+    let mut rest = tokens.into_iter().peekable();
+    while let Some(token) = rest.next() {
+        let here = *at == 0;
+        *at = at.wrapping_sub(1);
+        if here {
+            match slip_ {
+                Slip::Lost => {}
+                Slip::Doubled => out.extend([token.clone(), token]),
+                Slip::Exchanged => {
+                    out.extend(rest.next());
+                    out.push(token);
+                }
+                Slip::Misspelt => out.push(misspelt(token, random)),
+                Slip::Mistaken => out.push(others[random.below(others.len())].clone()),
+            }
+            continue;
+        }
+        match token {
+            TokenTree::Group(group) => {
+                let inner = slip(group.stream(), at, slip_, others, random);
+                out.push(Group::new(group.delimiter(), inner).into());
+            }
+            other => out.push(other),
+        }
+    }
+    out.into_iter().collect()
+}
+
+fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
+    let text = token.to_string();
+    let mut letters: Vec<char> = text.chars().collect();
+    let at = random.below(letters.len());
+    let letter = (b'a' + random.below(26) as u8) as char;
+    match (&token, random.below(3)) {
+        (TokenTree::Ident(_), 0) => letters.insert(at, letter),
+        (TokenTree::Ident(_), 1) if letters.len() > 1 => drop(letters.remove(at)),
+        (TokenTree::Ident(_), _) => letters[at] = letter,
+        (TokenTree::Literal(_), _) => letters.insert(at, '9'),
+        _ => {}
+    }
+    let text: String = letters.into_iter().collect();
+    text.parse::<TokenStream>().ok().and_then(|t| t.into_iter().next()).unwrap_or(token)
+}
+
+/// The messages of syntax and model.
+fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
+    let mut cx = Diagnostics::new();
+    if let Some(source) = read(arguments.clone(), item, Path::new(""), &mut cx)
+        && cx.is_empty()
+    {
+        build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+    }
+    cx.messages()
+}
+
+/// The first line with its names left out: the class of a message.
+fn class(message: &str) -> String {
+    let first = message.lines().next().unwrap_or_default();
+    first.split('`').step_by(2).collect::<Vec<_>>().join("`…`")
+}
+
+#[test]
+fn slips_of_the_hand_are_answered_in_few_words() {
+    let cases = std::env::var("MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(CASES);
+    let gallery = gallery();
+    assert!(gallery.len() > 40, "{} mechanisms", gallery.len());
+    let mut random = Random(20);
+    let mut wrong: BTreeMap<String, (usize, String)> = BTreeMap::new();
+    for case in 0..cases {
+        let subject = &gallery[random.below(gallery.len())];
+        let mut others = Vec::new();
+        leaves(&subject.item, &mut others);
+        let kind = SLIPS[random.below(SLIPS.len())];
+        let mut at = random.below(count(&subject.item));
+        let item = slip(subject.item.clone(), &mut at, kind, &others, &mut random);
+        // What is no struct to Rust is told by Rust.
+        if syn::parse2::<syn::ItemStruct>(item.clone()).is_err() {
+            continue;
+        }
+        let text = item.to_string();
+        let begun = Instant::now();
+        let run = std::panic::catch_unwind(|| messages(&subject.arguments, item));
+        let mut blame = |what: String| {
+            let example = format!("case {case}, {} {kind:?}: {text}", subject.name);
+            wrong.entry(what).or_insert((0, example)).0 += 1;
+        };
+        if begun.elapsed() > PATIENCE {
+            blame("slow".to_string());
+        }
+        match run {
+            Err(_) => blame("panics".to_string()),
+            Ok(found) => {
+                if found.len() > MOST {
+                    blame(format!("{} errors:\n{}", found.len(), found.join("\n")));
+                }
+                for message in found.iter().filter(|m| !m.contains("= help: ")) {
+                    blame(format!("no help: {}", class(message)));
+                }
+            }
+        }
+    }
+    let list: Vec<String> =
+        wrong.iter().map(|(what, (n, example))| format!("{n} × {what}\n    {example}")).collect();
+    assert!(list.is_empty(), "{} classes:\n{}", list.len(), list.join("\n\n"));
+}
