@@ -39,7 +39,18 @@ pub struct Piece {
     level: u8,
 }
 
+/// For which builds a body is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// For those that are optimised, and where there is no other body, for all.
+    Optimised,
+    /// For those with debug assertions. Without optimisation a call takes longer than what it computes, and every value
+    /// that is passed takes stack of its own: numbers alone, and operators instead of calls.
+    Debug,
+}
+
 struct Writer<'a> {
+    build: Build,
     program: &'a Program,
     /// By value: how many lanes it has, one for none.
     lanes: Vec<usize>,
@@ -54,7 +65,7 @@ struct Writer<'a> {
 }
 
 /// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
-pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool) {
+pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
     if let Shape::CalledForward(n) = f.shape
         && f.given().is_empty()
     {
@@ -62,9 +73,11 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         return;
     }
     // Several states fill the lanes by themselves.
-    let in_lanes = f.program.in_lanes.as_deref().filter(|_| !s.scalar.is_in_lanes());
+    let in_lanes =
+        f.program.in_lanes.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);
     let mut w = Writer {
+        build,
         program,
         lanes: program.lanes(),
         scalar: s.scalar,
@@ -313,6 +326,9 @@ impl Writer<'_> {
             Op::Sub(a, b) => self.infix([a, b], "-", lanes, (1, 2)),
             Op::Mul(a, b) => self.infix([a, b], "*", lanes, (2, 3)),
             Op::Div(a, b) => self.infix([a, b], "/", lanes, (2, 3)),
+            Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
+            Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
+            Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
             Op::MulAdd(a, b, c) => self.call("mul_add", &[a, b, c], lanes),
             Op::MulSub(a, b, c) => self.call("mul_sub", &[a, b, c], lanes),
             Op::NegMulAdd(a, b, c) => self.call("neg_mul_add", &[a, b, c], lanes),
@@ -345,6 +361,22 @@ impl Writer<'_> {
         let mut needs = a.needs;
         needs.extend(b.needs);
         Piece { text, needs, level }
+    }
+
+    /// `a * b + c` or `a * b - c`.
+    fn product_and(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
+        let product = self.infix(product, "*", 1, (2, 3));
+        let c = self.operand(c);
+        let text = format!("{} {op} {}", product.text, wrap(&c, 2));
+        Piece { text, needs: [product.needs, c.needs].concat(), level: 1 }
+    }
+
+    /// `c - a * b`.
+    fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
+        let c = self.operand(c);
+        let product = self.infix(product, "*", 1, (2, 3));
+        let text = format!("{} - {}", wrap(&c, 1), product.text);
+        Piece { text, needs: [c.needs, product.needs].concat(), level: 1 }
     }
 
     fn call(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {

@@ -1,7 +1,7 @@
 //! Large functions choose their arithmetic at run time: their bodies stand in implementations of a trait of the runtime,
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
-use super::body::write_body;
+use super::body::{Build, write_body};
 use super::function::{Function, Shape, Signature, write_function, write_head};
 use super::item::{ALLOW, Head};
 use std::fmt::Write;
@@ -9,6 +9,10 @@ use std::fmt::Write;
 /// Fewest operations of a function that chooses. The choice costs about two nanoseconds, and a function that is called
 /// cannot be inlined.
 const LARGE: usize = 60;
+
+/// Most operations of a function that has a body of its own for debug builds: both are read by the compiler, whichever it
+/// takes.
+const LARGEST: usize = 5000;
 
 /// The bodies of a type's functions that choose.
 pub struct Bodies {
@@ -26,6 +30,8 @@ struct Body {
     /// It takes several states at once.
     in_lanes: bool,
     text: String,
+    /// For debug builds.
+    debug: Option<String>,
 }
 
 /// True for a function that chooses. What calls others multiplies their matrices.
@@ -61,15 +67,29 @@ impl Bodies {
             s.scalar.one()
         );
         let mut text = String::new();
-        write_body(&mut text, f, s, true);
-        self.list.push(Body { types, names, result: f.result(s), in_lanes: s.scalar.is_in_lanes(), text });
+        write_body(&mut text, f, s, true, Build::Optimised);
+        // What calls others multiplies their matrices, and several states are lanes in any build.
+        let differs = !f.shape.calls() && !s.scalar.is_in_lanes();
+        let debug = (differs && f.program.instructions.len() <= LARGEST).then(|| {
+            let mut text = String::new();
+            write_body(&mut text, f, s, true, Build::Debug);
+            text
+        });
+        self.list.push(Body {
+            types,
+            names,
+            result: f.result(s),
+            in_lanes: s.scalar.is_in_lanes(),
+            text,
+            debug,
+        });
     }
 
     /// Writes the bodies of the functions of a type of this name.
     pub fn write(&self, out: &mut String, name: &str, head: &Head) {
         let Head { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {
-            let Body { types, names, result, text, .. } = body;
+            let Body { types, names, result, text, debug, .. } = body;
             let own =
                 generics.trim().trim_start_matches('<').trim_end_matches('>').trim().trim_end_matches(',');
             let lanes = if body.in_lanes { "const LANES: usize" } else { "" };
@@ -77,11 +97,16 @@ impl Bodies {
             let _ = writeln!(
                 out,
                 "{ALLOW}#[doc(hidden)]\nimpl<{own}{comma}{lanes}> ::linkwork::__private::Evaluate<{k}, {types}> for {name}{arguments} {bounds} {{
-                type Output = {result};
-                #[inline(always)]
-                fn evaluate<Ops: ::linkwork::__private::Arithmetic>(&self, {names}: {types}) -> {result} {{\n{text}}}
-                }}"
+                type Output = {result};"
             );
+            let head = format!(
+                "fn evaluate<Ops: ::linkwork::__private::Arithmetic>(&self, {names}: {types}) -> {result}"
+            );
+            if let Some(debug) = debug {
+                let _ = writeln!(out, "#[cfg(debug_assertions)]\n{head} {{\n{debug}}}");
+                out.push_str("#[cfg(not(debug_assertions))]\n");
+            }
+            let _ = writeln!(out, "#[inline(always)]\n{head} {{\n{text}}}\n}}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A generated function: its arguments, its result, and what it computes.
 
-use super::body::write_body;
+use super::body::{Build, write_body};
 use super::matrices;
 use super::scalar::ScalarSpelling;
 use crate::lower::Program;
@@ -287,7 +287,7 @@ pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: b
     if stub {
         out.push_str("loop {}\n");
     } else {
-        write_body(out, f, s, false);
+        write_body(out, f, s, false, Build::Optimised);
     }
     out.push_str("}\n");
 }

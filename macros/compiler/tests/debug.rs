@@ -1,0 +1,44 @@
+//! Large functions have bodies of their own for debug builds, where calls and lanes would cost the most.
+
+use linkwork_compiler::expand;
+use std::path::Path;
+
+/// The generated code of a floating body with arms of six joints.
+fn arms(names: &[&str]) -> String {
+    let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,"
+        .to_string();
+    for name in names {
+        let mut parent = "trunk".to_string();
+        for (k, axis) in ["x", "y", "z", "x", "y", "z"].iter().enumerate() {
+            item += &format!(
+                "#[body(mass = 2, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] {name}{k}: Body,
+                #[joint({parent} -> {name}{k}, about = {axis})] {name}_joint{k}: Pin,\n"
+            );
+            parent = format!("{name}{k}.at(0.4 * z)");
+        }
+    }
+    item += "}";
+    let emitted = expand("gravity = -9.81 * z".parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    format!("{}{}", emitted.tokens, emitted.text)
+}
+
+/// The bodies for debug builds, and those for all others.
+fn bodies(code: &str) -> Vec<(&str, &str)> {
+    let both = code.split("#[cfg(debug_assertions)]").skip(1);
+    both.map(|text| text.split_once("#[cfg(not(debug_assertions))]").expect("one of either")).collect()
+}
+
+#[test]
+fn debug_builds_have_operators_for_calls() {
+    for names in [&["one"][..], &["left", "right"]] {
+        let code = arms(names);
+        let bodies = bodies(&code);
+        assert!(bodies.len() > 4, "{names:?}: inverse and forward dynamics, at least");
+        for (debug, _) in &bodies {
+            assert!(!debug.contains("mul_add(") && !debug.contains("mul_sub("), "{names:?}");
+            assert!(!debug.contains(".lane::<") && !debug.contains("Ops::splat"), "{names:?}");
+        }
+        assert!(bodies.iter().any(|(_, other)| other.contains("Ops::mul_add(")), "{names:?}");
+        assert!(bodies.iter().any(|(_, other)| other.contains(".lane::<")), "{names:?}");
+    }
+}
