@@ -4,7 +4,7 @@
 //! default target, where generated functions ask for AVX2 and FMA as here. Nanoseconds of all angles of a call, which are
 //! within 10⁴ rad: the least over many rounds, in which all take turns.
 
-use linkwork::__private::{Arithmetic, Body, dispatch};
+use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_benches::random::Random;
 use std::array::from_fn;
 use std::hint::black_box;
@@ -25,7 +25,7 @@ type Both<const N: usize> = ([f64; N], [f64; N]);
 /// What a generated function calculates first.
 struct Sines;
 
-impl<const N: usize> Body<0, &[f64; N]> for Sines {
+impl<const N: usize> Evaluate<0, &[f64; N]> for Sines {
     type Output = Both<N>;
 
     #[inline(always)]
