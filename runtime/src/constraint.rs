@@ -11,19 +11,23 @@ use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
 mod assemble;
+mod careful;
 mod complete;
 mod linearize;
 mod slipping;
 mod solve;
+mod span;
 mod stabilized;
 
+#[doc(hidden)]
+pub use careful::{Structure, careful_dynamics, careful_response};
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, columns, constrained_derivatives};
 #[doc(hidden)]
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]
-pub use solve::{least_multipliers, least_solution, regular_solution};
+pub use solve::{independent_solution, least_solution, regular_solution};
 pub use stabilized::{Stabilized, stabilized};
 
 /// Newton steps of a projection; a state that has drifted needs one or two.

@@ -129,8 +129,9 @@ pub mod __private {
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled};
     pub use crate::constraint::{
-        Motion, columns, constrained_derivatives, least_multipliers, least_solution, pressing_solution,
-        regular_solution, slipping_response, slipping_solution,
+        Motion, Structure, careful_dynamics, careful_response, columns, constrained_derivatives,
+        independent_solution, least_solution, pressing_solution, regular_solution, slipping_response,
+        slipping_solution,
     };
     pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, splat};

@@ -20,6 +20,8 @@ struct Chain {
     closing: usize,
     anchor: [f64; 3],
     planar: bool,
+    /// By how many powers of ten the masses differ, and how.
+    masses: (f64, [f64; 6]),
 }
 
 /// Joints that close a loop, with what they need.
@@ -38,7 +40,8 @@ impl Chain {
         let vector = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
         let mut item = String::from("struct Chain {\n");
         let mut parent = "ground".to_string();
-        for (k, (axis, offset, slide)) in self.joints.iter().enumerate() {
+        for (k, ((axis, offset, slide), share)) in self.joints.iter().zip(self.masses.1).enumerate() {
+            let mass = 1.5 * 10_f64.powf(self.masses.0 * (share - 0.5));
             let axis = match self.planar {
                 true => if *slide { "x" } else { "z" }.to_string(),
                 false => format!("unit({})", vector(axis)),
@@ -47,7 +50,7 @@ impl Chain {
             let (kind, key) = if *slide { ("Sleeve", "along") } else { ("Pin", "about") };
             let _ = writeln!(
                 item,
-                "#[body(mass = 1.5, com = {}, inertia = diagonal(0.3, 0.4, 0.5))] b{k}: Body,
+                "#[body(mass = {mass:?}, com = {}, inertia = diagonal({mass:?} / 5, {mass:?} / 4, {mass:?} / 3))] b{k}: Body,
                 #[joint({parent}.at({}) -> b{k}, {key} = {axis})] j{k}: {kind},",
                 vector(&offset.map(|x| x / 2.0)),
                 vector(&offset)
@@ -71,8 +74,11 @@ fn chains() -> impl Strategy<Value = Chain> {
         .prop_filter("a direction needs a length", |(axis, ..)| {
             axis.iter().map(|x| x * x).sum::<f64>() > 0.1
         });
-    (prop::collection::vec(joint, 3..=6), any::<usize>(), prop::array::uniform3(0.2..1.0_f64), any::<bool>())
-        .prop_map(|(joints, closing, anchor, planar)| Chain { joints, closing, anchor, planar })
+    let masses = (prop_oneof![Just(0.0), Just(3.0), Just(12.0)], prop::array::uniform6(0.0..1.0_f64));
+    let anchor = prop::array::uniform3(0.2..1.0_f64);
+    (prop::collection::vec(joint, 3..=6), any::<usize>(), anchor, any::<bool>(), masses).prop_map(
+        |(joints, closing, anchor, planar, masses)| Chain { joints, closing, anchor, planar, masses },
+    )
 }
 
 /// The model, unless the chain cannot move or its speeds depend on each other.
@@ -97,7 +103,7 @@ fn both_formulations_fulfil_the_equations() {
             let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
             let force: Vec<Expr<'_>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
             let (rows, bias) = (constraints::jacobian(model), constraints::biases(model));
-            let by_multipliers = constraints::solve(model, &mass, &rows, force.clone(), bias.clone());
+            let by_multipliers = constraints::solve(&mass, &rows, force.clone(), bias.clone());
             let pivots = model.dependent.as_ref().expect("speeds were asked for");
             let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
             let (nv, nc) = (model.nv(), rows.len());

@@ -9,4 +9,5 @@ mod invariants;
 mod long_runs;
 mod overdetermined;
 mod reactions;
+mod singular;
 mod slipping;

@@ -1,6 +1,6 @@
 //! What generated code calls where contacts slip: the signs of their normal forces are found, with which friction acts.
 
-use super::solve::{regular, regular_solution};
+use super::solve::{determined, regular_solution, split};
 use super::{ConstraintError, Solution};
 use crate::Real;
 use crate::private::constant;
@@ -12,6 +12,7 @@ use nalgebra::SVector;
 #[inline]
 pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
     rows: &[usize; K],
+    groups: &[usize; NC],
     names: &[&'static str; NC],
     solve: impl Fn(&[T; K]) -> [T; N],
 ) -> Result<Solution<T, NV, NC>, ConstraintError> {
@@ -20,7 +21,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
     for _ in 0..=2 * K {
         let found = solve(&sides);
         for row in 0..NC {
-            if !regular::<T, NV, NC, N>(&found, row) {
+            if !determined::<T, NV, NC, N>(groups, &found, row) {
                 return Err(if rows.contains(&row) { jammed(row) } else { ConstraintError::Singular });
             }
         }
@@ -33,8 +34,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
             }
         }
         if settled {
-            let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-            return Ok((SVector::from_fn(|k, _| part(k)), SVector::from_fn(|k, _| part(NV + k))));
+            return Ok(split(&found));
         }
     }
     Err(jammed(rows.first().copied().unwrap_or(0)))
@@ -44,9 +44,10 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
 #[inline]
 pub fn pressing_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
     rows: &[usize],
+    groups: &[usize; NC],
     found: &[T; N],
 ) -> Option<Solution<T, NV, NC>> {
-    let solution = regular_solution::<T, NV, NC, N>(found)?;
+    let solution = regular_solution::<T, NV, NC, N>(groups, found)?;
     let presses = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
     rows.iter().all(presses).then_some(solution)
 }
@@ -55,6 +56,7 @@ pub fn pressing_solution<T: Real, const NV: usize, const NC: usize, const N: usi
 #[inline]
 pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
     rows: &'a [usize; K],
+    groups: &'a [usize; NC],
     lambda: &'a SVector<T, NC>,
     solve: impl Fn(&[T; NV], &[T; NC], &[T; K]) -> [T; N] + 'a,
 ) -> impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV> + 'a {
@@ -63,7 +65,8 @@ pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const N:
             Some(force) if *force < T::zero() => -T::one(),
             _ => T::one(),
         });
-        let solution = regular_solution::<T, NV, NC, N>(&solve(force, bias, &sides));
-        solution.map_or_else(|| SVector::repeat(constant(f64::NAN)), |(a, _)| a)
+        let found = solve(force, bias, &sides);
+        let is_determined = (0..NC).all(|k| determined::<T, NV, NC, N>(groups, &found, k));
+        if is_determined { split::<T, NV, NC, N>(&found).0 } else { SVector::repeat(constant(f64::NAN)) }
     }
 }

@@ -334,7 +334,7 @@ impl<'g> Forms<'g> {
                 return constraints::responses(&mass, &rows, force.to_vec(), bias, &self.joints);
             }
             let (mass, force) = self.loaded(model, force, bias);
-            constraints::solve(model, &mass, &rows, force, bias.to_vec())
+            constraints::solve(&mass, &rows, force, bias.to_vec())
         })
     }
 

@@ -24,6 +24,8 @@ pub struct Constraints {
     pub determining: Vec<usize>,
     /// Some follow from others everywhere: only least squares tell the multipliers.
     pub overdetermined: bool,
+    /// Accelerations are those of independent speeds, by pivots that are chosen in advance.
+    pub independent: bool,
 }
 
 impl Constraints {
@@ -38,6 +40,7 @@ impl Constraints {
             slipping: slips.then_some(0).into_iter().collect(),
             determining: Vec::new(),
             overdetermined: false,
+            independent: false,
         }
     }
 
@@ -56,6 +59,7 @@ impl Constraints {
             slipping: those(|c| !c.drags.is_empty()),
             determining: those(|c| c.determines),
             overdetermined: model.is_overdetermined(),
+            independent: model.dependent.is_some(),
         }
     }
 }
@@ -126,7 +130,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         out,
         "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
-        /// Lagrange multipliers by a sparse elimination; where the configuration is singular or constraints are redundant, by least squares.
+        /// Lagrange multipliers by a sparse elimination. Near singular positions, and with masses so different that digits would be lost, by an orthogonal factorisation of `J` in the metric of the kinetic energy; in a singular position the motion goes on as before. Where constraints are redundant or contradict each other, least squares count.
         #[inline]\n#[must_use]
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
@@ -142,6 +146,8 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             let found = self.__constraint_correction({pass}q, force, bias);
             {correction}.0
         }}
+        #[doc(hidden)]
+        pub const __STRUCTURE: ::linkwork::__private::Structure<{nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
         /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
         ///
         /// # Errors
@@ -174,7 +180,10 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
-        correction = solution(c, s, "(*force).into()", "(*bias).into()"),
+        correction = solution(c, s, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
+        groups = c.groups,
+        determining = c.determining,
+        rank = s.nv.saturating_sub(c.freedom[1]),
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
     );
     if functions.iter().any(|f| f.name == "__motion_derivatives") {
@@ -182,33 +191,34 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
 }
 
-/// Accelerations and multipliers from what was `found`: of an elimination unless it fails for the forces and biases, which
-/// are spelt as given; of an overdetermined mechanism always by least squares.
-fn solution(c: &Constraints, s: &Signature<'_>, force: &str, bias: &str) -> String {
-    let pass = Words::new(c, s).pass;
+/// Accelerations and multipliers from what was `found` by an elimination, or the `careful` way where that loses digits.
+/// Corrections are always found by multipliers.
+fn solution(c: &Constraints, s: &Signature<'_>, independent: bool, careful: &str) -> String {
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let (groups, determining) = (&c.groups, &c.determining);
-    if c.overdetermined {
-        let n = (nv + nc) * (1 + nc);
-        return format!(
-            "::linkwork::__private::least_solution::<{scalar}, {nv}, {nc}, {n}>(&{groups:?}, &found)"
-        );
-    }
     let n = nv + 3 * nc;
+    let quick = if c.overdetermined {
+        let n = (nv + nc) * (1 + nc);
+        format!(
+            "least_solution::<{scalar}, {nv}, {nc}, {n}>(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
+        )
+    } else if independent {
+        format!("independent_solution::<{scalar}, {nv}, {nc}, {n}>(&found)")
+    } else {
+        format!("regular_solution::<{scalar}, {nv}, {nc}, {n}>(&Self::__STRUCTURE.groups, &found)")
+    };
     format!(
-        "match ::linkwork::__private::regular_solution::<{scalar}, {nv}, {nc}, {n}>(&found) {{
+        "match ::linkwork::__private::{quick} {{
             ::core::option::Option::Some(solution) => solution,
-            ::core::option::Option::None => ::linkwork::__private::least_multipliers(&{groups:?}, &{determining:?}, &self.mass_matrix({pass}q), &self.constraint_jacobian({pass}q), &{force}, &{bias}),
+            ::core::option::Option::None => ::linkwork::__private::{careful},
         }}"
     )
 }
 
 /// Accelerations and multipliers of a mechanism whose contacts do not slip.
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
-    let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
-    let force = format!("(tau - self.bias_forces({pass}q, v))");
-    let bias = format!("self.constraint_bias({pass}q, v)");
-    let solution = solution(c, s, &force, &bias);
+    let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
+    let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
+    let solution = solution(c, s, c.independent, &careful);
     format!(
         "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
         #[inline]\n#[must_use]
@@ -237,7 +247,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
         /// `Jammed` where the normal force of a contact that slips does not follow from the motion (Painlevé's paradox: friction that presses harder than it yields); `Singular` where other constraints are redundant.
         #[inline]
         pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
-            ::linkwork::__private::slipping_solution::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
+            ::linkwork::__private::slipping_solution::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
         }}"
     )
 }
@@ -255,7 +265,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     } else {
         let (slipping, k, n) = (&c.slipping, c.slipping.len(), nv + 3 * nc);
         format!(
-            "::linkwork::__private::slipping_response::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
+            "::linkwork::__private::slipping_response::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::__STRUCTURE.groups, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
         )
     };
     let forces = format!("columns::<{scalar}, {nv}, 1>(&inputs, 0)");

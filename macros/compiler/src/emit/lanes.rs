@@ -85,14 +85,19 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         0 => String::new(),
         k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.name()),
     };
+    let sizes = format!("::<{}, {nv}, {nc}, {}>", s.scalar.name(), nv + 3 * nc);
+    let quick = match i.constraints.independent {
+        true => format!("independent_solution{sizes}(&found)"),
+        false => format!("pressing_solution{sizes}(&{slipping:?}, &Self::__STRUCTURE.groups, &found)"),
+    };
     let _ = writeln!(
         out,
         "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit.
         #[inline]\n#[must_use]
         pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
-            use ::linkwork::__private::{{lane, lane_by_lane, pressing_solution}};
+            use ::linkwork::__private::{{lane, lane_by_lane}};
             let found = self.__constrained_dynamics_lanes({}{sides});
-            match pressing_solution::<{}, {nv}, {nc}, {}>(&{slipping:?}, &found) {{
+            match ::linkwork::__private::{quick} {{
                 ::core::option::Option::Some(solution) => solution.0,
                 ::core::option::Option::None => {single},
             }}
@@ -100,8 +105,6 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         s.parameters(&arguments),
         s.vector(nv),
         names.join(", "),
-        s.scalar.name(),
-        nv + 3 * nc,
     );
 }
 

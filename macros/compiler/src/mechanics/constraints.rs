@@ -43,10 +43,8 @@ pub fn biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then what tells whether they can be trusted: for
-/// each constraint its pivot, and what that was before other constraints took their part of it, summed
-/// over its group.
+/// each constraint its pivot, and what that was before other constraints took their part of it.
 pub fn solve<'g>(
-    model: &Model<'g>,
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
     force: Vec<Expr<'g>>,
@@ -62,7 +60,7 @@ pub fn solve<'g>(
         *multiplier = -*multiplier;
     }
     x.extend(pivots[nv..].iter().map(|p| -*p));
-    x.extend(in_groups(model, &taken[nv..]));
+    x.extend_from_slice(&taken[nv..]);
     x
 }
 
@@ -92,15 +90,6 @@ pub fn responses<'g>(
     }
     out.extend(given.concat());
     out
-}
-
-/// By constraint, the sum over its group.
-pub fn in_groups<'g>(model: &Model<'g>, each: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let sum = |group| {
-        let own = model.constraints.iter().zip(each).filter(|(c, _)| c.group == group);
-        own.fold(model.graph.zero(), |sum, (_, e)| sum + *e)
-    };
-    model.constraints.iter().map(|c| sum(c.group)).collect()
 }
 
 /// `Jᵀ λ`, with the friction that follows from normal forces: what constraints contribute to the forces.
@@ -183,10 +172,7 @@ pub fn solve_by_speeds<'g>(
         at.map_or(g.zero(), |(k, _)| lambda[*k][0])
     }));
     out.extend(sizes.iter().map(|p| p.square()));
-    out.extend(model.constraints.iter().map(|own| {
-        let group = model.constraints.iter().zip(&rows).filter(|(c, _)| c.group == own.group);
-        group.fold(g.zero(), |sum, (_, row)| sum + dot(row, row))
-    }));
+    out.extend(rows.iter().map(|row| dot(row, row)));
     out
 }
 

@@ -69,7 +69,7 @@ pub fn solve<'g>(
         *multiplier = -*multiplier;
     }
     x.extend(pivots[nv..].iter().map(|p| -*p));
-    x.extend(super::constraints::in_groups(model, &taken[nv..]));
+    x.extend_from_slice(&taken[nv..]);
     x
 }
 

@@ -1,0 +1,280 @@
+//! The careful way to accelerations and multipliers: where straight-line elimination would lose digits, with light and
+//! heavy bodies in one loop, near singular positions and in them.
+
+mod passing;
+
+use super::span::{Metric, Span, at, dot, orthogonal, rounding};
+use super::{Constrained, Solution};
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+/// What is known of the constraints of a mechanism before it runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Structure<const NC: usize> {
+    /// Constraints of one number are components of one vector.
+    pub groups: [usize; NC],
+    /// Those that determine coordinates without inertia.
+    pub determining: &'static [usize],
+    /// How many are independent where the position is not singular.
+    pub rank: usize,
+}
+
+/// `v̇` and the multipliers of least norm: `M v̇ + h = τ + Jᵀ λ`, `J v̇ = −b`, for any masses and in any position.
+///
+/// In a singular position fewer constraints are independent than elsewhere, and `J v̇ = −b` leaves accelerations open that
+/// are determined a moment before and after; close to it they follow from differences of rounded numbers. There, those of
+/// the motion that passes through are taken, which are continuous. At rest nothing tells the branches from each other;
+/// the least deviation from free motion in the metric of the kinetic energy is taken then (Gauss).
+#[cold]
+#[inline(never)]
+pub fn careful_dynamics<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    structure: &Structure<NC>,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    tau: &SVector<T, NV>,
+) -> Solution<T, NV, NC>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let system = System::of(mechanism, t, (q, v), tau);
+    let (least, regular) = system.solve(structure, zone(), Weak::Dropped);
+    if regular {
+        return least;
+    }
+    // On constraints that are fulfilled up to a rounding ε, rows of size σ ask for accelerations that are off by ε v² / σ³.
+    let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+    let (speed, root) = (size(v), epsilon::<T>().sqrt());
+    let clear = (constant::<T>(4.0) * root * speed * speed / size(&least.0)).cbrt();
+    if clear < zone() {
+        let (taken, regular) = system.solve(structure, clear, Weak::Dropped);
+        if regular {
+            return taken;
+        }
+    }
+    // Fast motion leads out of the zone by itself; slow motion by accelerations, which are well known then.
+    let start = match speed * speed > size(&least.0) * far() {
+        true => least.0,
+        false => system.solve(structure, epsilon::<T>().cbrt(), Weak::Dropped).0.0,
+    };
+    let passing = passing::acceleration(mechanism, structure, t, (q, v), tau, start);
+    system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
+}
+
+/// Rows of this size, beside the numbers that they are computed from, are far enough from singular positions.
+fn zone<T: Real>() -> T {
+    epsilon::<T>().cbrt().sqrt()
+}
+
+/// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a singular position
+/// is not chased unless it is more than rounding: the change of velocity that takes it away would be large there.
+#[cold]
+#[inline(never)]
+pub fn careful_response<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    structure: &Structure<NC>,
+    t: T,
+    q: &SVector<T, NQ>,
+    force: &[T; NV],
+    bias: &[T; NC],
+) -> Solution<T, NV, NC>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
+    let (root, third) = (epsilon::<T>().sqrt(), epsilon::<T>().cbrt());
+    let gap = bias.iter().fold(T::zero(), |most, b| most.max(b.abs()));
+    let weak = match (gap + gap > root, gap > third * third) {
+        (true, _) => Weak::Down(root),
+        (_, true) => Weak::Down(third),
+        _ => Weak::Dropped,
+    };
+    System { mass, jacobian, force: *force, bias: *bias }.solve(structure, zone(), weak).0
+}
+
+/// How far it is out of a singular position, m or rad: what rounding and interpolation leave is about the same there.
+fn far<T: Real>() -> T {
+    constant::<T>(6.0) * zone()
+}
+
+/// What is independent beyond the rank that the constraints have elsewhere, beside what it was: states between the
+/// steps of an integrator do not fulfil constraints that follow from others.
+fn beyond<T: Real>() -> T {
+    if epsilon::<T>() < constant(1e-10) { constant(1e-4) } else { constant(1e-2) }
+}
+
+/// What becomes of constraints that nearly lose their rank.
+#[derive(Clone, Copy)]
+enum Weak<T, const NV: usize> {
+    /// The accelerations that they leave open are these.
+    Known(SVector<T, NV>),
+    /// They are taken as they are.
+    Taken,
+    /// They are taken down to this size.
+    Down(T),
+    /// They are left out.
+    Dropped,
+}
+
+/// A system of accelerations and multipliers.
+struct System<T, const NV: usize, const NC: usize> {
+    mass: SMatrix<T, NV, NV>,
+    jacobian: SMatrix<T, NC, NV>,
+    force: [T; NV],
+    bias: [T; NC],
+}
+
+impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
+    /// That of a mechanism in a state.
+    fn of<M, const NQ: usize, const NU: usize, const NH: usize>(
+        mechanism: &M,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        tau: &SVector<T, NV>,
+    ) -> Self
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
+        Self {
+            mass: mechanism.mass_matrix(t, q),
+            jacobian: mechanism.constraint_jacobian(t, q),
+            force: (tau - mechanism.bias_forces(t, q, v)).data.0[0],
+            bias: mechanism.constraint_bias(t, q, v).data.0[0],
+        }
+    }
+
+    /// The solution, and whether the constraints have the rank that they have elsewhere with rows of more than the size
+    /// `clear`.
+    fn solve(&self, structure: &Structure<NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
+        let (mass, force) = self.loaded(structure);
+        let metric = Metric::of(&mass);
+        let mut span = Span::of(&metric, &self.jacobian, &structure.groups);
+        span.extend(clear, structure.rank);
+        let regular = span.rank >= structure.rank;
+        match weak {
+            _ if regular => span.extend(beyond(), NC),
+            Weak::Taken => span.extend(rounding(), structure.rank),
+            Weak::Down(size) => span.extend(size, structure.rank),
+            Weak::Known(_) | Weak::Dropped => {}
+        }
+        let free = span.forward(&metric.half(force));
+        let mut x = match weak {
+            Weak::Known(a) if !regular => span.forward(&metric.upper(&a.data.0[0])),
+            _ => free,
+        };
+        let triangle = Triangle::of(&span);
+        let known = triangle.particular(&span, &self.bias);
+        let mut lacking = [T::zero(); NC];
+        for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
+            if let Some(slot) = lacking.get_mut(k) {
+                *slot = *known - *free;
+            }
+            *x = *known;
+        }
+        let a = metric.back(span.backward(x));
+        ((SVector::from(a), SVector::from(triangle.multipliers(&span, &lacking))), regular)
+    }
+
+    /// Mass matrix and forces with what makes up for coordinates without inertia: with the rows `J` that determine them,
+    /// `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
+    fn loaded(&self, structure: &Structure<NC>) -> ([[T; NV]; NV], [T; NV]) {
+        let (mut mass, mut force) = (self.mass.data.0, self.force);
+        let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
+        for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
+        {
+            for i in 0..NV {
+                let heavy = self.jacobian.data.0[i][row] * weight;
+                force[i] -= heavy * *bias;
+                for j in 0..NV {
+                    mass[j][i] += heavy * self.jacobian.data.0[j][row];
+                }
+            }
+        }
+        (mass, force)
+    }
+}
+
+/// The triangle `R` of the columns, in their own lengths; `Rᵀ = U S` where not all columns are in the basis.
+struct Triangle<T, const NC: usize> {
+    base: [[T; NC]; NC],
+    upper: [[T; NC]; NC],
+}
+
+impl<T: Real, const NC: usize> Triangle<T, NC> {
+    fn of<const NV: usize>(span: &Span<T, NV, NC>) -> Self {
+        let rank = span.rank;
+        if rank == NC {
+            return Self { base: [[T::zero(); NC]; NC], upper: [[T::zero(); NC]; NC] };
+        }
+        let mut base = core::array::from_fn(|j| span.columns.map(|c| at(&c.x, j) * c.length));
+        let upper = orthogonal(&mut base, rank);
+        Self { base, upper }
+    }
+
+    /// `Rᵀ z = −b`, or least squares.
+    fn particular<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
+        let rank = span.rank;
+        let mut z = [T::zero(); NC];
+        if rank < NC {
+            for j in (0..NC).take(rank).rev() {
+                let sum = -dot(&self.base[j], bias);
+                z[j] =
+                    (j + 1..NC).take_while(|i| *i < rank).fold(sum, |sum, i| sum - self.upper[j][i] * z[i])
+                        / self.upper[j][j];
+            }
+            return z;
+        }
+        for step in 0..NC {
+            let Some((k, pivot)) = span.pivot(step) else { continue };
+            let sum = pivot.x.iter().zip(&z).take(step);
+            let rest = sum.fold(-at(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
+            z[step] = rest / at(&pivot.x, step);
+        }
+        z
+    }
+
+    /// The least `λ` with `R λ = d`.
+    fn multipliers<const NV: usize>(&self, span: &Span<T, NV, NC>, lacking: &[T; NC]) -> [T; NC] {
+        let rank = span.rank;
+        let mut lambda = [T::zero(); NC];
+        let mut rest = *lacking;
+        if rank < NC {
+            for j in (0..NC).take(rank) {
+                let part = (0..j).fold(rest[j], |sum, i| sum - self.upper[i][j] * rest[i]) / self.upper[j][j];
+                rest[j] = part;
+                lambda.iter_mut().zip(&self.base[j]).for_each(|(sum, b)| *sum += part * *b);
+            }
+            return lambda;
+        }
+        for step in (0..NC).rev() {
+            let Some((k, pivot)) = span.pivot(step) else { continue };
+            let share = rest[step] / at(&pivot.x, step);
+            rest.iter_mut().zip(&pivot.x).take(step).for_each(|(rest, x)| *rest -= share * *x);
+            if let Some(slot) = lambda.get_mut(k) {
+                *slot = share / pivot.length;
+            }
+        }
+        lambda
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,297 @@
+//! Random systems of light and heavy bodies under constraints that nearly depend on each other, against an elimination in
+//! twice the precision.
+
+use super::*;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number of about 32 digits, as the sum of two (Dekker, *A floating-point technique for extending the available
+/// precision*, Numer. Math. 18, 1971).
+#[derive(Clone, Copy)]
+struct Double(f64, f64);
+
+impl Double {
+    fn sum(a: f64, b: f64) -> Double {
+        let s = a + b;
+        let part = s - a;
+        Double(s, (a - (s - part)) + (b - part))
+    }
+}
+
+impl Add for Double {
+    type Output = Double;
+    fn add(self, o: Double) -> Double {
+        let (high, low) = (Double::sum(self.0, o.0), Double::sum(self.1, o.1));
+        let middle = Double::sum(high.0, high.1 + low.0);
+        Double::sum(middle.0, middle.1 + low.1)
+    }
+}
+
+impl Neg for Double {
+    type Output = Double;
+    fn neg(self) -> Double {
+        Double(-self.0, -self.1)
+    }
+}
+
+impl Sub for Double {
+    type Output = Double;
+    fn sub(self, o: Double) -> Double {
+        self + -o
+    }
+}
+
+impl Mul for Double {
+    type Output = Double;
+    fn mul(self, o: Double) -> Double {
+        let p = self.0 * o.0;
+        Double::sum(p, self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0))
+    }
+}
+
+impl Div for Double {
+    type Output = Double;
+    fn div(self, o: Double) -> Double {
+        let first = self.0 / o.0;
+        let rest = self - o * Double(first, 0.0);
+        let second = rest.0 / o.0;
+        let rest = rest - o * Double(second, 0.0);
+        Double::sum(first, second) + Double(rest.0 / o.0, 0.0)
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood, 2014).
+struct Random(u64);
+
+impl Random {
+    /// Uniform in `[-1, 1)`.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Masses, Jacobian, forces and biases.
+#[derive(Clone, Copy)]
+struct Sample<const NV: usize, const NC: usize> {
+    mass: SMatrix<f64, NV, NV>,
+    jacobian: SMatrix<f64, NC, NV>,
+    force: [f64; NV],
+    bias: [f64; NC],
+}
+
+impl<const NV: usize, const NC: usize> Sample<NV, NC> {
+    /// Points of masses that differ by up to `10^(2 spread)` on a chain of coordinates; every other system has a
+    /// constraint that is another one but for a part of `10^-near`.
+    fn random(random: &mut Random, spread: f64, near: f64) -> Self {
+        let mut mass = SMatrix::<f64, NV, NV>::zeros();
+        for link in 0..NV {
+            let weight = 10_f64.powf(spread * random.next());
+            for _ in 0..2 {
+                let moves = SVector::<f64, NV>::from_fn(|i, _| if i <= link { random.next() } else { 0.0 });
+                mass += moves * moves.transpose() * weight;
+            }
+        }
+        let mut jacobian = SMatrix::<f64, NC, NV>::from_fn(|i, j| match random.next() < -0.4 {
+            true if i != j => 0.0,
+            _ => random.next(),
+        });
+        if NC > 1 && random.next() > 0.0 {
+            let part = 10_f64.powf(-near * random.next().abs());
+            let other = jacobian.row(0) * random.next() + jacobian.row(NC - 1) * part;
+            jacobian.set_row(NC - 1, &other);
+        }
+        let force = core::array::from_fn(|_| random.next());
+        Self { mass, jacobian, force, bias: core::array::from_fn(|_| random.next()) }
+    }
+
+    /// With every number off by a rounding.
+    fn rounded(&self, random: &mut Random, epsilon: f64) -> Self {
+        let mut other = *self;
+        for i in 0..NV {
+            for j in 0..=i {
+                let size = (self.mass[(i, i)] * self.mass[(j, j)]).sqrt();
+                other.mass[(i, j)] += epsilon * size * random.next();
+                other.mass[(j, i)] = other.mass[(i, j)];
+            }
+        }
+        let mut shake = |x: &mut f64| *x *= 1.0 + epsilon * random.next();
+        other.jacobian.iter_mut().for_each(&mut shake);
+        other.force.iter_mut().for_each(&mut shake);
+        other.bias.iter_mut().for_each(&mut shake);
+        other
+    }
+
+    /// Accelerations and multipliers by elimination with complete pivoting.
+    fn exact(&self) -> (SVector<f64, NV>, SVector<f64, NC>) {
+        let n = NV + NC;
+        let mut rows: Vec<Vec<Double>> = (0..n)
+            .map(|i| {
+                let entry = |j: usize| match (i < NV, j < NV) {
+                    (true, true) => self.mass[(i, j)],
+                    (true, false) => -self.jacobian[(j - NV, i)],
+                    (false, true) => self.jacobian[(i - NV, j)],
+                    (false, false) => 0.0,
+                };
+                let right = if i < NV { self.force[i] } else { -self.bias[i - NV] };
+                (0..n).map(entry).chain([right]).map(|x| Double(x, 0.0)).collect()
+            })
+            .collect();
+        let mut order: Vec<usize> = (0..n).collect();
+        for k in 0..n {
+            let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
+            let best = places.max_by(|a, b| rows[a.0][a.1].0.abs().total_cmp(&rows[b.0][b.1].0.abs()));
+            let (i, j) = best.expect("there are entries left");
+            rows.swap(i, k);
+            rows.iter_mut().for_each(|row| row.swap(j, k));
+            order.swap(j, k);
+            for i in k + 1..n {
+                let factor = rows[i][k] / rows[k][k];
+                for j in k..=n {
+                    let part = factor * rows[k][j];
+                    rows[i][j] = rows[i][j] - part;
+                }
+            }
+        }
+        let mut x = vec![Double(0.0, 0.0); n];
+        for k in (0..n).rev() {
+            let rest = (k + 1..n).fold(rows[k][n], |sum, j| sum - rows[k][j] * x[j]);
+            x[k] = rest / rows[k][k];
+        }
+        let at = |k: usize| order.iter().position(|o| *o == k).map_or(0.0, |place| x[place].0);
+        (SVector::from_fn(|k, _| at(k)), SVector::from_fn(|k, _| at(NV + k)))
+    }
+
+    fn solved<T: Real>(&self, rank: usize) -> (SVector<f64, NV>, SVector<f64, NC>) {
+        let to = |x: f64| constant::<T>(x);
+        let structure = Structure { groups: core::array::from_fn(|k| k), determining: &[], rank };
+        let (mass, jacobian) = (self.mass.map(to), self.jacobian.map(to));
+        let (a, lambda) = System { mass, jacobian, force: self.force.map(to), bias: self.bias.map(to) }
+            .solve(&structure, zone(), Weak::Taken)
+            .0;
+        (a.map(crate::private::to_f64), lambda.map(crate::private::to_f64))
+    }
+}
+
+/// As near to the exact solution as the numbers that describe the system allow.
+fn check<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near: f64) {
+    let mut random = Random(seed);
+    let epsilon = crate::private::to_f64(epsilon::<T>());
+    for case in 0..300 {
+        let all = Sample::<NV, NC>::random(&mut random, spread, near);
+        // Numbers of `T`.
+        let to = |x: f64| crate::private::to_f64(constant::<T>(x));
+        let system = Sample {
+            mass: all.mass.map(to),
+            jacobian: all.jacobian.map(to),
+            force: all.force.map(to),
+            bias: all.bias.map(to),
+        };
+        let (a, lambda) = system.exact();
+        let (mut a_error, mut lambda_error) = (10.0 * epsilon * a.amax(), 10.0 * epsilon * lambda.amax());
+        for _ in 0..4 {
+            let (b, mu) = system.rounded(&mut random, epsilon).exact();
+            a_error = a_error.max((a - b).amax());
+            lambda_error = lambda_error.max((lambda - mu).amax());
+        }
+        let (found, mu) = system.solved::<T>(NC);
+        // Where a rounding changes everything, nothing can be asked for.
+        if a_error < 1e-3 * a.amax() {
+            assert!((found - a).amax() < 1e3 * a_error, "case {case}: {} for {a_error}", (found - a).amax());
+        }
+        if lambda_error < 1e-3 * lambda.amax() {
+            let off = (mu - lambda).amax();
+            assert!(off < 1e3 * lambda_error, "case {case}: {off} for {lambda_error}");
+        }
+    }
+}
+
+#[test]
+fn light_and_heavy_bodies_lose_no_digits() {
+    check::<f64, 3, 1>(1, 6.0, 0.0);
+    check::<f64, 5, 3>(2, 6.0, 0.0);
+    check::<f64, 8, 6>(3, 6.0, 0.0);
+    check::<f64, 9, 4>(4, 3.0, 0.0);
+    check::<f32, 3, 1>(5, 3.0, 0.0);
+    check::<f32, 5, 3>(6, 3.0, 0.0);
+}
+
+#[test]
+fn nearly_dependent_constraints_are_kept() {
+    check::<f64, 5, 3>(7, 0.5, 12.0);
+    check::<f64, 8, 6>(8, 2.0, 12.0);
+    check::<f64, 8, 6>(9, 6.0, 10.0);
+    check::<f32, 5, 3>(10, 0.5, 4.0);
+}
+
+/// A constraint that is a combination of others, exactly: the motion is that without it, and the multipliers have the
+/// least norm of those that give this motion.
+#[test]
+fn what_follows_from_others_changes_nothing() {
+    let mut random = Random(11);
+    for case in 0..300 {
+        let less = Sample::<6, 3>::random(&mut random, if case % 2 == 0 { 6.0 } else { 0.5 }, 0.0);
+        let (a, _) = less.exact();
+        let mut error = 1e-15 * a.amax();
+        for _ in 0..4 {
+            error = error.max((a - less.rounded(&mut random, 1e-16).exact().0).amax());
+        }
+        let combination = [0.5, -2.0, 1.0, -1.0];
+        let mut all =
+            Sample::<6, 4> { mass: less.mass, jacobian: SMatrix::zeros(), force: less.force, bias: [0.0; 4] };
+        for k in 0..3 {
+            // Fewer digits, so that sums are exact.
+            let short = |x: f64| (x * 1024.0).round() / 1024.0;
+            let row = less.jacobian.row(k).map(short);
+            all.jacobian.set_row(k, &row);
+            all.bias[k] = short(less.bias[k]);
+        }
+        let sum = (0..3).fold(all.jacobian.row(3) * 0.0, |sum, k| sum + all.jacobian.row(k) * combination[k]);
+        all.jacobian.set_row(3, &sum);
+        all.bias[3] = (0..3).map(|k| all.bias[k] * combination[k]).sum();
+        let short = Sample::<6, 3> {
+            jacobian: all.jacobian.fixed_rows::<3>(0).into_owned(),
+            bias: [all.bias[0], all.bias[1], all.bias[2]],
+            ..less
+        };
+        let (a, lambda) = short.exact();
+        let (found, mu) = all.solved::<f64>(3);
+        assert!(
+            (found - a).amax() < 1e4 * error.max(1e-15 * a.amax()),
+            "case {case}: {}",
+            (found - a).amax()
+        );
+        let off: f64 = (0..4).map(|k| mu[k] * combination[k]).sum();
+        assert!(off.abs() < 1e-9 * mu.amax(), "case {case}: {off}");
+        let force = short.jacobian.transpose() * lambda - all.jacobian.transpose() * mu;
+        assert!(force.amax() < 1e-8 * mu.amax(), "case {case}: {}", force.amax());
+    }
+}
+
+/// A particle on a line in the plane, held by the same constraint twice: each carries half of the force.
+#[test]
+fn redundant_constraints_share_the_force() {
+    let system = Sample::<2, 2> {
+        mass: SMatrix::identity() * 2.0,
+        jacobian: SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, 1.0),
+        force: [3.0, -20.0],
+        bias: [0.0; 2],
+    };
+    let (a, lambda) = system.solved::<f64>(1);
+    assert!((a - SVector::from([1.5, 0.0])).norm() < 1e-14);
+    assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
+}
+
+/// A mass on a line, and a coordinate without inertia that is twice its place: the force on both moves the mass.
+#[test]
+fn coordinates_without_inertia_are_determined() {
+    let structure = Structure { groups: [0], determining: &[0], rank: 1 };
+    let mass = SMatrix::<f64, 2, 2>::new(4.0, 0.0, 0.0, 0.0);
+    let jacobian = SMatrix::<f64, 1, 2>::new(-2.0, 1.0);
+    let (a, lambda) =
+        System { mass, jacobian, force: [1.0, 3.0], bias: [0.5] }.solve(&structure, zone(), Weak::Taken).0;
+    assert!((a - SVector::from([1.75, 3.0])).norm() < 1e-14, "{a}");
+    assert!((lambda[0] + 3.0).abs() < 1e-14, "{lambda}");
+}

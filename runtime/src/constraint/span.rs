@@ -1,0 +1,286 @@
+//! Rows of constraints in the metric of the kinetic energy, with the rank that they have up to rounding.
+//!
+//! With `M = L Lᵀ` the columns of `W = L⁻¹ Jᵀ` are made triangular by reflections with column pivoting, `Qᵀ W = R`. It is
+//! `J` that is factorised, never its square `J M⁻¹ Jᵀ`; a column is scaled by its length and its largest entry is
+//! exchanged to the diagonal, so that light and heavy bodies lose no digits to each other (Powell and Reid, *On applying Householder transformations to
+//! linear least squares problems*, IFIP 1968; Cox and Higham, *Stability of Householder QR factorization for weighted
+//! least squares problems*, 1998). What is left of a column is told from rounding entry by entry: with every entry goes
+//! the largest number that it was computed from.
+
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::SMatrix;
+
+/// Roundings of the largest number that an entry was computed from, beyond which it is something else.
+const ROUNDINGS: f64 = 64.0;
+
+/// An entry; zero outside, since an index that was searched for would leave a way to panic.
+pub(super) fn at<T: Real>(x: &[T], k: usize) -> T {
+    x.get(k).copied().unwrap_or(T::zero())
+}
+
+pub(super) fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
+}
+
+pub(super) fn norm<T: Real, const N: usize>(a: &[T; N]) -> T {
+    dot(a, a).sqrt()
+}
+
+/// Less than this is rounding beside one.
+pub(super) fn rounding<T: Real>() -> T {
+    constant::<T>(ROUNDINGS) * epsilon()
+}
+
+/// `M = L Lᵀ` as `L' D L'ᵀ`: the rows of `L'` below its diagonal of ones, and the roots of `D⁻¹`.
+pub(super) struct Metric<T, const N: usize> {
+    lower: [[T; N]; N],
+    root: [T; N],
+}
+
+impl<T: Real, const N: usize> Metric<T, N> {
+    /// Pivots that rounding has made zero or negative are as small as rounding.
+    pub fn of(mass: &[[T; N]; N]) -> Self {
+        let (mut lower, mut inverse) = ([[T::zero(); N]; N], [T::zero(); N]);
+        for i in 0..N {
+            let mut scaled = [T::zero(); N];
+            for j in 0..i {
+                scaled[j] = (0..j).fold(mass[i][j], |sum, k| sum - scaled[k] * lower[j][k]);
+                lower[i][j] = scaled[j] * inverse[j];
+            }
+            let pivot = (0..i).fold(mass[i][i], |sum, k| sum - scaled[k] * lower[i][k]);
+            let least = mass[i][i] * epsilon();
+            inverse[i] = T::one() / if pivot < least { least } else { pivot };
+        }
+        Self { lower, root: inverse.map(|x| x.sqrt()) }
+    }
+
+    /// `L⁻¹ x`.
+    pub fn half(&self, mut x: [T; N]) -> [T; N] {
+        for i in 0..N {
+            x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i][k] * x[k]);
+        }
+        x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
+        x
+    }
+
+    /// How large the numbers are that `L⁻¹ x` is computed from, for those of `x`.
+    fn sizes(&self, mut x: [T; N]) -> [T; N] {
+        for i in 0..N {
+            x[i] = (0..i).fold(x[i], |most, k| most.max(self.lower[i][k].abs() * x[k]));
+        }
+        x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
+        x
+    }
+
+    /// `Lᵀ x`.
+    pub fn upper(&self, x: &[T; N]) -> [T; N] {
+        core::array::from_fn(|i| (i + 1..N).fold(x[i], |sum, k| sum + self.lower[k][i] * x[k]) / self.root[i])
+    }
+
+    /// `L⁻ᵀ x`.
+    pub fn back(&self, mut x: [T; N]) -> [T; N] {
+        x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
+        for i in (0..N).rev() {
+            x[i] = (i + 1..N).fold(x[i], |sum, k| sum - self.lower[k][i] * x[k]);
+        }
+        x
+    }
+}
+
+/// A column of `W`, scaled to length one.
+#[derive(Clone, Copy)]
+pub(super) struct Column<T, const N: usize> {
+    /// What the reflections have made of it.
+    pub x: [T; N],
+    /// The largest number that each entry was computed from.
+    size: [T; N],
+    /// Its length, zero for a column of zeros.
+    pub length: T,
+    /// The step at which it became part of the basis.
+    pub step: Option<usize>,
+}
+
+impl<T: Real, const N: usize> Column<T, N> {
+    /// What is left of it beyond the first entries: its length, and its largest entry beside rounding.
+    fn left(&self, first: usize) -> (T, T) {
+        let all = self.x.iter().zip(&self.size).skip(first);
+        let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
+            let share = if *size > T::zero() { x.abs() / *size } else { T::zero() };
+            (square + *x * *x, most.max(share))
+        });
+        (square.sqrt(), most)
+    }
+
+    fn reflect(&mut self, normal: &[T; N]) {
+        let part = dot(normal, &self.x);
+        let all = normal.iter().zip(&self.size);
+        let largest = all.fold(T::zero(), |most, (n, size)| most.max(n.abs() * *size));
+        for ((x, size), n) in self.x.iter_mut().zip(&mut self.size).zip(normal) {
+            *x -= *n * part;
+            *size = size.max(n.abs() * largest);
+        }
+    }
+}
+
+/// The space that columns span, by the reflections that make them triangular.
+pub(super) struct Span<T, const NV: usize, const NC: usize> {
+    /// The columns of the constraints.
+    pub columns: [Column<T, NV>; NC],
+    /// How many columns have become part of the basis.
+    pub rank: usize,
+    /// Entries are exchanged: by place the index.
+    order: [usize; NV],
+    /// Normals of the reflections, of length √2.
+    normals: [[T; NV]; NV],
+}
+
+impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
+    /// The rows of a Jacobian. Each entry was computed from numbers as large as what stands in other components of the
+    /// same vector, in the units of the entry; what is rounding beside them is nothing.
+    pub fn of(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
+        let rows: [[T; NV]; NC] = core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k]));
+        let halves = rows.map(|row| metric.half(row));
+        let of_group = |k: usize, each: &[[T; NV]; NC]| {
+            let group = each.iter().zip(groups).filter(|(_, group)| **group == groups[k]);
+            group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
+        };
+        let columns: [Column<T, NV>; NC] = core::array::from_fn(|k| {
+            let (entry, half) = (of_group(k, &rows), of_group(k, &halves));
+            let bound = metric.root.map(|root| entry.min(half / root));
+            let clean =
+                |i: usize| if rows[k][i].abs() <= bound[i] * rounding() { T::zero() } else { rows[k][i] };
+            let row: [T; NV] = core::array::from_fn(clean);
+            // Zeros are exact.
+            let sizes = core::array::from_fn(|i| if row[i] == T::zero() { row[i] } else { bound[i] });
+            let half = metric.half(row);
+            let length = norm(&half);
+            let unit = if length > T::zero() { T::one() / length } else { T::zero() };
+            let size = metric.sizes(sizes).map(|x| x * unit);
+            Column { x: half.map(|x| x * unit), size, length, step: None }
+        });
+        let order = core::array::from_fn(|k| k);
+        Self { columns, rank: 0, order, normals: [[T::zero(); NV]; NV] }
+    }
+
+    /// Entries in the order of the columns.
+    fn arranged(&self, x: &[T; NV]) -> [T; NV] {
+        core::array::from_fn(|i| at(x, self.order[i]))
+    }
+
+    /// Adds columns to the basis, the longest first, as long as they have an entry of at least `least` of what it was
+    /// computed from, and the basis has at most `most` of them.
+    pub fn extend(&mut self, least: T, most: usize) {
+        while self.rank < most.min(NV) {
+            let mut best = (None, T::zero());
+            for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
+                let (length, share) = column.left(self.rank);
+                if length > best.1 && share > least {
+                    best = (Some(k), length);
+                }
+            }
+            let Some(column) = best.0.and_then(|k| self.columns.get_mut(k)) else { break };
+            column.step = Some(self.rank);
+            let x = column.x;
+            self.add(x);
+        }
+    }
+
+    /// Adds a direction: the part of `x` that is not in the basis, in its own coordinates.
+    fn add(&mut self, mut x: [T; NV]) {
+        let first = self.rank;
+        let mut most = (first, T::zero());
+        for (k, x) in x.iter().enumerate().skip(first) {
+            if x.abs() > most.1 {
+                most = (k, x.abs());
+            }
+        }
+        self.exchange(first, most.0);
+        exchange(&mut x, first, most.0);
+        x.iter_mut().take(first).for_each(|x| *x = T::zero());
+        let (length, own) = (norm(&x), at(&x, first));
+        let scale = T::one() / (length * (length + own.abs())).sqrt();
+        let mut normal = x.map(|x| x * scale);
+        if let Some(n) = normal.get_mut(first) {
+            *n += if own < T::zero() { -length * scale } else { length * scale };
+        }
+        self.columns.iter_mut().for_each(|column| column.reflect(&normal));
+        if let Some(slot) = self.normals.get_mut(first) {
+            *slot = normal;
+        }
+        self.rank += 1;
+    }
+
+    /// Exchanges two places that no direction of the basis ends at.
+    fn exchange(&mut self, i: usize, j: usize) {
+        exchange(&mut self.order, i, j);
+        self.normals.iter_mut().for_each(|normal| exchange(normal, i, j));
+        for column in &mut self.columns {
+            exchange(&mut column.x, i, j);
+            exchange(&mut column.size, i, j);
+        }
+    }
+
+    /// `Qᵀ x`.
+    pub fn forward(&self, x: &[T; NV]) -> [T; NV] {
+        let mut x = self.arranged(x);
+        for normal in self.normals.iter().take(self.rank) {
+            reflect(&mut x, normal);
+        }
+        x
+    }
+
+    /// `Q x`.
+    pub fn backward(&self, mut x: [T; NV]) -> [T; NV] {
+        for normal in self.normals.iter().take(self.rank).rev() {
+            reflect(&mut x, normal);
+        }
+        let mut out = [T::zero(); NV];
+        for (x, k) in x.iter().zip(&self.order) {
+            if let Some(slot) = out.get_mut(*k) {
+                *slot = *x;
+            }
+        }
+        out
+    }
+
+    /// The column that joined the basis at a step.
+    pub fn pivot(&self, step: usize) -> Option<(usize, &Column<T, NV>)> {
+        self.columns.iter().enumerate().find(|(_, column)| column.step == Some(step))
+    }
+}
+
+fn reflect<T: Real, const N: usize>(x: &mut [T; N], normal: &[T; N]) {
+    let part = dot(normal, x);
+    x.iter_mut().zip(normal).for_each(|(x, n)| *x -= *n * part);
+}
+
+fn exchange<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
+    if let (Some(a), Some(b)) = (x.get(i).copied(), x.get(j).copied()) {
+        if let Some(slot) = x.get_mut(i) {
+            *slot = b;
+        }
+        if let Some(slot) = x.get_mut(j) {
+            *slot = a;
+        }
+    }
+}
+
+/// Makes the first vectors orthonormal, twice for the sake of rounding: `L = U S` with the triangle `S`.
+pub(super) fn orthogonal<T: Real, const N: usize>(vectors: &mut [[T; N]; N], count: usize) -> [[T; N]; N] {
+    let mut upper = [[T::zero(); N]; N];
+    for j in (0..N).take(count) {
+        let mut own = vectors[j];
+        for _ in 0..2 {
+            for i in 0..j {
+                let part = dot(&vectors[i], &own);
+                upper[i][j] += part;
+                own.iter_mut().zip(&vectors[i]).for_each(|(x, base)| *x -= part * *base);
+            }
+        }
+        let length = norm(&own);
+        upper[j][j] = length;
+        vectors[j] = own.map(|x| x / length);
+    }
+    upper
+}

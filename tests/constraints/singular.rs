@@ -1,0 +1,177 @@
+//! Where constraints nearly depend on each other, or seem to: light bodies between heavy ones, and positions in which a
+//! linkage loses rank.
+
+use linkwork::prelude::*;
+use linkwork_models::TwoWindows;
+use std::f64::consts::FRAC_PI_2;
+
+/// Two heavy slides that are held together by way of a light one: a force on one moves both alike.
+#[mechanism]
+struct Slides<T> {
+    heavy: T,
+    light: T,
+    #[body(mass = heavy)]
+    a: Body,
+    #[body(mass = heavy)]
+    b: Body,
+    #[body(mass = light)]
+    c: Body,
+    #[joint(ground -> a, along = x)]
+    sa: Sleeve,
+    #[joint(ground -> b, along = x)]
+    sb: Sleeve,
+    #[joint(a -> c, along = y)]
+    sc: Sleeve,
+    #[joint(b -> c, about = z)]
+    pin: Pin,
+    #[acts(on = sa)]
+    push: Force,
+}
+
+#[test]
+fn light_bodies_between_heavy_ones_hold_them() {
+    fn check<T: Real>(lightest: i32, tolerance: T) {
+        let ten = T::one() * linkwork::nalgebra::convert(10.0);
+        for k in 0..=lightest {
+            let slides = Slides { heavy: T::one(), light: T::one() / ten.powi(k) };
+            let tau = SVector::from([T::one() + T::one(), T::zero(), T::zero()]);
+            let a = slides.forward_dynamics(&slides.neutral(), &SVector::zeros(), &tau);
+            let want = (T::one() + T::one()) / (T::one() + T::one() + slides.light);
+            assert!((a[0] - want).abs() < tolerance && (a[1] - want).abs() < tolerance, "{a} for 10^-{k}");
+        }
+    }
+    check::<f64>(12, 1e-14);
+    check::<f32>(12, 1e-5);
+}
+
+const WINDOWS: TwoWindows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
+
+/// All posts at an angle from the upward vertical, with the clock, and at its rate.
+fn posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
+    let all = |x: f64| SVector::from([-x, x, -x, x, -x]);
+    (all(angle), all(rate))
+}
+
+/// How far accelerations are from those of the pendulum that the parallelograms are:
+/// `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
+fn off(angle: f64, rate: f64) -> f64 {
+    let (q, v) = posts(angle, rate);
+    let a = WINDOWS.forward_dynamics(&q, &v, &SVector::zeros());
+    (a - posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
+}
+
+/// All links are on one line at a quarter turn, where the constraints lose two of their rank of four.
+#[test]
+fn accelerations_go_on_through_singular_positions() {
+    for exponent in 1..=16 {
+        for side in [-1.0, 1.0] {
+            let distance = side * 10_f64.powi(-exponent);
+            for line in [FRAC_PI_2, 3.0 * FRAC_PI_2] {
+                let found = off(line + distance, 6.0);
+                assert!(found < 1e-7, "{found} at {distance} from {line}");
+                let found = off(line + distance, 0.7);
+                assert!(found < 1e-5, "{found} at {distance} from {line}, slowly");
+            }
+        }
+    }
+    assert!(off(FRAC_PI_2, 6.0) < 1e-7 && off(-FRAC_PI_2, 6.0) < 1e-7);
+    // On the branch up to rounding, as states are that an integrator arrives at.
+    let (q, v) = posts(FRAC_PI_2 + 1e-6, 6.0);
+    let aside = SVector::from([1e-13, -2e-13, 5e-14, -1e-13, 7e-14]);
+    let a = WINDOWS.forward_dynamics(&(q + aside), &(v + aside * 100.0), &SVector::zeros());
+    assert!((a - WINDOWS.forward_dynamics(&q, &v, &SVector::zeros())).amax() < 1e-6);
+}
+
+/// The distance of the first post's top from where it is after ten seconds, and what energy is gained.
+fn turned<M: linkwork::integrate::Method<f64>>(method: M) -> (f64, f64) {
+    let (q, v) = posts(0.0, 1.0);
+    let energy =
+        |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
+    let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
+    // IFToMM benchmark A02, integrated in 160 bits.
+    let top = ((-end.q[0].sin() - 0.328_458_111_540_815).powi(2)
+        + (end.q[0].cos() - 0.944_518_538_078_601).powi(2))
+    .sqrt();
+    (top, (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+}
+
+#[test]
+fn runge_kutta_keeps_its_order_through_singular_positions() {
+    for (step, most) in [(1e-2, 1e-6), (5e-3, 7e-8), (2e-3, 2e-9), (1e-3, 3e-10)] {
+        let (top, energy) = turned(Rk4::step(step));
+        assert!(top < most && energy < 2.0 * most, "{top} m and {energy} J with {step} s");
+    }
+}
+
+#[test]
+fn adaptive_steps_go_through_singular_positions() {
+    for tolerance in [1e-7, 1e-9, 1e-12] {
+        let (top, energy) = turned(DormandPrince::new().tolerance(tolerance, tolerance));
+        assert!(top < 1e4 * tolerance && energy < 1e4 * tolerance, "{top} m, {energy} J with {tolerance}");
+    }
+}
+
+/// Released near the line the linkage lingers there, and swings back along its branch.
+#[test]
+fn linkages_are_released_near_singular_positions() {
+    for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
+        let (q, v) = posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
+        let start = WINDOWS.potential_energy(&q);
+        let check = |q: SVector<f64, 5>, v: SVector<f64, 5>| {
+            let energy = WINDOWS.kinetic_energy(&q, &v) + WINDOWS.potential_energy(&q);
+            assert!((energy - start).abs() < 1e-7, "{} J from 1e-{exponent}", energy - start);
+            let aside = (q - posts(-q[0], 0.0).0).amax();
+            assert!(aside < 1e-6, "{aside} rad off the branch from 1e-{exponent}");
+        };
+        let run = simulate(&WINDOWS).from(q, v).method(Rk4::step(2e-3)).duration(2.0);
+        let end = run.finish().expect("it swings");
+        check(end.q, end.v);
+        if exponent == 4 {
+            let method = DormandPrince::new().tolerance(1e-12, 1e-12);
+            let end = simulate(&WINDOWS).from(q, v).method(method).duration(0.5).finish().expect("it swings");
+            check(end.q, end.v);
+        }
+    }
+}
+
+/// A four-bar linkage, solved by multipliers or by the speed of its rocker.
+macro_rules! four_bar {
+    ($name:ident $(, $word:ident = $value:tt)*) => {
+        #[mechanism(gravity = -9.81 * y $(, $word = $value)*)]
+        struct $name {
+            #[body(mass = 1, com = 0.4 * x, inertia = rod(1, 0.8, x))]
+            crank: Body,
+            #[body(mass = 2, com = 0.95 * x, inertia = rod(2, 1.9, x))]
+            coupler: Body,
+            #[body(mass = 1, com = 0.7 * x, inertia = rod(1, 1.4, x))]
+            rocker: Body,
+            #[joint(ground -> crank, about = z)]
+            first: Pin,
+            #[joint(crank.at(0.8 * x) -> coupler, about = z)]
+            second: Pin,
+            #[joint(ground.at(2 * x) -> rocker, about = z)]
+            third: Pin,
+            #[joint(rocker.at(1.4 * x) -> coupler.at(1.9 * x), about = z)]
+            closing: Pin,
+        }
+    };
+}
+
+four_bar!(ByMultipliers);
+four_bar!(BySpeeds, formulation = speeds, independent = (third));
+
+/// Where crank and coupler are on one line, the rocker stands still while they move: its speed determines nothing.
+#[test]
+fn speeds_are_left_where_others_do_not_follow_from_them() {
+    let (plain, speeds) = (ByMultipliers {}, BySpeeds {});
+    for exponent in 0..=9 {
+        let bend = 10_f64.powi(-exponent);
+        let q = plain.assemble(&[0.6, bend, 1.9].into(), &[1]).expect("it closes");
+        let v = plain.project_velocity(&q, &[2.0, -1.0, 0.3].into()).expect("it moves");
+        let tau = SVector::from([0.5, -0.2, 1.0]);
+        let (a, lambda) = plain.constrained_dynamics(&q, &v, &tau);
+        let (b, mu) = speeds.constrained_dynamics(&q, &v, &tau);
+        assert!((a - b).amax() < 1e-10 * a.amax(), "{a} and {b} with a bend of {bend}");
+        assert!((lambda - mu).amax() < 1e-9 * lambda.amax(), "{lambda} and {mu} with a bend of {bend}");
+    }
+}
