@@ -119,7 +119,8 @@ impl Creature {
         };
         let [(p, one), (q, other)] = [first, second].map(|end| self.joint(end));
         let plain = one != "Ball" && other != "Ball" && p != q;
-        if if ON_COORDINATES.contains(&kind) { !plain } else { a == b } {
+        let is_refused = if ON_COORDINATES.contains(&kind) { !plain } else { a == b };
+        if is_refused {
             return;
         }
         let n = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
