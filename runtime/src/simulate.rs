@@ -62,6 +62,8 @@ where
 
 /// The events `E` and one more.
 type With<E, T, G, A> = (E, Event<T, G, A>);
+/// The events `E` and an impact.
+type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
 
 /// The motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,7 +211,7 @@ where
         crossing: Crossing,
         function: G,
         after: F,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Impact<F>>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, WithImpact<E, T, G, F>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,

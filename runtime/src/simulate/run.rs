@@ -94,8 +94,9 @@ where
         let start = self.start.finite()?;
         let far = |a: T, b: T| {
             let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
+            let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
             // Also where one of them is not a number.
-            !((a - b).abs() <= tolerance * (T::one() + a.abs()))
+            !near
         };
         // Going nowhere makes quaternions unit.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
