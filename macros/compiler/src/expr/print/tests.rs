@@ -61,8 +61,8 @@ fn multiples_of_pi() {
         (10.0_f64.to_radians(), "pi/18"),
         (135.0_f64.to_radians(), "3/4 pi"),
         (36.0_f64.to_radians(), "pi/5"),
-        (3.14159, "3.14159"),
-        (1.5708, "1.5708"),
+        (PI + 1e-3, "3.14259"),
+        (PI / 2.0 - 1e-5, "1.57079"),
         (1.0001 * PI, "3.14191"),
     ] {
         assert_eq!(Number::of(value).to_string(), expected);
