@@ -401,6 +401,7 @@ impl Arguments {
             let error = cx.error(left.place.to(&right.place), "expected `name = value`");
             match left.name().filter(|name| known.contains(name)) {
                 Some(name) => error.help(format!("write `{name} = {}`", right.spelt())),
+                None if known.is_empty() => error.help(format!("write `{example}`")),
                 None => error.suggest("", known.iter().copied()),
             };
         }

@@ -258,6 +258,7 @@ const OTHERS: &[Row] = &[
         "`#[output(…)]` holds one expression, found 2",
         "a field for each",
     ),
+    ("#[define(2 * rail = 2)] seen: Scalar", "expected `name = value`", "write `#[output(expression)]`"),
     ("#[define(rail = 2)] seen: Scalar", "a Scalar has no argument `rail`", "write `#[output(expression)]`"),
     (
         "#[constraint(v(cart / ground / ground) = 0)] hold: Holonomic",
