@@ -201,10 +201,10 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
         {
             for i in 0..NV {
-                let heavy = self.jacobian.data.0[i][row] * weight;
+                let heavy = at(&self.jacobian.data.0[i], row) * weight;
                 force[i] -= heavy * *bias;
                 for j in 0..NV {
-                    mass[j][i] += heavy * self.jacobian.data.0[j][row];
+                    mass[j][i] += heavy * at(&self.jacobian.data.0[j], row);
                 }
             }
         }
@@ -234,11 +234,15 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         let rank = span.rank;
         let mut z = [T::zero(); NC];
         if rank < NC {
-            for j in (0..NC).take(rank).rev() {
+            for j in (0..NC).rev() {
+                if j >= rank {
+                    continue;
+                }
                 let sum = -dot(&self.base[j], bias);
-                z[j] =
-                    (j + 1..NC).take_while(|i| *i < rank).fold(sum, |sum, i| sum - self.upper[j][i] * z[i])
-                        / self.upper[j][j];
+                z[j] = (j + 1..NC)
+                    .filter(|i| *i < rank)
+                    .fold(sum, |sum, i| sum - at(&self.upper[j], i) * at(&z, i))
+                    / self.upper[j][j];
             }
             return z;
         }
@@ -246,7 +250,9 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
             let Some((k, pivot)) = span.pivot(step) else { continue };
             let sum = pivot.x.iter().zip(&z).take(step);
             let rest = sum.fold(-at(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
-            z[step] = rest / at(&pivot.x, step);
+            if let Some(slot) = z.get_mut(step) {
+                *slot = rest / at(&pivot.x, step);
+            }
         }
         z
     }
@@ -257,8 +263,17 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         let mut lambda = [T::zero(); NC];
         let mut rest = *lacking;
         if rank < NC {
-            for j in (0..NC).take(rank) {
-                let part = (0..j).fold(rest[j], |sum, i| sum - self.upper[i][j] * rest[i]) / self.upper[j][j];
+            for j in 0..NC {
+                if j >= rank {
+                    break;
+                }
+                let part = self
+                    .upper
+                    .iter()
+                    .zip(&rest)
+                    .take(j)
+                    .fold(rest[j], |sum, (row, rest)| sum - row[j] * *rest)
+                    / self.upper[j][j];
                 rest[j] = part;
                 lambda.iter_mut().zip(&self.base[j]).for_each(|(sum, b)| *sum += part * *b);
             }
@@ -266,7 +281,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         }
         for step in (0..NC).rev() {
             let Some((k, pivot)) = span.pivot(step) else { continue };
-            let share = rest[step] / at(&pivot.x, step);
+            let share = at(&rest, step) / at(&pivot.x, step);
             rest.iter_mut().zip(&pivot.x).take(step).for_each(|(rest, x)| *rest -= share * *x);
             if let Some(slot) = lambda.get_mut(k) {
                 *slot = share / pivot.length;

@@ -145,12 +145,19 @@ fn least_norm<T: Real, const N: usize>(
     }
     let upper = orthogonal(&mut columns, rank);
     let mut y = columns.map(|u| dot(&u, &b));
-    for j in (0..N).take(rank).rev() {
-        y[j] =
-            (j + 1..N).take_while(|i| *i < rank).fold(y[j], |sum, i| sum - upper[j][i] * y[i]) / upper[j][j];
+    for j in (0..N).rev() {
+        if j >= rank {
+            continue;
+        }
+        y[j] = (j + 1..N).filter(|i| *i < rank).fold(y[j], |sum, i| sum - upper[j][i] * y[i]) / upper[j][j];
     }
-    for j in (0..N).take(rank) {
+    for j in 0..N {
+        if j >= rank {
+            break;
+        }
         y[j] = (0..j).fold(y[j], |sum, i| sum - upper[i][j] * y[i]) / upper[j][j];
     }
-    Some(core::array::from_fn(|k| (0..N).take(rank).fold(T::zero(), |sum, i| sum + columns[i][k] * y[i])))
+    Some(core::array::from_fn(|k| {
+        (0..N).filter(|i| *i < rank).fold(T::zero(), |sum, i| sum + columns[i][k] * y[i])
+    }))
 }

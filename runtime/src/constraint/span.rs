@@ -75,7 +75,11 @@ impl<T: Real, const N: usize> Metric<T, N> {
 
     /// `Lᵀ x`.
     pub fn upper(&self, x: &[T; N]) -> [T; N] {
-        core::array::from_fn(|i| (i + 1..N).fold(x[i], |sum, k| sum + self.lower[k][i] * x[k]) / self.root[i])
+        let mut out = *x;
+        for i in 0..N {
+            out[i] = (i + 1..N).fold(x[i], |sum, k| sum + self.lower[k][i] * x[k]) / self.root[i];
+        }
+        out
     }
 
     /// `L⁻ᵀ x`.
@@ -139,20 +143,24 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     /// The rows of a Jacobian. Each entry was computed from numbers as large as what stands in other components of the
     /// same vector, in the units of the entry; what is rounding beside them is nothing.
     pub fn of(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
-        let rows: [[T; NV]; NC] = core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k]));
+        let rows: [[T; NV]; NC] =
+            core::array::from_fn(|k| core::array::from_fn(|i| at(&jacobian.data.0[i], k)));
         let halves = rows.map(|row| metric.half(row));
         let of_group = |k: usize, each: &[[T; NV]; NC]| {
-            let group = each.iter().zip(groups).filter(|(_, group)| **group == groups[k]);
+            let group = each.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
         };
         let columns: [Column<T, NV>; NC] = core::array::from_fn(|k| {
             let (entry, half) = (of_group(k, &rows), of_group(k, &halves));
             let bound = metric.root.map(|root| entry.min(half / root));
-            let clean =
-                |i: usize| if rows[k][i].abs() <= bound[i] * rounding() { T::zero() } else { rows[k][i] };
-            let row: [T; NV] = core::array::from_fn(clean);
-            // Zeros are exact.
-            let sizes = core::array::from_fn(|i| if row[i] == T::zero() { row[i] } else { bound[i] });
+            let mut row = rows.get(k).copied().unwrap_or([T::zero(); NV]);
+            let mut sizes = bound;
+            for ((x, size), bound) in row.iter_mut().zip(&mut sizes).zip(&bound) {
+                if x.abs() <= *bound * rounding() {
+                    // Zeros are exact.
+                    (*x, *size) = (T::zero(), T::zero());
+                }
+            }
             let half = metric.half(row);
             let length = norm(&half);
             let unit = if length > T::zero() { T::one() / length } else { T::zero() };
@@ -165,7 +173,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
 
     /// Entries in the order of the columns.
     fn arranged(&self, x: &[T; NV]) -> [T; NV] {
-        core::array::from_fn(|i| at(x, self.order[i]))
+        self.order.map(|i| at(x, i))
     }
 
     /// Adds columns to the basis, the longest first, as long as they have an entry of at least `least` of what it was
@@ -269,13 +277,16 @@ fn exchange<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
 /// Makes the first vectors orthonormal, twice for the sake of rounding: `L = U S` with the triangle `S`.
 pub(super) fn orthogonal<T: Real, const N: usize>(vectors: &mut [[T; N]; N], count: usize) -> [[T; N]; N] {
     let mut upper = [[T::zero(); N]; N];
-    for j in (0..N).take(count) {
+    for j in 0..N {
+        if j >= count {
+            break;
+        }
         let mut own = vectors[j];
         for _ in 0..2 {
-            for i in 0..j {
-                let part = dot(&vectors[i], &own);
-                upper[i][j] += part;
-                own.iter_mut().zip(&vectors[i]).for_each(|(x, base)| *x -= part * *base);
+            for (base, row) in vectors.iter().zip(&mut upper).take(j) {
+                let part = dot(base, &own);
+                row[j] += part;
+                own.iter_mut().zip(base).for_each(|(x, base)| *x -= part * *base);
             }
         }
         let length = norm(&own);
