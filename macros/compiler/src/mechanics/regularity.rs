@@ -6,8 +6,11 @@ use crate::expr::Symbol;
 use crate::expr::eval::eval;
 use crate::model::{Model, Quantity, random_configuration};
 
-/// Pivots below this part of their diagonal entry's first value count as zero.
-const TOLERANCE: f64 = 1e-11;
+/// Pivots below this part of their diagonal entry's first value, times the number of velocities, count as zero. Elimination
+/// of a positive definite matrix leaves no more than a few units of rounding for each row (Higham, *Accuracy and Stability
+/// of Numerical Algorithms*, 2002, theorem 10.3), and a light body that carries a heavy one keeps a pivot of their ratio:
+/// masses may lie twelve powers of ten apart.
+const TOLERANCE: f64 = 32.0 * f64::EPSILON;
 
 /// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
 /// random configurations; those where it fails in all of them, if there are such.
@@ -42,9 +45,10 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
         }
     }
     let scale: Vec<f64> = (0..n).map(|k| m[k][k]).collect();
+    let smallest = TOLERANCE * n as f64;
     let mut failing = Vec::new();
     for (step, &k) in order.iter().enumerate() {
-        if m[k][k] <= TOLERANCE * scale[k] || scale[k] <= 0.0 {
+        if m[k][k] <= smallest * scale[k] || scale[k] <= 0.0 {
             failing.push(k);
             continue;
         }

@@ -1,0 +1,151 @@
+//! Truncated Taylor series in time over complex numbers: position, velocity and acceleration of anything at once, and by
+//! way of an imaginary step its derivative by the state to rounding (Squire and Trapp, *Using complex variables to
+//! estimate derivatives of real functions*, SIAM Review 40, 1998).
+
+use num_complex::Complex;
+use std::array::from_fn;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A number with a derivative in its imaginary part.
+pub type C = Complex<f64>;
+
+/// A complex number that is real.
+pub fn real(x: f64) -> C {
+    C::new(x, 0.0)
+}
+
+/// `x₀ + x₁ t + x₂ t²`
+#[derive(Clone, Copy, Debug)]
+pub struct Jet(pub [C; 3]);
+
+impl Jet {
+    /// A constant.
+    pub fn constant(x: f64) -> Jet {
+        Jet([real(x), real(0.0), real(0.0)])
+    }
+
+    /// A square root, of something positive.
+    pub fn sqrt(self) -> Jet {
+        let [a, b, c] = self.0;
+        let root = a.sqrt();
+        let first = b / (root * 2.0);
+        Jet([root, first, (c - first * first) / (root * 2.0)])
+    }
+
+    /// Sine and cosine.
+    pub fn sin_cos(self) -> (Jet, Jet) {
+        let [a, b, c] = self.0;
+        let (s, k) = (a.sin(), a.cos());
+        let half = b * b * 0.5;
+        (Jet([s, k * b, k * c - s * half]), Jet([k, -s * b, -s * c - k * half]))
+    }
+
+    /// First derivative by time.
+    pub fn rate(self) -> C {
+        self.0[1]
+    }
+
+    /// Second derivative by time.
+    pub fn second_rate(self) -> C {
+        self.0[2] * 2.0
+    }
+}
+
+impl Add for Jet {
+    type Output = Jet;
+    fn add(self, other: Jet) -> Jet {
+        Jet(from_fn(|k| self.0[k] + other.0[k]))
+    }
+}
+
+impl Sub for Jet {
+    type Output = Jet;
+    fn sub(self, other: Jet) -> Jet {
+        Jet(from_fn(|k| self.0[k] - other.0[k]))
+    }
+}
+
+impl Neg for Jet {
+    type Output = Jet;
+    fn neg(self) -> Jet {
+        Jet(self.0.map(|x| -x))
+    }
+}
+
+impl Mul for Jet {
+    type Output = Jet;
+    fn mul(self, other: Jet) -> Jet {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Jet([a * x, a * y + b * x, a * z + b * y + c * x])
+    }
+}
+
+/// A vector that moves.
+pub type Vector = [Jet; 3];
+/// An orientation that changes, row by row.
+pub type Matrix = [[Jet; 3]; 3];
+
+/// A vector at rest.
+pub fn still(v: [f64; 3]) -> Vector {
+    v.map(Jet::constant)
+}
+
+/// `a + b`
+pub fn sum(a: Vector, b: Vector) -> Vector {
+    from_fn(|i| a[i] + b[i])
+}
+
+/// `a − b`
+pub fn difference(a: Vector, b: Vector) -> Vector {
+    from_fn(|i| a[i] - b[i])
+}
+
+/// `s v`
+pub fn scaled(s: Jet, v: [f64; 3]) -> Vector {
+    v.map(|x| s * Jet::constant(x))
+}
+
+/// `a · b`
+pub fn dot(a: Vector, b: Vector) -> Jet {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `R v`
+pub fn turned(r: &Matrix, v: Vector) -> Vector {
+    r.map(|row| dot(row, v))
+}
+
+/// `A B`
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let columns = transposed(b);
+    a.map(|row| columns.map(|column| dot(row, column)))
+}
+
+/// `Aᵀ`
+pub fn transposed(a: &Matrix) -> Matrix {
+    from_fn(|i| from_fn(|j| a[j][i]))
+}
+
+/// No rotation.
+pub fn identity() -> Matrix {
+    from_fn(|i| from_fn(|j| Jet::constant(if i == j { 1.0 } else { 0.0 })))
+}
+
+/// Rotation about a fixed unit vector (Rodrigues).
+pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
+    let (s, c) = angle.sin_cos();
+    let rest = Jet::constant(1.0) - c;
+    let k = still(axis);
+    let cross = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
+    from_fn(|i| {
+        from_fn(|j| {
+            let diagonal = if i == j { c } else { Jet::constant(0.0) };
+            diagonal + rest * k[i] * k[j] + s * Jet::constant(cross[i][j])
+        })
+    })
+}
+
+/// `a × b` of complex vectors.
+pub fn cross(a: [C; 3], b: [C; 3]) -> [C; 3] {
+    from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+}

@@ -1,0 +1,346 @@
+//! The oracle: Kane's equations of a random mechanism, in numbers. Positions are composed joint by joint in ground axes as
+//! Taylor series in time; the forces of inertia are those of Newton and Euler, body by body; generalized forces are
+//! products with partial velocities, which are the velocities themselves where one speed is one and the others zero
+//! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and 5). Nothing here is the compiler's.
+
+use crate::jet::{
+    C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
+    transposed, turned,
+};
+use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
+use std::array::from_fn;
+
+/// A state with accelerations. Complex, so that an imaginary step gives derivatives.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub q: Vec<C>,
+    pub v: Vec<C>,
+    pub a: Vec<C>,
+}
+
+impl State {
+    /// A real state.
+    pub fn new(q: &[f64], v: &[f64], a: &[f64]) -> State {
+        let list = |x: &[f64]| x.iter().map(|x| real(*x)).collect();
+        State { q: list(q), v: list(v), a: list(a) }
+    }
+}
+
+/// A rigid pose.
+#[derive(Clone, Copy)]
+struct Pose {
+    r: Matrix,
+    p: Vector,
+}
+
+/// Something with mass.
+struct Piece {
+    mass: f64,
+    /// Inertia about the centre of mass in its own axes.
+    inertia: [[f64; 3]; 3],
+    r: Matrix,
+    p: Vector,
+}
+
+/// Everything that moves, at one state.
+struct World {
+    poses: Vec<Pose>,
+    pieces: Vec<Piece>,
+    /// By body: its coordinates that elements can act on.
+    coordinates: Vec<Vec<Jet>>,
+}
+
+fn turns(list: &[(usize, f64)]) -> Matrix {
+    list.iter().fold(identity(), |r, (axis, angle)| {
+        let mut unit = [0.0; 3];
+        unit[*axis] = 1.0;
+        product(&r, &rotation(unit, Jet::constant(*angle)))
+    })
+}
+
+fn compose(a: &Pose, b: &Pose) -> Pose {
+    Pose { r: product(&a.r, &b.r), p: sum(a.p, turned(&a.r, b.p)) }
+}
+
+fn of_place(place: &Place) -> Pose {
+    Pose { r: turns(&place.turns), p: still(place.at) }
+}
+
+fn inverse(pose: &Pose) -> Pose {
+    let r = transposed(&pose.r);
+    Pose { r, p: turned(&r, pose.p).map(|x| -x) }
+}
+
+/// The rotation matrix of a quaternion x y z w.
+fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
+    let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
+    let two = real(2.0);
+    let one = real(1.0);
+    [
+        [one - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w)],
+        [two * (x * y + z * w), one - two * (x * x + z * z), two * (y * z - x * w)],
+        [two * (x * z - y * w), two * (y * z + x * w), one - two * (x * x + y * y)],
+    ]
+}
+
+/// `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that turns with the body's angular velocity.
+fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
+    let r0 = of_quaternion(q);
+    let skew = |w: [C; 3]| {
+        let o = real(0.0);
+        [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
+    };
+    let (k, l) = (skew(w), skew(rate));
+    from_fn(|i| {
+        from_fn(|j| {
+            let first: C = (0..3).map(|m| r0[i][m] * k[m][j]).sum();
+            let second: C = (0..3)
+                .map(|m| {
+                    let square: C = (0..3).map(|n| k[m][n] * k[n][j]).sum();
+                    r0[i][m] * (l[m][j] + square)
+                })
+                .sum();
+            Jet([r0[i][j], first, second * 0.5])
+        })
+    })
+}
+
+/// A position that moves with a velocity in carried axes.
+fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
+    let spin = cross(w, v);
+    from_fn(|i| {
+        let first: C = (0..3).map(|j| r[i][j].0[0] * v[j]).sum();
+        let second: C = (0..3).map(|j| r[i][j].0[0] * (rate[j] + spin[j])).sum();
+        Jet([p[i], first, second * 0.5])
+    })
+}
+
+/// The motion of a joint: its own pose, and the coordinates that elements act on.
+fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
+    let [one, two] = body.axes;
+    let fixed = |r: Matrix| Pose { r, p: still([0.0; 3]) };
+    let moved = |p: Vector| Pose { r: identity(), p };
+    let three = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
+    if body.kind == Kind::Ball {
+        return (fixed(turning(q, three(v, 0), three(a, 0))), Vec::new());
+    }
+    if body.kind == Kind::Free {
+        let (w, rate) = (three(v, 3), three(a, 3));
+        let r = turning(&q[3..], w, rate);
+        return (Pose { r, p: drifting(q, &r, three(v, 0), w, three(a, 0)) }, Vec::new());
+    }
+    let s: Vec<Jet> = (0..q.len()).map(|k| Jet([q[k], v[k], a[k] * 0.5])).collect();
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let pose = match body.kind {
+        Kind::Pin => fixed(rotation(one, s[0])),
+        Kind::Sleeve => moved(scaled(s[0], one)),
+        Kind::Screw => Pose { r: rotation(one, s[0]), p: scaled(s[0] * Jet::constant(body.pitch), one) },
+        Kind::Collar => Pose { r: rotation(one, s[1]), p: scaled(s[0], one) },
+        Kind::Slot => Pose { r: rotation(two, s[1]), p: scaled(s[0], one) },
+        Kind::Universal => fixed(product(&rotation(x, s[0]), &rotation(y, s[1]))),
+        Kind::Planar => Pose { r: rotation(z, s[2]), p: sum(scaled(s[0], x), scaled(s[1], y)) },
+        Kind::Stage => moved([s[0], s[1], s[2]]),
+        Kind::Ball | Kind::Free | Kind::Weld => fixed(identity()),
+    };
+    (pose, s)
+}
+
+/// Sizes of the mechanism: configuration numbers, velocities.
+pub fn sizes(spec: &Spec) -> (usize, usize) {
+    spec.bodies.iter().fold((0, 0), |(nq, nv), body| {
+        let (q, v) = body.kind.sizes();
+        let own = usize::from(body.slider.is_some());
+        (nq + q + own, nv + v + own)
+    })
+}
+
+fn world(spec: &Spec, state: &State) -> World {
+    let mut world = World { poses: Vec::new(), pieces: Vec::new(), coordinates: Vec::new() };
+    let (mut q0, mut v0) = (0, 0);
+    for body in &spec.bodies {
+        let (nq, nv) = body.kind.sizes();
+        let (motion, coordinates) =
+            joint_pose(body, &state.q[q0..q0 + nq], &state.v[v0..v0 + nv], &state.a[v0..v0 + nv]);
+        (q0, v0) = (q0 + nq, v0 + nv);
+        let parent = body.parent.map_or(Pose { r: identity(), p: still([0.0; 3]) }, |k| world.poses[k]);
+        let carried = compose(&compose(&parent, &of_place(&body.on_parent)), &motion);
+        let pose = compose(&carried, &inverse(&of_place(&body.on_child)));
+        world.pieces.push(Piece {
+            mass: body.mass,
+            inertia: inertia(body),
+            r: pose.r,
+            p: sum(pose.p, turned(&pose.r, still(body.com))),
+        });
+        let mut particle = |mass: f64, p: Vector| {
+            world.pieces.push(Piece { mass, inertia: [[0.0; 3]; 3], r: identity(), p });
+        };
+        if let Some((mass, at)) = body.particle {
+            particle(mass, sum(pose.p, turned(&pose.r, still(at))));
+        }
+        if let Some(slider) = &body.slider {
+            let s = Jet([state.q[q0], state.v[v0], state.a[v0] * 0.5]);
+            (q0, v0) = (q0 + 1, v0 + 1);
+            let [x, y, z] = slider.offset;
+            let mut p = sum(pose.p, turned(&pose.r, still([y, z, 0.0])));
+            p[0] = p[0] + s;
+            p[1] = p[1] + Jet::constant(x);
+            particle(slider.mass, p);
+        }
+        world.poses.push(pose);
+        world.coordinates.push(coordinates);
+    }
+    world
+}
+
+/// `R diag Rᵀ`
+fn inertia(body: &Body) -> [[f64; 3]; 3] {
+    let r = turns(&body.inertia_turns);
+    from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
+}
+
+/// Angular velocity and acceleration of an orientation, in ground axes: from `R' Rᵀ` and its rate.
+fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
+    let part = |order: (usize, usize), i: usize, j: usize| -> C {
+        (0..3).map(|k| r[i][k].0[order.0] * r[j][k].0[order.1]).sum()
+    };
+    // The coefficient of t² is half of the second derivative.
+    let w = |i: usize, j: usize| part((1, 0), i, j);
+    let d = |i: usize, j: usize| part((2, 0), i, j) * 2.0 + part((1, 1), i, j);
+    ([w(2, 1), w(0, 2), w(1, 0)], [d(2, 1), d(0, 2), d(1, 0)])
+}
+
+fn point(world: &World, end: &End) -> Vector {
+    match end.body {
+        None => still(end.at),
+        Some(k) => sum(world.poses[k].p, turned(&world.poses[k].r, still(end.at))),
+    }
+}
+
+fn distance(world: &World, a: &End, b: &End) -> Jet {
+    let d = difference(point(world, a), point(world, b));
+    dot(d, d).sqrt()
+}
+
+fn tension(law: Law, length: Jet) -> C {
+    match law {
+        Law::Spring(k, free) => (length.0[0] - free) * k,
+        Law::Dashpot(c) => length.rate() * c,
+        Law::Inerter(b) => length.second_rate() * b,
+    }
+}
+
+/// `τ = M a + h`, by the sum over everything that has mass or acts.
+pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
+    let now = world(spec, state);
+    let nv = state.v.len();
+    (0..nv)
+        .map(|k| {
+            let mut unit = State { q: state.q.clone(), v: vec![real(0.0); nv], a: vec![real(0.0); nv] };
+            unit.v[k] = real(1.0);
+            generalized(spec, &now, &world(spec, &unit))
+        })
+        .collect()
+}
+
+fn velocity(p: Vector) -> [C; 3] {
+    p.map(Jet::rate)
+}
+
+fn complex_dot(a: [C; 3], b: [C; 3]) -> C {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// One of Kane's equations: of the speed by which `partial` moves.
+fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
+    let mut tau = real(0.0);
+    for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
+        let force: [C; 3] = from_fn(|i| (piece.p[i].second_rate() - spec.gravity[i]) * piece.mass);
+        tau += complex_dot(force, velocity(moved.p));
+        let (w, alpha) = spin(&piece.r);
+        let r: [[C; 3]; 3] = from_fn(|i| from_fn(|j| piece.r[i][j].0[0]));
+        let turned_inertia = |x: [C; 3]| -> [C; 3] {
+            let own: [C; 3] = from_fn(|i| (0..3).map(|j| r[j][i] * x[j]).sum());
+            let product: [C; 3] = from_fn(|i| (0..3).map(|j| own[j] * piece.inertia[i][j]).sum());
+            from_fn(|i| (0..3).map(|j| r[i][j] * product[j]).sum())
+        };
+        let (first, second) = (turned_inertia(alpha), cross(w, turned_inertia(w)));
+        let torque: [C; 3] = from_fn(|i| first[i] + second[i]);
+        tau += complex_dot(torque, spin(&moved.r).0);
+    }
+    for element in &spec.elements {
+        tau += match element {
+            Element::Between(law, a, b) => {
+                tension(*law, distance(now, a, b)) * distance(partial, a, b).rate()
+            }
+            Element::On(law, body, k) => {
+                tension(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].rate()
+            }
+            Element::Push(end, force) => -complex_dot(force.map(real), velocity(point(partial, end))),
+            Element::Follow(end, force) => {
+                let r = &now.poses[end.body.unwrap_or(0)].r;
+                let force: [C; 3] = from_fn(|i| (0..3).map(|j| r[i][j].0[0] * force[j]).sum());
+                -complex_dot(force, velocity(point(partial, end)))
+            }
+        };
+    }
+    tau
+}
+
+/// Mass matrix by columns, and bias forces.
+pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
+    let nv = v.len();
+    let state = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
+    let zero = vec![real(0.0); nv];
+    let bias = inverse_dynamics(spec, &state(v, zero.clone()));
+    // At rest: what velocities add would only be taken away again.
+    let rest = inverse_dynamics(spec, &state(&zero, zero.clone()));
+    let columns = (0..nv)
+        .map(|k| {
+            let mut a = zero.clone();
+            a[k] = real(1.0);
+            let forces = inverse_dynamics(spec, &state(&zero, a));
+            forces.iter().zip(&rest).map(|(f, r)| f - r).collect()
+        })
+        .collect();
+    (columns, bias)
+}
+
+/// `q ⊕ i h e`: an imaginary step along one velocity, on the configuration manifold.
+pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
+    let mut stepped = q.to_vec();
+    let (mut q0, mut v0) = (0, 0);
+    for body in &spec.bodies {
+        let (nq, nv) = body.kind.sizes();
+        if (v0..v0 + nv).contains(&k) {
+            step_joint(body.kind, &mut stepped[q0..q0 + nq], k - v0, h);
+        }
+        (q0, v0) = (q0 + nq, v0 + nv);
+        if body.slider.is_some() {
+            if v0 == k {
+                stepped[q0] += C::new(0.0, h);
+            }
+            (q0, v0) = (q0 + 1, v0 + 1);
+        }
+    }
+    stepped
+}
+
+fn step_joint(kind: Kind, q: &mut [C], k: usize, h: f64) {
+    let h = C::new(0.0, h);
+    match (kind, k) {
+        (Kind::Ball, _) => turn(q, k, h),
+        (Kind::Free, 0..3) => {
+            let r = of_quaternion(&q[3..]);
+            (0..3).for_each(|i| q[i] += r[i][k] * h);
+        }
+        (Kind::Free, _) => turn(&mut q[3..], k - 3, h),
+        _ => q[k] += h,
+    }
+}
+
+/// `q ⊗ (e h / 2, 1)`
+fn turn(q: &mut [C], k: usize, h: C) {
+    let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
+    let rate = [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]][k];
+    (0..4).for_each(|i| q[i] += rate[i] * h * 0.5);
+}

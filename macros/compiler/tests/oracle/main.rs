@@ -1,0 +1,52 @@
+//! An oracle that shares nothing with the compiler: Kane's equations of random mechanisms in numbers, by Taylor series in
+//! time and imaginary steps, against what the generated programs compute. Trees of every joint, with every base, with
+//! springs, dashpots and inerters between bodies and the ground; alike limbs; masses over many powers of ten; angles that
+//! miss those of a plain machine by rounding.
+
+mod jet;
+mod kane;
+mod programs;
+mod random;
+mod spec;
+mod words;
+
+use spec::{Style, spec};
+
+/// Each test looks at so many mechanisms, or at as many as the variable `LINKWORK_ORACLE` says.
+fn seeds(usual: u64) -> std::ops::Range<u64> {
+    let asked = std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok());
+    0..asked.unwrap_or(usual)
+}
+
+const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };
+
+#[test]
+fn random_trees_obey_kanes_equations() {
+    for seed in seeds(60) {
+        programs::check(&spec(seed, PLAIN), seed);
+    }
+}
+
+#[test]
+fn random_limbs_obey_kanes_equations() {
+    for seed in seeds(60) {
+        let limbs = 2 + seed as usize % 4;
+        programs::check(&spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
+    }
+}
+
+#[test]
+fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
+    for seed in seeds(60) {
+        programs::check(&spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }), seed);
+    }
+}
+
+#[test]
+fn angles_with_noise_obey_kanes_equations() {
+    for seed in seeds(60) {
+        let noise = 10.0_f64.powi(-16 + (seed % 14) as i32);
+        let style = Style { bodies: 8, noise: Some(noise), ..PLAIN };
+        programs::check(&spec(3_000_000 + seed, style), seed);
+    }
+}

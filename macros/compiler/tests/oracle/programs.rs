@@ -1,0 +1,167 @@
+//! What the generated programs compute, next to the oracle.
+
+use crate::jet::{C, real};
+use crate::kane::{self, State};
+use crate::random::Random;
+use crate::spec::Spec;
+use crate::words;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::emit::{Function, Output};
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::model::Quantity;
+use linkwork_compiler::{compile, read};
+use std::path::Path;
+
+/// Largest difference, relative to the terms that a result is the sum of.
+const TOLERANCE: f64 = 1e-10;
+/// Size of the imaginary step: its square is nothing.
+const STEP: f64 = 1e-40;
+
+/// A state, and forces.
+struct Point {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    tau: Vec<f64>,
+}
+
+impl Point {
+    fn new(spec: &Spec, seed: u64) -> Point {
+        let (nq, nv) = kane::sizes(spec);
+        let mut random = Random::new(seed ^ 0x5eed);
+        let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+        let (mut q, v, a, tau) = (list(nq, 1.5), list(nv, 1.0), list(nv, 2.0), list(nv, 3.0));
+        let mut first = 0;
+        for body in &spec.bodies {
+            let (own, _) = body.kind.sizes();
+            if own >= 4 {
+                normalise(&mut q[first + own - 4..first + own]);
+            }
+            first += own + usize::from(body.slider.is_some());
+        }
+        Point { q, v, a, tau }
+    }
+}
+
+fn normalise(q: &mut [f64]) {
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.iter_mut().for_each(|x| *x /= length);
+}
+
+/// Compiles a mechanism and compares every function of its dynamics with the oracle.
+pub fn check(spec: &Spec, seed: u64) {
+    let (arguments, item) = words::source(spec, "Random", ", derivatives");
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let mut cx = Diagnostics::new();
+    let graph = Graph::new();
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
+    let Some((model, output)) = compiled else {
+        panic!("seed {seed}: {}\n{arguments}\n{item}", cx.messages().join("\n"));
+    };
+    assert_eq!((model.nq(), model.nv()), kane::sizes(spec), "seed {seed}\n{item}");
+    let case = Case {
+        spec,
+        output: &output,
+        point: Point::new(spec, seed),
+        name: format!("seed {seed}\n{arguments}\n{item}"),
+    };
+    case.check_dynamics();
+    case.check_derivatives();
+}
+
+struct Case<'a> {
+    spec: &'a Spec,
+    output: &'a Output,
+    point: Point,
+    name: String,
+}
+
+impl Case<'_> {
+    /// A function's results, by its program and by the program in lanes.
+    fn run(&self, name: &str) -> Vec<Vec<f64>> {
+        let function: &Function = self
+            .output
+            .functions
+            .iter()
+            .find(|f| f.name == name)
+            .unwrap_or_else(|| panic!("no function {name}"));
+        let at = |s| match Quantity::of(s) {
+            Quantity::Parameter(k) => self.spec.bodies[k].mass,
+            Quantity::Configuration(k) => self.point.q[k],
+            Quantity::Velocity(k) => self.point.v[k],
+            Quantity::Acceleration(k) => self.point.a[k],
+            Quantity::Force(k) => self.point.tau[k],
+            _ => f64::NAN,
+        };
+        let program = &function.program;
+        [Some(program), program.in_lanes.as_deref()].into_iter().flatten().map(|p| p.run(&at)).collect()
+    }
+
+    fn close(&self, what: &str, expected: &[f64], scale: f64) {
+        for actual in self.run(what) {
+            assert_eq!(actual.len(), expected.len(), "{what} of {}", self.name);
+            for (k, (a, b)) in actual.iter().zip(expected).enumerate() {
+                assert!(
+                    (a - b).abs() <= TOLERANCE * scale,
+                    "{what}, entry {k}: {a} and {b} of {scale}, {}",
+                    self.name
+                );
+            }
+        }
+    }
+
+    fn check_dynamics(&self) {
+        let Point { q, v, a, tau } = &self.point;
+        let state = State::new(q, v, a);
+        let (columns, bias) = kane::mass_and_bias(self.spec, &state.q, &state.v);
+        let mass: Vec<f64> = columns.iter().flatten().map(|x| x.re).collect();
+        let bias: Vec<f64> = bias.iter().map(|x| x.re).collect();
+        let largest = |list: &[f64]| list.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
+        let (heavy, strong) = (largest(&mass), largest(&bias));
+        self.close("mass_matrix", &mass, heavy);
+        self.close("bias_forces", &bias, heavy + strong);
+        let forces: Vec<f64> = kane::inverse_dynamics(self.spec, &state).iter().map(|x| x.re).collect();
+        self.close("inverse_dynamics", &forces, heavy * 2.0 + strong);
+        let nv = v.len();
+        let kinetic: f64 = (0..nv)
+            .flat_map(|i| (0..nv).map(move |j| (i, j)))
+            .map(|(i, j)| 0.5 * v[i] * mass[j * nv + i] * v[j])
+            .sum();
+        self.close("kinetic_energy", &[kinetic], heavy);
+        // Accelerations are judged by the forces that they would take: of each row, next to the terms of its sum.
+        for actual in self.run("forward_dynamics") {
+            for i in 0..nv {
+                let terms: Vec<f64> = (0..nv).map(|j| mass[j * nv + i] * actual[j]).collect();
+                let size: f64 =
+                    terms.iter().map(|x| x.abs()).sum::<f64>() + tau[i].abs() + bias[i].abs() + strong;
+                let rest = terms.iter().sum::<f64>() + bias[i] - tau[i];
+                let reach = largest(&actual) * heavy;
+                assert!(
+                    rest.abs() <= TOLERANCE * size.max(reach),
+                    "forward dynamics, row {i}: {rest} is left of {size}, {}",
+                    self.name
+                );
+            }
+        }
+    }
+
+    fn check_derivatives(&self) {
+        let Point { q, v, a, .. } = &self.point;
+        let nv = v.len();
+        let state = State::new(q, v, a);
+        let imaginary = |list: Vec<C>| -> Vec<f64> { list.iter().map(|x| x.im / STEP).collect() };
+        let mut expected = Vec::new();
+        for k in 0..nv {
+            let stepped = State { q: kane::imaginary_step(self.spec, &state.q, k, STEP), ..state.clone() };
+            expected.extend(imaginary(kane::inverse_dynamics(self.spec, &stepped)));
+        }
+        for k in 0..nv {
+            let mut stepped = state.clone();
+            stepped.v[k] = real(v[k]) + C::new(0.0, STEP);
+            expected.extend(imaginary(kane::inverse_dynamics(self.spec, &stepped)));
+        }
+        let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        self.close("inverse_dynamics_derivatives", &expected, scale);
+    }
+}

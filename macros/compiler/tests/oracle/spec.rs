@@ -1,0 +1,344 @@
+//! A random mechanism as plain data: what the oracle and the text in the words of the language are both made from.
+
+use crate::random::Random;
+
+/// A joint of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Pin,
+    Sleeve,
+    Screw,
+    Collar,
+    Slot,
+    Universal,
+    Planar,
+    Stage,
+    Ball,
+    Free,
+    Weld,
+}
+
+/// All of them.
+pub const KINDS: [Kind; 11] = [
+    Kind::Pin,
+    Kind::Sleeve,
+    Kind::Screw,
+    Kind::Collar,
+    Kind::Slot,
+    Kind::Universal,
+    Kind::Planar,
+    Kind::Stage,
+    Kind::Ball,
+    Kind::Free,
+    Kind::Weld,
+];
+
+impl Kind {
+    /// How many configuration numbers and velocities it has.
+    pub fn sizes(self) -> (usize, usize) {
+        match self {
+            Kind::Pin | Kind::Sleeve | Kind::Screw => (1, 1),
+            Kind::Collar | Kind::Slot | Kind::Universal => (2, 2),
+            Kind::Planar | Kind::Stage => (3, 3),
+            Kind::Ball => (4, 3),
+            Kind::Free => (7, 6),
+            Kind::Weld => (0, 0),
+        }
+    }
+
+    /// The coordinates that an element can act on, in the order of the velocities.
+    pub fn coordinates(self) -> &'static [&'static str] {
+        match self {
+            Kind::Pin | Kind::Sleeve | Kind::Screw => &[""],
+            Kind::Collar | Kind::Slot => &[".slide", ".turn"],
+            Kind::Universal => &[".first", ".second"],
+            Kind::Planar => &[".x", ".y", ".angle"],
+            Kind::Stage => &[".x", ".y", ".z"],
+            _ => &[],
+        }
+    }
+}
+
+/// A place on a body: a position, then rotations about carried coordinate axes.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    pub at: [f64; 3],
+    pub turns: Vec<(usize, f64)>,
+}
+
+/// A particle that a coordinate moves along an axis of the ground, away from a point of a body.
+#[derive(Clone, Debug)]
+pub struct Slider {
+    pub mass: f64,
+    pub offset: [f64; 3],
+}
+
+/// A body with the joint that leads to it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub kind: Kind,
+    /// The body that carries it, or the ground.
+    pub parent: Option<usize>,
+    pub on_parent: Place,
+    pub on_child: Place,
+    /// Unit vectors: the first axis of the joint and the second.
+    pub axes: [[f64; 3]; 2],
+    pub pitch: f64,
+    pub mass: f64,
+    pub com: [f64; 3],
+    /// Principal moments, about axes that are turned by [`Body::inertia_turns`].
+    pub moments: [f64; 3],
+    pub inertia_turns: Vec<(usize, f64)>,
+    /// A particle of this mass, at this place.
+    pub particle: Option<(f64, [f64; 3])>,
+    pub slider: Option<Slider>,
+}
+
+/// A point of a body or of the ground.
+#[derive(Clone, Debug)]
+pub struct End {
+    pub body: Option<usize>,
+    pub at: [f64; 3],
+}
+
+/// The laws of elements between two points, or on a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub enum Law {
+    /// Stiffness and free length.
+    Spring(f64, f64),
+    /// Damping.
+    Dashpot(f64),
+    /// Inertance.
+    Inerter(f64),
+}
+
+/// What acts.
+#[derive(Clone, Debug)]
+pub enum Element {
+    /// Along the line between two points.
+    Between(Law, End, End),
+    /// On a coordinate of a body's joint.
+    On(Law, usize, usize),
+    /// A force in ground axes at a point of a body.
+    Push(End, [f64; 3]),
+    /// A force in the body's own axes at a point of a body.
+    Follow(End, [f64; 3]),
+}
+
+/// A mechanism.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    pub gravity: [f64; 3],
+    pub bodies: Vec<Body>,
+    pub elements: Vec<Element>,
+    /// Masses are parameters.
+    pub symbolic: bool,
+}
+
+/// What kind of mechanisms a generator makes.
+#[derive(Clone, Copy, Debug)]
+pub struct Style {
+    /// How many bodies at most.
+    pub bodies: usize,
+    /// How many limbs of one form; a tree without form if none.
+    pub limbs: usize,
+    /// Masses lie within this many powers of ten of one.
+    pub decades: f64,
+    /// Angles and axes miss those of a plain machine by this.
+    pub noise: Option<f64>,
+}
+
+/// Numbers with a choice of words.
+struct Source(Random);
+
+impl Source {
+    fn below(&mut self, n: usize) -> usize {
+        ((self.0.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
+    }
+
+    fn chance(&mut self, one_in: usize) -> bool {
+        self.below(one_in) == 0
+    }
+
+    fn vector(&mut self, bound: f64) -> [f64; 3] {
+        std::array::from_fn(|_| self.0.uniform(bound))
+    }
+
+    /// A coordinate axis, or any.
+    fn axis(&mut self, style: &Style) -> [f64; 3] {
+        let mut axis = [0.0; 3];
+        if style.noise.is_some() || !self.chance(3) {
+            axis[self.below(3)] = if self.chance(2) { 1.0 } else { -1.0 };
+        } else {
+            axis = self.vector(1.0);
+            axis[self.below(3)] += 1.5;
+        }
+        if let Some(noise) = style.noise {
+            axis = axis.map(|x| x + self.0.uniform(noise));
+        }
+        unit(axis)
+    }
+
+    fn turns(&mut self, style: &Style) -> Vec<(usize, f64)> {
+        (0..self.below(3))
+            .map(|_| {
+                let angle = match style.noise {
+                    Some(noise) => std::f64::consts::FRAC_PI_2 * self.below(4) as f64 + self.0.uniform(noise),
+                    None => self.0.uniform(3.0),
+                };
+                (self.below(3), angle)
+            })
+            .collect()
+    }
+
+    fn place(&mut self, style: &Style) -> Place {
+        match self.below(4) {
+            0 => Place::default(),
+            1 => Place { at: self.vector(0.5), turns: Vec::new() },
+            _ => Place { at: self.vector(0.5), turns: self.turns(style) },
+        }
+    }
+
+    fn mass(&mut self, style: &Style) -> f64 {
+        10.0_f64.powf(self.0.uniform(style.decades)) * (1.3 + self.0.uniform(0.8))
+    }
+
+    fn body(&mut self, kind: Kind, parent: Option<usize>, style: &Style) -> Body {
+        let mass = self.mass(style);
+        // Moments of a cuboid, which a real body has.
+        let sides = self.vector(0.4).map(|s| s * s + 0.05);
+        let all: f64 = sides.iter().sum();
+        Body {
+            kind,
+            parent,
+            on_parent: self.place(style),
+            on_child: if self.chance(2) { Place::default() } else { self.place(style) },
+            axes: [self.axis(style), self.axis(style)],
+            pitch: 0.2 + self.0.uniform(0.1),
+            mass,
+            com: if self.chance(3) { [0.0; 3] } else { self.vector(0.4) },
+            moments: sides.map(|s| mass * (all - s) / 3.0),
+            inertia_turns: self.turns(style),
+            particle: self.chance(6).then(|| (self.mass(style), self.vector(0.5))),
+            slider: self.chance(12).then(|| Slider { mass: self.mass(style), offset: self.vector(0.5) }),
+        }
+    }
+
+    fn end(&mut self, body: Option<usize>) -> End {
+        End { body, at: self.vector(0.8) }
+    }
+
+    fn law(&mut self) -> Law {
+        let size = 1.5 + self.0.uniform(1.0);
+        match self.below(3) {
+            0 => Law::Spring(4.0 * size, self.0.uniform(0.3).abs()),
+            1 => Law::Dashpot(size),
+            _ => Law::Inerter(0.5 * size),
+        }
+    }
+
+    fn element(&mut self, bodies: &[Body]) -> Option<Element> {
+        let one = self.below(bodies.len());
+        // What is welded to the ground cannot be moved by what acts on it.
+        if is_fixed(bodies, one) {
+            return None;
+        }
+        Some(match self.below(6) {
+            0 => Element::Push(self.end(Some(one)), self.vector(3.0)),
+            1 => Element::Follow(self.end(Some(one)), self.vector(3.0)),
+            2 => {
+                let coordinates = bodies[one].kind.coordinates();
+                if coordinates.is_empty() {
+                    return None;
+                }
+                let law = self.law();
+                Element::On(law, one, self.below(coordinates.len()))
+            }
+            3 => Element::Between(self.law(), self.end(None), self.end(Some(one))),
+            _ => {
+                let other = self.below(bodies.len());
+                // Bodies that are welded together have a distance that stays.
+                if rigid(bodies, other) == rigid(bodies, one) {
+                    return None;
+                }
+                Element::Between(self.law(), self.end(Some(other)), self.end(Some(one)))
+            }
+        })
+    }
+}
+
+/// The body that a body is welded to in the end; `None` for the ground.
+fn rigid(bodies: &[Body], body: usize) -> Option<usize> {
+    match (bodies[body].kind, bodies[body].parent) {
+        (Kind::Weld, None) => None,
+        (Kind::Weld, Some(parent)) => rigid(bodies, parent),
+        _ => Some(body),
+    }
+}
+
+fn is_fixed(bodies: &[Body], body: usize) -> bool {
+    rigid(bodies, body).is_none()
+}
+
+/// The vector of length one in a direction, as the language's `unit` makes it.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|x| x / length)
+}
+
+/// Joints that limbs are made of.
+const LIMB_KINDS: [Kind; 6] = [Kind::Pin, Kind::Pin, Kind::Sleeve, Kind::Screw, Kind::Ball, Kind::Universal];
+
+/// The mechanism of a seed.
+pub fn spec(seed: u64, style: Style) -> Spec {
+    let mut source = Source(Random::new(seed));
+    let mut bodies: Vec<Body> = Vec::new();
+    let rigged = if style.limbs > 0 { limbs(&mut source, &style, &mut bodies) } else { 0 };
+    if style.limbs == 0 {
+        let count = 1 + source.below(style.bodies);
+        for k in 0..count {
+            let parent = (k > 0 && !source.chance(8)).then(|| source.below(k));
+            // A base that floats is met most of all.
+            let kind = match parent {
+                None if source.chance(3) => Kind::Free,
+                _ => KINDS[source.below(KINDS.len())],
+            };
+            let body = source.body(kind, parent, &style);
+            bodies.push(body);
+        }
+        if bodies.iter().all(|body| body.kind == Kind::Weld) {
+            bodies[0].kind = Kind::Ball;
+        }
+    }
+    let tries = source.below(4) + rigged;
+    let elements = (0..tries).filter_map(|_| source.element(&bodies)).collect();
+    Spec { gravity: source.vector(10.0), bodies, elements, symbolic: source.chance(2) }
+}
+
+/// Limbs of one form on a trunk; how many elements there should be besides.
+fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
+    let trunk = match source.below(3) {
+        0 => None,
+        1 => Some(Kind::Free),
+        _ => Some(Kind::Pin),
+    };
+    if let Some(kind) = trunk {
+        bodies.push(source.body(kind, None, style));
+    }
+    let root = bodies.len().checked_sub(1);
+    let joints: Vec<Kind> =
+        (0..1 + source.below(2)).map(|_| LIMB_KINDS[source.below(LIMB_KINDS.len())]).collect();
+    let plain: Vec<Body> = joints.iter().map(|kind| source.body(*kind, None, style)).collect();
+    let same = source.chance(2);
+    for _ in 0..style.limbs {
+        for (k, pattern) in plain.iter().enumerate() {
+            let parent = if k == 0 { root } else { Some(bodies.len() - 1) };
+            let mut body = if same { pattern.clone() } else { source.body(pattern.kind, None, style) };
+            body.slider = None;
+            body.parent = parent;
+            body.on_parent.at = source.vector(0.5);
+            bodies.push(body);
+        }
+    }
+    1 + source.below(3)
+}

@@ -1,0 +1,132 @@
+//! A random mechanism in the words of the language.
+
+use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
+use std::fmt::Write;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The attribute's arguments and the struct.
+pub fn source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
+    let mut out = String::new();
+    for (k, body) in spec.bodies.iter().enumerate() {
+        write_body(k, body, spec.symbolic, &mut out);
+    }
+    for (k, element) in spec.elements.iter().enumerate() {
+        write_element(k, element, &spec.bodies, &mut out);
+    }
+    let arguments = format!("gravity = {:?}{requests}", spec.gravity);
+    (arguments, format!("pub struct {name} {{\n{out}}}"))
+}
+
+fn write_body(k: usize, body: &Body, symbolic: bool, out: &mut String) {
+    let mass = match symbolic {
+        true => {
+            let _ = writeln!(out, "pub mass{k}: f64,");
+            format!("mass{k}")
+        }
+        false => format!("{:?}", body.mass),
+    };
+    let [a, b, c] = body.moments;
+    let turned = rotated(&body.inertia_turns);
+    let _ = writeln!(
+        out,
+        "#[body(mass = {mass}, com = {:?}, inertia = diagonal({a:?}, {b:?}, {c:?}){turned})] body{k}: Body,",
+        body.com
+    );
+    let parent = name(body.parent);
+    let _ = writeln!(
+        out,
+        "#[joint({} -> {}{})] joint{k}: {:?},",
+        placed(&parent, &body.on_parent),
+        placed(&format!("body{k}"), &body.on_child),
+        axes(body),
+        body.kind
+    );
+    if let Some((mass, at)) = body.particle {
+        let _ = writeln!(out, "#[particle(mass = {mass:?}, at = body{k}.at({at:?}))] particle{k}: Particle,");
+    }
+    if let Some(slider) = &body.slider {
+        let [x, y, z] = slider.offset;
+        let _ = writeln!(
+            out,
+            "slide{k}: Coordinate,
+             #[particle(mass = {:?}, at = body{k}.at(slide{k} * ground.x + ({x:?}) * ground.y + ({y:?}) * x + ({z:?}) * y))]
+             slider{k}: Particle,",
+            slider.mass
+        );
+    }
+}
+
+fn name(body: Option<usize>) -> String {
+    body.map_or("ground".to_string(), |k| format!("body{k}"))
+}
+
+fn placed(name: &str, place: &Place) -> String {
+    let at = if place.at == [0.0; 3] { String::new() } else { format!(".at({:?})", place.at) };
+    format!("{name}{at}{}", rotated(&place.turns))
+}
+
+fn rotated(turns: &[(usize, f64)]) -> String {
+    if turns.is_empty() {
+        return String::new();
+    }
+    let list: Vec<String> = turns.iter().map(|(axis, angle)| format!("{}({angle:?})", AXES[*axis])).collect();
+    format!(".rotated({})", list.join(", "))
+}
+
+fn axes(body: &Body) -> String {
+    let [a, b] = body.axes.map(|axis| format!("unit({axis:?})"));
+    match body.kind {
+        Kind::Pin | Kind::Collar => format!(", about = {a}"),
+        Kind::Sleeve => format!(", along = {a}"),
+        Kind::Screw => format!(", about = {a}, pitch = {:?}", body.pitch),
+        Kind::Slot => format!(", along = {a}, about = {b}"),
+        Kind::Universal => ", about = (x, y)".to_string(),
+        Kind::Planar => ", along = (x, y)".to_string(),
+        Kind::Stage => ", along = (x, y, z)".to_string(),
+        Kind::Ball | Kind::Free | Kind::Weld => String::new(),
+    }
+}
+
+fn point(end: &End) -> String {
+    format!("{}.at({:?})", name(end.body), end.at)
+}
+
+fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String) {
+    let _ = match element {
+        Element::Between(law, a, b) => {
+            let (words, kind) = law_words(*law, "free_length");
+            writeln!(out, "#[acts(between = ({}, {}), {words})] element{k}: {kind},", point(a), point(b))
+        }
+        Element::On(law, body, coordinate) => {
+            let kind = bodies[*body].kind;
+            let which = kind.coordinates()[*coordinate];
+            let is_angle = matches!(which, ".turn" | ".first" | ".second" | ".angle")
+                || matches!(kind, Kind::Pin | Kind::Screw);
+            let free = if is_angle { "free_angle" } else { "free_length" };
+            let (words, kind) = law_words(*law, free);
+            writeln!(out, "#[acts(on = joint{body}{which}, {words})] element{k}: {kind},")
+        }
+        Element::Push(end, [x, y, z]) => writeln!(
+            out,
+            "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] element{k}: Force,",
+            point(end)
+        ),
+        Element::Follow(end, [x, y, z]) => {
+            let b = name(end.body);
+            writeln!(
+                out,
+                "#[acts(on = {}, value = ({x:?}) * {b}.x + ({y:?}) * {b}.y + ({z:?}) * {b}.z)] element{k}: Force,",
+                point(end)
+            )
+        }
+    };
+}
+
+fn law_words(law: Law, free: &str) -> (String, &'static str) {
+    match law {
+        Law::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
+        Law::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),
+        Law::Inerter(b) => (format!("inertance = {b:?}"), "Inerter"),
+    }
+}

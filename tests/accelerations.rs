@@ -1,0 +1,136 @@
+//! Accelerations and their derivatives as generated and compiled, against Kane's equations in numbers: the oracle of the
+//! compiler's own tests, which shares nothing with it. The mechanisms are random; they stand in a file that the same
+//! generator writes.
+
+#[path = "../macros/compiler/tests/oracle/jet.rs"]
+mod jet;
+#[path = "../macros/compiler/tests/oracle/kane.rs"]
+mod kane;
+#[path = "accelerations/mechanisms.rs"]
+mod mechanisms;
+#[path = "../macros/compiler/tests/oracle/random.rs"]
+mod random;
+#[path = "../macros/compiler/tests/oracle/spec.rs"]
+mod spec;
+#[path = "../macros/compiler/tests/oracle/words.rs"]
+mod words;
+
+use jet::{C, real};
+use kane::State;
+use linkwork::nalgebra::SVector;
+use spec::{Spec, Style};
+use std::fmt::Write;
+
+/// How many mechanisms are compiled.
+const COUNT: u64 = 12;
+/// Largest difference, relative to the largest entry.
+const TOLERANCE: f64 = 1e-9;
+/// Size of the imaginary step: its square is nothing.
+const STEP: f64 = 1e-40;
+
+/// Trees, and every third one of alike limbs.
+fn mechanism(k: u64) -> Spec {
+    let limbs = if k % 3 == 2 { 2 + k as usize % 2 } else { 0 };
+    Spec { symbolic: false, ..spec::spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None }) }
+}
+
+/// The text of `mechanisms.rs`.
+fn written() -> String {
+    let mut out = String::from(
+        "//! Written by the test `the_file_is_what_the_generator_writes`.\n\nuse linkwork::mechanism;\n",
+    );
+    for k in 0..COUNT {
+        let (arguments, item) = words::source(&mechanism(k), &format!("Random{k}"), ", derivatives");
+        let _ = write!(out, "\n/// Random.\n#[mechanism({arguments})]\n{item}\n");
+    }
+    out
+}
+
+#[test]
+fn the_file_is_what_the_generator_writes() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/accelerations/mechanisms.rs");
+    if std::env::var_os("LINKWORK_WRITE").is_some() {
+        std::fs::write(path, written()).unwrap();
+    }
+    let words = |text: &str| text.split_whitespace().collect::<String>();
+    assert_eq!(
+        words(&std::fs::read_to_string(path).unwrap()),
+        words(&written()),
+        "write it anew with LINKWORK_WRITE=1"
+    );
+}
+
+/// Real parts, and imaginary ones as derivatives.
+fn parts(list: &[C]) -> (Vec<f64>, Vec<f64>) {
+    list.iter().map(|x| (x.re, x.im / STEP)).unzip()
+}
+
+/// `v̇ = M⁻¹ (τ − h)`, by elimination with interchanges.
+fn forward_dynamics(spec: &Spec, q: &[C], v: &[C], tau: &[C]) -> Vec<C> {
+    let (columns, bias) = kane::mass_and_bias(spec, q, v);
+    let n = v.len();
+    let mut rows: Vec<Vec<C>> =
+        (0..n).map(|i| columns.iter().map(|column| column[i]).chain([tau[i] - bias[i]]).collect()).collect();
+    for k in 0..n {
+        let size = |i: &usize| rows[*i][k].norm();
+        let best = (k..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(k);
+        rows.swap(k, best);
+        let pivot = rows[k].clone();
+        for row in rows.iter_mut().skip(k + 1) {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+    let mut x = vec![real(0.0); n];
+    for i in (0..n).rev() {
+        let known: C = (i + 1..n).map(|j| rows[i][j] * x[j]).sum();
+        x[i] = (rows[i][n] - known) / rows[i][i];
+    }
+    x
+}
+
+fn close(what: &str, k: u64, actual: &[f64], expected: &[f64]) {
+    assert_eq!(actual.len(), expected.len());
+    let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for (entry, (a, b)) in actual.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= TOLERANCE * scale, "{what} of mechanism {k}, entry {entry}: {a} and {b}");
+    }
+}
+
+macro_rules! check {
+    ($($k:literal $name:ident)*) => {$(
+        let spec = mechanism($k);
+        assert_eq!((mechanisms::$name::NQ, mechanisms::$name::NV), kane::sizes(&spec));
+        let mut random = random::Random::new($k);
+        let m = mechanisms::$name {};
+        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform(1.2)));
+        let v = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform(1.0));
+        let tau = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform(2.0));
+        let state = State::new(q.as_slice(), v.as_slice(), tau.as_slice());
+        let (by_q, by_v, inverse) = m.forward_dynamics_derivatives(&q, &v, &tau);
+        let (accelerations, _) = parts(&forward_dynamics(&spec, &state.q, &state.v, &state.a));
+        close("v̇", $k, m.forward_dynamics(&q, &v, &tau).as_slice(), &accelerations);
+        let mut expected = [Vec::new(), Vec::new(), Vec::new()];
+        for k in 0..mechanisms::$name::NV {
+            let step = C::new(0.0, STEP);
+            let q = kane::imaginary_step(&spec, &state.q, k, STEP);
+            let (mut v, mut tau) = (state.v.clone(), state.a.clone());
+            (v[k], tau[k]) = (v[k] + step, tau[k] + step);
+            expected[0].extend(parts(&forward_dynamics(&spec, &q, &state.v, &state.a)).1);
+            expected[1].extend(parts(&forward_dynamics(&spec, &state.q, &v, &state.a)).1);
+            expected[2].extend(parts(&forward_dynamics(&spec, &state.q, &state.v, &tau)).1);
+        }
+        close("∂v̇/∂q", $k, by_q.as_slice(), &expected[0]);
+        close("∂v̇/∂v", $k, by_v.as_slice(), &expected[1]);
+        close("M⁻¹", $k, inverse.as_slice(), &expected[2]);
+        close("M⁻¹ alone", $k, m.mass_matrix_inverse(&q).as_slice(), &expected[2]);
+    )*};
+}
+
+#[test]
+fn accelerations_and_their_derivatives_obey_kanes_equations() {
+    check! {
+        0 Random0 1 Random1 2 Random2 3 Random3 4 Random4 5 Random5
+        6 Random6 7 Random7 8 Random8 9 Random9 10 Random10 11 Random11
+    }
+}
