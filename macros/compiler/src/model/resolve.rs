@@ -148,7 +148,16 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// A vector in the attribute's own axes.
     pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
-        let terms = self.vector(e, cx)?;
+        self.vector(e, cx).and_then(|terms| self.own_sum(terms, e, cx))
+    }
+
+    /// The sum of a vector's terms, all in the attribute's own axes.
+    pub fn own_sum(
+        &self,
+        terms: Vec<(Axes, Vec3<'g>)>,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec3<'g>> {
         let mut sum = Vec3::zero(self.graph);
         for (axes, v) in terms {
             if let Axes::Of(body) = axes {
@@ -163,13 +172,23 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// A vector as a sum over axes.
     pub fn vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
+        self.vector_or(e, "multiply it by a direction, as in `length * y`", cx)
+    }
+
+    /// A vector as a sum over axes, with the help for a scalar in its place. What is in `e` is read once, however deep
+    /// expressions are nested.
+    pub fn vector_or(
+        &self,
+        e: &syntax::Expr,
+        help: &str,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<(Axes, Vec3<'g>)>> {
         match self.value(e, cx)? {
             Value::Vector(v) => Some(v),
             // The number zero is the zero vector too.
             Value::Scalar(s) if s.is_zero() => Some(vec![(Axes::Own, Vec3::zero(self.graph))]),
             Value::Scalar(_) => {
-                cx.error(e.place.clone(), "expected a vector, found a scalar")
-                    .help("multiply it by a direction, as in `length * y`");
+                cx.error(e.place.clone(), "expected a vector, found a scalar").help(help);
                 None
             }
         }
@@ -536,18 +555,13 @@ impl<'a, 'g> Scope<'a, 'g> {
                 let [a] = arguments else {
                     return wrong_count(function, 1, cx);
                 };
-                if let Some(Value::Scalar(s)) = self.value(a, &mut Diagnostics::unread())
-                    && !s.is_zero()
-                {
-                    let help = if text == "norm" {
-                        "the size of a scalar is `abs(a)`"
-                    } else {
-                        "a scalar has no direction"
-                    };
-                    cx.error(a.place.clone(), "expected a vector, found a scalar").help(help);
-                    return None;
-                }
-                let (axes, v) = self.common_axes(&[a], cx)?;
+                let help = if text == "norm" {
+                    "the size of a scalar is `abs(a)`"
+                } else {
+                    "a scalar has no direction"
+                };
+                let vector = self.vector_or(a, help, cx)?;
+                let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
                 if text == "norm" {
                     return Some(Value::Scalar(v[0].length()));
                 }

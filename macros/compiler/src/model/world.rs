@@ -188,12 +188,24 @@ impl<'g> Scope<'_, 'g> {
 
     /// Several vectors in common axes.
     pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
+        let all: Vec<_> = e.iter().map(|e| Some((*e, self.vector(e, cx)?))).collect();
+        self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
+    }
+
+    /// Several vectors that were read, in common axes.
+    pub fn in_common_axes(
+        &self,
+        read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,
+        cx: &mut Diagnostics,
+    ) -> Option<(Axes, Vec<Vec3<'g>>)> {
         if self.view.borrow().home.is_none() {
-            let all: Vec<_> = e.iter().map(|e| self.own_vector(e, cx)).collect();
+            let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
-        let all: Vec<_> = e.iter().map(|e| self.terms(e, cx)).collect();
-        let all = all.into_iter().collect::<Option<Vec<_>>>()?;
+        let links = |terms: Vec<(Axes, Vec3<'g>)>| -> Terms<'g> {
+            terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
+        };
+        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| links(terms)).collect();
         let link = all.iter().flatten().next().and_then(|(link, _)| *link);
         let world = self.world.borrow();
         let zero = Vec3::zero(self.graph);
