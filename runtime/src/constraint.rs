@@ -20,7 +20,7 @@ mod span;
 mod stabilized;
 
 #[doc(hidden)]
-pub use careful::{Structure, careful_dynamics, careful_response};
+pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, columns, constrained_derivatives};

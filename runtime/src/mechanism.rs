@@ -71,6 +71,12 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         self.forward_dynamics(q, v, &(self.bias_forces(q, v) + p))
     }
 
+    /// Whether the constraints lose rank in the configuration `q`, or as good as: a step by `dv` changes them as much as they
+    /// differ from dependent ones. Methods go on by accelerations there, which are continuous.
+    fn is_nearly_singular(&self, _q: &SVector<Self::Scalar, NQ>, _dv: &SVector<Self::Scalar, NV>) -> bool {
+        false
+    }
+
     /// The configuration with all coordinates zero; identity quaternions.
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
@@ -205,6 +211,11 @@ where
         p: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         (**self).impulse(q, v, h, p)
+    }
+
+    #[inline]
+    fn is_nearly_singular(&self, q: &SVector<Self::Scalar, NQ>, dv: &SVector<Self::Scalar, NV>) -> bool {
+        (**self).is_nearly_singular(q, dv)
     }
 
     #[inline]

@@ -62,6 +62,16 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
     }
 
+    /// Whether constraints lose rank near `q` ([`Mechanism::is_nearly_singular`]).
+    fn is_nearly_singular(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _dv: &SVector<Self::Scalar, NV>,
+    ) -> bool {
+        false
+    }
+
     /// The configuration with all coordinates zero; identity quaternions ([`Mechanism::neutral`]).
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
@@ -268,6 +278,16 @@ where
     }
 
     #[inline(always)]
+    fn is_nearly_singular(
+        &self,
+        _t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> bool {
+        Mechanism::is_nearly_singular(self, q, dv)
+    }
+
+    #[inline(always)]
     fn project(
         &self,
         _t: Self::Scalar,
@@ -295,6 +315,11 @@ where
     #[inline(always)]
     fn impulse(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>, h: T, p: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.impulse(self.t, q, v, h, p)
+    }
+
+    #[inline(always)]
+    fn is_nearly_singular(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
+        self.mechanism.is_nearly_singular(self.t, q, dv)
     }
 
     #[inline(always)]

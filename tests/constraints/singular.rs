@@ -1,6 +1,7 @@
 //! Where constraints nearly depend on each other, or seem to: light bodies between heavy ones, and positions in which a
 //! linkage loses rank.
 
+use linkwork::integrate::Method;
 use linkwork::prelude::*;
 use linkwork_models::TwoWindows;
 use std::f64::consts::FRAC_PI_2;
@@ -82,17 +83,19 @@ fn accelerations_go_on_through_singular_positions() {
     assert!((a - WINDOWS.forward_dynamics(&q, &v, &SVector::zeros())).amax() < 1e-6);
 }
 
+/// The distance of a top at this angle from where that of the first post is after ten seconds.
+fn off_top(angle: f64) -> f64 {
+    // IFToMM benchmark A02, integrated in 160 bits.
+    (angle.sin() + 0.328_458_111_540_815).hypot(angle.cos() - 0.944_518_538_078_601)
+}
+
 /// The distance of the first post's top from where it is after ten seconds, and what energy is gained.
-fn turned<M: linkwork::integrate::Method<f64>>(method: M) -> (f64, f64) {
+fn turned<M: Method<f64>>(method: M) -> (f64, f64) {
     let (q, v) = posts(0.0, 1.0);
     let energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    // IFToMM benchmark A02, integrated in 160 bits.
-    let top = ((-end.q[0].sin() - 0.328_458_111_540_815).powi(2)
-        + (end.q[0].cos() - 0.944_518_538_078_601).powi(2))
-    .sqrt();
-    (top, (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+    (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
 }
 
 #[test]
@@ -101,6 +104,39 @@ fn runge_kutta_keeps_its_order_through_singular_positions() {
         let (top, energy) = turned(Rk4::step(step));
         assert!(top < most && energy < 2.0 * most, "{top} m and {energy} J with {step} s");
     }
+}
+
+/// The pendulum that the windows are: as much inertia, and as much moment of its weight.
+#[mechanism(gravity = -9.81 * y)]
+struct Swing {
+    #[body(mass = 49 / 9, com = 9 / 14 * y, inertia = rod(49 / 9, 9 / 7, y))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    pin: Pin,
+}
+
+/// What [`turned`] tells of the windows, for the pendulum.
+fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
+    let swing = Swing {};
+    let energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
+    let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
+    let end = simulate(&swing).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
+    (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+}
+
+/// The windows go through their line eight times in ten seconds.
+#[test]
+fn implicit_steps_are_as_good_in_singular_positions_as_without() {
+    fn check<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
+        for step in [2e-3, 1e-3] {
+            let ((top, energy), (own, least)) = (turned(method(step)), swung(method(step)));
+            let alike = top < 1.2 * own + 1e-5 && energy < 1.2 * least + 1e-6;
+            assert!(alike, "{name}: {top} m, {energy} J with {step} s; a pendulum {own} m, {least} J");
+        }
+    }
+    check("midpoint", ImplicitMidpoint::step);
+    check("Rosenbrock", Rosenbrock::step);
+    check("Euler", SemiImplicitEuler::step);
 }
 
 #[test]
@@ -117,20 +153,81 @@ fn linkages_are_released_near_singular_positions() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
         let (q, v) = posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
         let start = WINDOWS.potential_energy(&q);
-        let check = |q: SVector<f64, 5>, v: SVector<f64, 5>| {
-            let energy = WINDOWS.kinetic_energy(&q, &v) + WINDOWS.potential_energy(&q);
-            assert!((energy - start).abs() < 1e-7, "{} J from 1e-{exponent}", energy - start);
-            let aside = (q - posts(-q[0], 0.0).0).amax();
+        let check = |end: Sample<f64, 5, 5, 0>, most: f64| {
+            let energy = WINDOWS.kinetic_energy(&end.q, &end.v) + WINDOWS.potential_energy(&end.q);
+            assert!((energy - start).abs() < most, "{} J from 1e-{exponent}", energy - start);
+            let aside = (end.q - posts(-end.q[0], 0.0).0).amax();
             assert!(aside < 1e-6, "{aside} rad off the branch from 1e-{exponent}");
         };
-        let run = simulate(&WINDOWS).from(q, v).method(Rk4::step(2e-3)).duration(2.0);
-        let end = run.finish().expect("it swings");
-        check(end.q, end.v);
+        let run = || simulate(&WINDOWS).from(q, v).duration(2.0);
+        check(run().method(Rk4::step(2e-3)).finish().expect("it swings"), 1e-7);
+        // By the order of the method: h ω, with ω ≈ 3/s, to its power beside 30 J, or as much as Rosenbrock damps.
+        check(run().method(ImplicitMidpoint::step(2e-3)).finish().expect("it swings"), 1e-5);
+        check(run().method(Rosenbrock::step(2e-3)).finish().expect("it swings"), 1e-3);
+        check(run().method(SemiImplicitEuler::step(2e-3)).finish().expect("it swings"), 0.2);
         if exponent == 4 {
             let method = DormandPrince::new().tolerance(1e-12, 1e-12);
             let end = simulate(&WINDOWS).from(q, v).method(method).duration(0.5).finish().expect("it swings");
-            check(end.q, end.v);
+            check(end, 1e-7);
         }
+    }
+}
+
+/// A four-bar linkage of slender rods that can be laid flat.
+macro_rules! flat {
+    ($name:ident, [$ground:tt, $crank:tt, $coupler:tt, $rocker:tt]) => {
+        #[mechanism(gravity = -9.81 * y)]
+        struct $name {
+            #[body(mass = 1, com = $crank / 2 * x, inertia = rod(1, $crank, x))]
+            crank: Body,
+            #[body(mass = 1, com = $coupler / 2 * x, inertia = rod(1, $coupler, x))]
+            coupler: Body,
+            #[body(mass = 1, com = $rocker / 2 * x, inertia = rod(1, $rocker, x))]
+            rocker: Body,
+            #[joint(ground -> crank, about = z)]
+            first: Pin,
+            #[joint(crank.at($crank * x) -> coupler, about = z)]
+            second: Pin,
+            #[joint(ground.at($ground * x) -> rocker, about = z)]
+            third: Pin,
+            #[joint(rocker.at($rocker * x) -> coupler.at($coupler * x), about = z)]
+            closing: Pin,
+        }
+    };
+}
+
+flat!(Parallelogram, [1, 1, 1, 1]);
+// The shortest and the longest are as long together as the others; accelerations of the joints are not alike here.
+flat!(ChangePoint, [2, 1, 3, 2]);
+
+/// Every method goes straight on where a linkage is flat, turn after turn, at its order.
+#[test]
+fn cranks_turn_through_flat_positions() {
+    fn check<M: Mechanism<3, 3, 0, Scalar = f64>>(m: &M, q: SVector<f64, 3>, v: SVector<f64, 3>, name: &str) {
+        let run = || simulate(m).from(q, v).duration(2.0);
+        let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+        let whole = energy(&q, &v);
+        let exact = run().method(DormandPrince::new().tolerance(1e-11, 1e-11)).finish().expect("it turns");
+        assert!((energy(&exact.q, &exact.v) - whole).abs() < 1e-7 * whole);
+        assert!((exact.q[0] - q[0]).abs() > 10.0, "{name} turns {}", exact.q);
+        let compare = |end: Result<Sample<f64, 3, 3, 0>, Error>, most: f64, method: &str| {
+            let end = end.expect(method);
+            let (off, gain) = ((end.q - exact.q).amax(), (energy(&end.q, &end.v) - whole).abs() / whole);
+            assert!(off < most && gain < most, "{name}, {method}: {off} rad, {gain} of the energy");
+        };
+        for h in [2e-3, 5e-4] {
+            compare(run().method(ImplicitMidpoint::step(h)).finish(), 4e2 * h * h, "midpoint");
+            compare(run().method(SemiImplicitEuler::step(h)).finish(), 2e1 * h, "Euler");
+            compare(run().method(Rosenbrock::step(h)).finish(), 1e4 * h * h, "Rosenbrock");
+        }
+    }
+    for rate in [-12.0, -9.0] {
+        let (m, held) = (Parallelogram {}, SVector::from([rate, 0.0, 0.0]));
+        let q = m.assemble(&[1.0, -1.0, 1.0].into(), &[0]).expect("it closes");
+        check(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "parallelogram");
+        let m = ChangePoint {};
+        let q = m.assemble(&[1.0, -0.5, 1.2].into(), &[0]).expect("it closes");
+        check(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "change point");
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod passing;
 
-use super::span::{Metric, Span, at, dot, orthogonal, rounding};
+use super::span::{Metric, Span, at, dot, norm, orthogonal, rounding};
 use super::{Constrained, Solution};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -108,6 +108,50 @@ where
         _ => Weak::Dropped,
     };
     System { mass, jacobian, force: *force, bias: *bias }.solve(structure, zone(), weak).0
+}
+
+/// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as they differ from
+/// dependent ones.
+#[cold]
+#[inline(never)]
+pub fn nearly_singular<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    structure: &Structure<NC>,
+    t: T,
+    q: &SVector<T, NQ>,
+    dv: &SVector<T, NV>,
+) -> bool
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
+    let still = System { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
+    let metric = Metric::of(&still.loaded(structure).0);
+    let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
+    let length =
+        |j: &SMatrix<T, NC, NV>, k: usize| norm(&metric.half(core::array::from_fn(|i| at(&j.data.0[i], k))));
+    // States whose constraints turn more than this, beside how far they are from dependent ones, count as near; a step that
+    // turns all of them is merely long.
+    let (steps, most) = (constant::<T>(3.0), constant::<T>(0.2));
+    let change = later - jacobian;
+    let turn = (0..NC).fold(T::zero(), |most, k| {
+        let own = length(&jacobian, k);
+        if own > T::zero() { most.max(length(&change, k) / own) } else { most }
+    });
+    // Single precision drops constraints that far out already.
+    let least = far::<T>().min(constant(0.07));
+    let clear = (turn * steps).min(most).max(least);
+    let mut span = Span::of(&metric, &jacobian, &structure.groups);
+    span.extend(clear, structure.rank);
+    span.rank < structure.rank
 }
 
 /// How far it is out of a singular position, m or rad: what rounding and interpolation leave is about the same there.

@@ -13,7 +13,7 @@
 //! The equations of a step are solved by Newton's method with the derivatives at its start, which generated code
 //! holds as an elimination: each iteration gains a factor of about step · speed · curvature.
 
-use super::{Dynamics, Error, State, is_finite, largest};
+use super::{Dynamics, Error, State, is_finite, largest, settled};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
@@ -56,6 +56,31 @@ pub(super) fn lost<T: Real>(t: T, iterations: usize) -> Error {
     if iterations == 0 { Error::NotFinite { t } } else { Error::NotConverged { t, iterations } }
 }
 
+/// More iterations than steps take whose end is in reach of the derivatives at their start.
+const MANY_ITERATIONS: usize = 24;
+
+/// A solved midpoint.
+pub(super) struct Middle<T, const NV: usize> {
+    /// Its velocity.
+    pub v: SVector<T, NV>,
+    /// The momentum after the step, before the push at its end.
+    pub p: SVector<T, NV>,
+    iterations: usize,
+}
+
+/// Whether a step cannot be trusted to have `found` its end since it begins in a singular position or, if that took many
+/// iterations, leads past one.
+pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    start: &State<T, NQ, NV>,
+    h: T,
+    found: &Result<Middle<T, NV>, Error>,
+) -> bool {
+    let quick = found.as_ref().is_ok_and(|found| found.iterations <= MANY_ITERATIONS);
+    let reach = if quick { T::zero() } else { h };
+    system.is_nearly_singular(start.t, &start.q, &(start.v * reach))
+}
+
 /// The velocity of the midpoint, from an estimate, and the momentum after the step before the push at its end: with the
 /// momentum `p` at the start and its `rate` `ṗ(t, q, v)`, `M(q_m) v = p + Jᵀ(q₀) λ + (h/2) ṗ(q_m, v)` where
 /// `q_m = q₀ ⊕ (h/2) v`, and constraints that hold at `q₀ ⊕ h v`.
@@ -66,7 +91,7 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
     p: &SVector<T, NV>,
     h: T,
     mut v: SVector<T, NV>,
-) -> Result<(SVector<T, NV>, SVector<T, NV>), Error> {
+) -> Result<Middle<T, NV>, Error> {
     let half = h * constant(0.5);
     let t = start.t + half;
     let mut settling = Settling::new(half);
@@ -81,9 +106,40 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
         }
         if settling.is_done(largest(&change), &q, &v) {
             let q = system.integrate(&start.q, &(v * half));
-            let after = system.momentum(t, &q, &v) + rate(system, t, &q, &v) * half;
-            return Ok((v, after));
+            let p = system.momentum(t, &q, &v) + rate(system, t, &q, &v) * half;
+            return Ok(Middle { v, p, iterations });
         }
     }
     Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })
+}
+
+/// The end of a step near a singular position, and the velocity of its midpoint: `v = v₀ + (h/2) v̇(q_m, v)` with
+/// `q_m = q₀ ⊕ (h/2) v`, where the midpoint is brought onto the constraints before its acceleration is taken. That is the one
+/// thing which is continuous there: pushes at the ends of a step are not, and their directions turn within it. Order 2.
+/// `None` where the iteration does not settle.
+pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    t: T,
+    h: T,
+) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
+    let half = h * constant(0.5);
+    let middle = start.t + half;
+    let mut v = start.v;
+    for _ in 0..MOST_ITERATIONS {
+        let q = system.integrate(&start.q, &(v * half));
+        let (q, on) = system.project(middle, &q, &v).ok()?;
+        let gain = system.acceleration(middle, &q, &on) * half;
+        let change = largest(&(start.v + gain - v));
+        v = start.v + gain;
+        if !is_finite(&v) {
+            return None;
+        }
+        // Accelerations are not known better there.
+        if change <= epsilon::<T>().cbrt() * largest(&gain) || change <= epsilon::<T>() * largest(&v) {
+            let q = system.integrate(&start.q, &(v * h));
+            return settled(system, State { t, q, v: v + gain }, start.t).ok().map(|end| (v, end));
+        }
+    }
+    None
 }

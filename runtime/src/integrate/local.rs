@@ -70,6 +70,10 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
     ) -> SVector<T, NV> {
         self.system.impulse(self.origin + t, q, v, h, p)
     }
+
+    fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
+        self.system.is_nearly_singular(self.origin + t, q, dv)
+    }
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {

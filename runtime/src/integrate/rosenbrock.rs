@@ -10,7 +10,8 @@ use nalgebra::{SMatrix, SVector};
 /// `(1 − γ h J) k₁ = f(y₀)`, `(1 − γ h J) k₂ = f(y₀ + h k₁) − 2 k₁`, `y₁ = y₀ + (3 k₁ + k₂) h / 2` with
 /// `γ = 1 + 1/√2`: L-stable, and of order 2 for any matrix `J`, so that differences of the accelerations serve as
 /// derivatives. A step costs `2 NV + 3` evaluations of the dynamics and one factorisation of a matrix of size `NV`;
-/// what is fast and stiff is damped away, and so is energy that is not. Constraints are kept as by the other methods.
+/// what is fast and stiff is damped away, and so is energy that is not. Constraints are kept as by the other methods; where
+/// they nearly lose rank the derivatives are those of the last step before, or zero.
 /// Source: Verwer, Spee, Blom and Hundsdorfer, *A second-order Rosenbrock method applied to photochemical dispersion
 /// problems*, SIAM J. Sci. Comput. 20 (1999).
 ///
@@ -28,19 +29,30 @@ impl<T: Real> Rosenbrock<T> {
 }
 
 /// Derivatives of the acceleration by displacement, velocity and time, by differences.
-struct Slopes<T, const NV: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct Slopes<T, const NV: usize> {
     by_q: SMatrix<T, NV, NV>,
     by_v: SMatrix<T, NV, NV>,
     by_t: SVector<T, NV>,
 }
 
+impl<T: Real, const NV: usize> Slopes<T, NV> {
+    fn zero() -> Self {
+        Self { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() }
+    }
+}
+
+/// Slopes at the start of a step; `None` in singular positions and so near to them that branches of the motion part there.
 fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
     h: T,
-) -> Slopes<T, NV> {
-    let mut out = Slopes::<T, NV> { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() };
+) -> Option<Slopes<T, NV>> {
+    if system.is_nearly_singular(start.t, &start.q, &(start.v * h)) {
+        return None;
+    }
+    let mut out = Slopes::<T, NV>::zero();
     let root = epsilon::<T>().sqrt();
     for k in 0..NV {
         let mut direction = SVector::<T, NV>::zeros();
@@ -57,7 +69,7 @@ fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let later = h * constant(1e-3);
     let moved = system.acceleration(start.t + later, &start.q, &start.v);
     out.by_t = (moved - acceleration) / later;
-    out
+    Some(out)
 }
 
 /// `x` with `m x = b` by Gaussian elimination with row pivots; `None` for a singular matrix.
@@ -91,7 +103,8 @@ fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>)
 }
 
 impl<T: Real> Method<T> for Rosenbrock<T> {
-    type Memory<const NV: usize> = ();
+    /// The slopes of the last step.
+    type Memory<const NV: usize> = Option<Slopes<T, NV>>;
 
     const FIXED: bool = true;
 
@@ -99,13 +112,19 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {}
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        None
+    }
 
-    fn disturb<const NV: usize>(&self, (): &mut (), _jump: Jump) {}
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+        if jump == Jump::State {
+            *memory = None;
+        }
+    }
 
     fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
-        (): &mut (),
+        memory: &mut Self::Memory<NV>,
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
@@ -113,7 +132,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let slopes = slopes(system, start, &before, h);
+        let slopes = slopes(system, start, &before, h).or(*memory).unwrap_or(Slopes::zero());
         let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);
         let part = gamma * h;
         // Of (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv]: kφ = a + γh kv, and one system for kv.
@@ -135,6 +154,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let v = start.v + (first.1 * three + second.1) * half;
         let end = State { t, q: system.integrate(&start.q, &displacement), v };
         let end = settled(system, end, start.t)?;
+        *memory = Some(slopes);
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

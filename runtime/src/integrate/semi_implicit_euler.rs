@@ -1,8 +1,9 @@
 //! The semi-implicit (symplectic) Euler method.
 
-use super::constrained::midpoint;
+use super::constrained::{Middle, is_crossing, midpoint, passing};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
+use crate::private::constant;
 use nalgebra::SVector;
 
 /// The semi-implicit Euler method, order 1: velocity first, then configuration with the new velocity.
@@ -18,7 +19,8 @@ use nalgebra::SVector;
 /// half a push earlier: the energy of loops, ball joints and rolling bodies oscillates and does not drift. A step takes
 /// some ten evaluations of momenta. Sources: Ryckaert, Ciccotti and Berendsen, J. Comput. Phys. 23 (1977); Andersen, J.
 /// Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006).
-/// [`Error::NotConverged`] means that the step is too long.
+/// [`Error::NotConverged`] means that the step is too long. Where constraints nearly lose rank, the motion goes on by
+/// accelerations, with half a push before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SemiImplicitEuler<T> {
     step: T,
@@ -34,6 +36,33 @@ impl<T: Real> SemiImplicitEuler<T> {
     pub(crate) fn length(&self) -> T {
         self.step
     }
+}
+
+/// The forces that do not depend on velocities, and inputs.
+fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    state: &State<T, NQ, NV>,
+) -> SVector<T, NV> {
+    let State { t, q, v } = state;
+    system.momentum_rate(*t, q, v) - system.inertial_rate(*t, q, v)
+}
+
+/// A step near a singular position: as elsewhere it is what a time-reversible one shows half a push earlier.
+fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    t: T,
+    h: T,
+) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
+    let half = h * constant(0.5);
+    let pushed = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
+        let p = force(system, state) * h;
+        let v = state.v + system.impulse(state.t, &state.q, &state.v, T::zero(), &p);
+        settled(system, State { v, ..*state }, state.t).ok()
+    };
+    let later = pushed(system, start, half)?;
+    let (v, end) = passing(system, &later, t, h)?;
+    Some((v, pushed(system, &end, -half)?))
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {
@@ -64,26 +93,30 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         } else {
             SVector::zeros()
         };
-        let (v, after) = if constrained {
-            let force = system.momentum_rate(start.t, &start.q, &start.v)
-                - system.inertial_rate(start.t, &start.q, &start.v);
-            let p = system.momentum(start.t, &start.q, &start.v) + force * h;
+        let (v, end) = if constrained {
+            let p = system.momentum(start.t, &start.q, &start.v) + force(system, start) * h;
             let rate = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
-            let (v, p) = midpoint(system, rate, start, &p, h, start.v)?;
-            let q = system.integrate(&start.q, &(v * h));
-            (v, system.velocity(t, &q, &p, &v))
+            let found = midpoint(system, rate, start, &p, h, start.v);
+            let crossing = is_crossing(system, start, h, &found);
+            let passed = if crossing { pass(system, start, t, h) } else { None };
+            match passed {
+                Some(passed) => passed,
+                None => {
+                    let Middle { v, p, .. } = found?;
+                    let q = system.integrate(&start.q, &(v * h));
+                    (v, settled(system, State { t, q, v: system.velocity(t, &q, &p, &v) }, start.t)?)
+                }
+            }
         } else {
             let v = start.v + before * h;
-            (v, v)
+            let q = system.integrate(&start.q, &(v * h));
+            (v, settled(system, State { t, q, v }, start.t)?)
         };
-        let displacement = v * h;
-        let end = State { t, q: system.integrate(&start.q, &displacement), v: after };
-        let end = settled(system, end, start.t)?;
-        let step = Step::linear(*start, end, displacement);
+        let step = Step::linear(*start, end, v * h);
         if !dense {
             return Ok(step);
         }
         let after = system.acceleration(end.t, &end.q, &end.v);
-        Ok(step.cubic(system, &displacement, [before, after]))
+        Ok(step.cubic(system, &(v * h), [before, after]))
     }
 }

@@ -136,6 +136,12 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         h: T,
         p: &SVector<T, NV>,
     ) -> SVector<T, NV>;
+
+    /// Whether constraints lose rank near `q`, beside how a step by `dv` changes them
+    /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
+    fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
+        false
+    }
 }
 
 /// A mechanism and its inputs.
@@ -284,5 +290,9 @@ where
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
         self.mechanism.impulse(t, q, v, h, p)
+    }
+
+    fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
+        M::CONSTRAINED && self.mechanism.is_nearly_singular(t, q, dv)
     }
 }

@@ -332,6 +332,9 @@ pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         }}
         #[inline]\nfn impulse(&self, {t}q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
             ::linkwork::Constrained::constrained_impulse(self, {any}, q, v, h, p)
+        }}
+        fn is_nearly_singular(&self, {t}q: &{q}, dv: &{v}) -> bool {{
+            ::linkwork::__private::nearly_singular(self, &Self::__STRUCTURE, {any}, q, dv)
         }}",
         scalar = s.scalar.name(),
     );
