@@ -44,7 +44,17 @@ fn check(fields: &str, expected: &[&str]) {
     }
 }
 
-/// The mistakes of a machine with the parameters `a`, `b`, `c`.
+/// What a line of a message notes, if it does.
+fn note(line: &str) -> Option<&str> {
+    line.strip_prefix("= note: ")
+}
+
+/// True for what is expected in a note: what a parameter is and in which argument, or what it would have to be.
+fn is_note(text: &str) -> bool {
+    text.starts_with("it is ") || text.ends_with(" in")
+}
+
+/// The mistakes of a machine with the parameters `a`, `b`, `c`, and what is noted beside them.
 #[track_caller]
 fn refuse(fields: &str, expected: &[&str]) {
     let has =
@@ -55,7 +65,13 @@ fn refuse(fields: &str, expected: &[&str]) {
         Ok(units) => panic!("{fields} is accepted with {units:?}"),
         Err(messages) => {
             let first: Vec<&str> = messages.iter().map(|m| m.lines().next().unwrap_or_default()).collect();
-            assert_eq!(first, expected, "{fields}");
+            let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note).collect();
+            let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note(text));
+            assert_eq!(first, errors, "{fields}");
+            assert_eq!(notes.len(), told.len(), "{fields}: {notes:?}");
+            for (note, told) in notes.iter().zip(&told) {
+                assert!(note.starts_with(told), "{fields}: {note} for {told}");
+            }
         }
     }
 }
@@ -198,29 +214,29 @@ fn a_parameter_is_one_thing() {
         "#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,",
         &[
             "`a` is a torque or an energy (N·m) here, but a stiffness (N/m) elsewhere",
-            "`a` is a stiffness (N/m) here",
+            "`a` is a stiffness (N/m) in",
         ],
     );
     refuse(
         "#[body(mass = a, com = a / 2 * y)] w: Body, #[joint(cart -> w)] j: Weld,",
-        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
     refuse(
         "#[energy(a * rail)] e: Potential, #[body(mass = 2 * a)] w: Body, #[joint(cart -> w)] j: Weld,",
-        &["`a` is a force (N) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+        &["`a` is a force (N) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
     // Shown once, however often it stands wrong.
     refuse(
         "#[body(mass = a, com = a * y, inertia = rod(a, a, y))] w: Body, #[joint(cart -> w)] j: Weld,",
-        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) here"],
+        &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
     // By way of others: a b is a mass, and so is b.
     refuse(
         "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
         &[
             "expected a mass (kg), found a quantity in kg·m",
-            "`a` is a length (m) here",
-            "`b` is a mass (kg) here",
+            "`a` is a length (m) in",
+            "`b` is a mass (kg) in",
         ],
     );
 }
@@ -233,7 +249,7 @@ fn units_are_told_with_what_holds_the_mechanism() {
         #[acts(on = rail, stiffness = a)] coil: Spring,",
         &[
             "`a` is a stiffness (N/m) here, but a length (m) elsewhere",
-            "`a` is a length (m) here",
+            "`a` is a length (m) in",
             "this mechanism cannot move",
         ],
     );
@@ -242,7 +258,7 @@ fn units_are_told_with_what_holds_the_mechanism() {
 #[test]
 fn like_is_added_to_like() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
-    let sites = ["`a` is a mass (kg) here", "`b` is a length (m) here"];
+    let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
     let both = |first: &'static str| [first, sites[0], sites[1]];
     refuse(
         &format!("{known} #[energy(3.5 * (a + b))] e: Potential,"),
@@ -266,7 +282,7 @@ fn like_is_added_to_like() {
     );
     refuse(
         "#[energy(a * rail + a * hinge)] e: Potential,",
-        &["a force (N) cannot be added to a torque or an energy (N·m)", "`a` is a force (N) here"],
+        &["a force (N) cannot be added to a torque or an energy (N·m)", "`a` is a force (N) in"],
     );
     refuse(
         "#[energy(3.5 * (a * rail + a * hinge))] e: Potential,",
@@ -278,7 +294,7 @@ fn like_is_added_to_like() {
     );
     refuse(
         "#[energy(a * sin(b))] e: Potential, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
-        &["`b` is a plain number here, but a mass (kg) elsewhere", "`b` is a mass (kg) here"],
+        &["`b` is a plain number here, but a mass (kg) elsewhere", "`b` is a mass (kg) in"],
     );
 }
 
@@ -311,7 +327,7 @@ fn attributes_pin_units_down() {
     assert!(message("").contains("this says no unit"));
     refuse(
         "#[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
-        &["`a` is declared as a length (m), but used as a mass (kg)", "`a` is a mass (kg) here"],
+        &["`a` is declared as a length (m), but used as a mass (kg)", "it is a mass (kg) in"],
     );
     refuse(
         "#[unit(m)] #[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential,",

@@ -232,7 +232,7 @@ fn a_factor_too_few_is_refused() {
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
     let others =
-        ["by this `", "is declared as", "an inertia matrix is symmetric", "this mechanism cannot move"];
+        ["` becomes ", "is declared as", "an inertia matrix is symmetric", "this mechanism cannot move"];
     messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 

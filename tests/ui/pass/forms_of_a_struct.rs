@@ -22,7 +22,6 @@ pub struct Plain {
 #[must_use]
 pub struct Adorned {
     /// Mass, kg.
-    #[cfg(not(any()))]
     #[doc(alias = "weight")]
     pub mass: f64,
     /// Kept for whoever uses the struct.
