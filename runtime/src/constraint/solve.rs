@@ -54,7 +54,7 @@ fn regular<T: Real, const NV: usize, const NC: usize, const N: usize>(
     pivot > tolerance::<T>() * before(k) && pivot > noise::<T>() * of_group(groups, k, before)
 }
 
-/// The same for contacts that slip: a pivot there must keep its sign, and nothing else decides.
+/// Whether the pivot of a contact that slips can be trusted: it must keep its sign, and nothing else decides.
 #[inline]
 pub(super) fn determined<T: Real, const NV: usize, const NC: usize, const N: usize>(
     groups: &[usize; NC],

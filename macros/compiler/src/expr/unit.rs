@@ -7,7 +7,7 @@ use super::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 /// Relative difference of coefficients that are taken to be equal.
 const ROUNDING: f64 = 1e-11;
 
-/// The same on the unit sphere of the symbols, in fewer terms if that is possible.
+/// A polynomial that is equal on the unit sphere of the symbols, in fewer terms if there is one.
 pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
     let place = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
     let Some(atoms) = symbols.iter().map(place).collect::<Option<Vec<usize>>>() else {

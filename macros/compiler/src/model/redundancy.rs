@@ -15,7 +15,7 @@ const SAMPLES: u64 = 3;
 
 /// What is left of zero after the few sums of a row, relative to others of one vector.
 const NOISE: f64 = 1e-12;
-/// The same relative to all rows, whose units may differ.
+/// What is left of zero after the few sums of a row, relative to all rows, whose units may differ.
 const ROUNDING: f64 = 1e-15;
 
 /// By row, whether no velocity influences it anywhere, be it up to rounding: the height of a wheel whose axle keeps its own.
