@@ -39,7 +39,7 @@ impl Random {
         self.below(20_001) as f64 / 1e4 - 1.0
     }
 
-    /// So many of them.
+    /// An array of numbers between −1 and 1.
     pub fn numbers<const N: usize>(&mut self) -> [f64; N] {
         std::array::from_fn(|_| self.number())
     }
