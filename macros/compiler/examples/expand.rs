@@ -6,6 +6,9 @@
 //! file. Options: `--rust` (default: the generated code), `--counts` (operations of every function), `--time`
 //! (milliseconds of every stage); for a URDF file also `--base free`, `--inertia trust`, `--mimic independent`,
 //! `--passive ignore`.
+//!
+//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` writes the code of every mechanism in the Rust files
+//! as it is emitted, then once more with all that can be asked for by a word: what `.ci/compare-output` compares.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Expr, Graph};
@@ -46,6 +49,9 @@ fn main() -> ExitCode {
 fn run() -> Result<(), Failure> {
     let (mut file, mut mode, mut name, mut options) = (None, "--rust", None, Vec::new());
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(("--every", files)) = arguments.split_first().map(|(first, files)| (first.as_str(), files)) {
+        return every(files);
+    }
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("`{word}` needs a value"));
@@ -71,17 +77,35 @@ fn run() -> Result<(), Failure> {
 
 /// The struct of a Rust file; paths in it are relative to the package.
 fn from_rust(path: &Path, name: Option<&str>) -> Result<Input, Failure> {
-    let file = syn::parse_file(&std::fs::read_to_string(path)?)?;
-    let is_mechanism = |a: &syn::Attribute| a.path().segments.last().is_some_and(|s| s.ident == "mechanism");
-    let found = file.items.into_iter().find_map(|item| match item {
-        syn::Item::Struct(s)
-            if s.attrs.iter().any(is_mechanism) && name.is_none_or(|name| s.ident == name) =>
-        {
-            Some(s)
+    let all = structs(path)?;
+    let mut named = all.into_iter().filter(|item| name.is_none_or(|name| item.ident == name));
+    input(path, named.next().ok_or("the file has no such struct with `#[mechanism]`")?)
+}
+
+fn is_mechanism(attribute: &syn::Attribute) -> bool {
+    attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
+}
+
+/// The mechanisms of a Rust file, those in modules within it included.
+fn structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
+    let mut todo = syn::parse_file(&std::fs::read_to_string(path)?)?.items;
+    let mut found = Vec::new();
+    while !todo.is_empty() {
+        for item in std::mem::take(&mut todo) {
+            match item {
+                syn::Item::Struct(item) if item.attrs.iter().any(is_mechanism) => found.push(item),
+                syn::Item::Mod(module) => {
+                    todo.extend(module.content.into_iter().flat_map(|(_, items)| items))
+                }
+                _ => {}
+            }
         }
-        _ => None,
-    });
-    let mut item = found.ok_or("the file has no such struct with `#[mechanism]`")?;
+    }
+    Ok(found)
+}
+
+/// A struct with its attribute taken off.
+fn input(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
     let mut arguments = TokenStream::new();
     item.attrs.retain(|attribute| {
         if is_mechanism(attribute)
@@ -112,6 +136,28 @@ impl Input {
     fn expand(&self) -> linkwork_compiler::emit::Emitted {
         expand(self.arguments.clone(), self.item.clone(), &self.folder)
     }
+}
+
+/// What every mechanism of these files becomes, a line of text for a line.
+fn every(files: &[String]) -> Result<(), Failure> {
+    const WORDS: [&str; 7] =
+        ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
+    for file in files {
+        for item in structs(Path::new(file))? {
+            println!("===== {file}: {}", item.ident);
+            let mut input = input(Path::new(file), item)?;
+            let plain = input.expand();
+            println!("{}\n{}", plain.tokens, plain.text);
+            let given: Vec<String> = input.arguments.clone().into_iter().map(|t| t.to_string()).collect();
+            let more: Vec<&str> = WORDS.into_iter().filter(|word| !given.iter().any(|g| g == word)).collect();
+            let separator = if given.last().is_none_or(|last| last == ",") { "" } else { "," };
+            input.arguments.extend(format!("{separator}{}", more.join(",")).parse::<TokenStream>()?);
+            println!("----- with all words");
+            let whole = input.expand();
+            println!("{}\n{}", whole.tokens, whole.text);
+        }
+    }
+    Ok(())
 }
 
 fn rust(input: &Input) -> Result<(), Failure> {
