@@ -5,8 +5,8 @@ mod random_limbs;
 mod random_robot;
 mod random_tree;
 
+use linkwork_compiler::derive::{Output, Prepared};
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::emit::{Output, Prepared};
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::lower::lower;

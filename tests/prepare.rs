@@ -250,7 +250,7 @@ fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let main = |functions: &[linkwork_compiler::emit::Function]| {
+    let main = |functions: &[linkwork_compiler::derive::Function]| {
         MAIN.map(|name| functions.iter().find(|f| f.name == name).map_or(0, |f| f.program.counts.total()))
     };
     (main(&output.functions), output.prepared.map(|prepared| main(&prepared.functions)))

@@ -1,7 +1,7 @@
 //! Operations of generated functions, counted by the compiler.
 
+use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::emit::Output;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::{compile, read};

@@ -84,6 +84,22 @@ pub trait HasInertia<'a> {}
 )]
 pub trait HasNoConstraints<'a> {}
 
+/// A mechanism with contacts that slip.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no contacts that slip",
+    label = "only mechanisms with friction at contacts have this",
+    note = "its equations always have an answer: `constrained_dynamics`"
+)]
+pub trait HasSlipping<'a> {}
+
+/// A mechanism whose mass matrix can be inverted.
+#[diagnostic::on_unimplemented(
+    message = "the mass matrix of `{Self}` has no inverse",
+    label = "coordinates without inertia follow from constraints",
+    note = "`forward_dynamics` and its derivatives take the constraints into account"
+)]
+pub trait HasRegularMass<'a> {}
+
 /// A mechanism whose outputs of accelerations have Jacobians: none so far.
 #[diagnostic::on_unimplemented(
     message = "an output of accelerations or reactions has no Jacobian yet",

@@ -1,31 +1,32 @@
 //! Model → everything that is generated: the mechanics of each function, lowered.
 
+use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
-use crate::emit::frames::{FrameSteps, LinkSteps};
-use crate::emit::{Function, Output, Shape};
-use crate::expr::diff::Derivative;
 use crate::expr::print::Written;
 use crate::expr::{Expr, Symbol};
 use crate::lower::{Program, lower, lower_without, size};
-use crate::mechanics::{self, Joint, crba, energy, forces, frames, power, reactions};
-use crate::model::kinematics::{symbols_in, time_derivative};
-use crate::model::{Chart, Model, OutputValue, Quantity, Uses};
+use crate::mechanics::{self, Joint, crba, frames};
+use crate::model::{Model, Quantity};
 use crate::passes::Passes;
 use crate::syntax::{Requests, Skipped};
 
-pub mod absent;
 mod constraints;
+mod derivation;
 mod derivatives;
 mod dynamics;
 pub mod in_lanes;
+mod output;
+mod outputs;
 mod prepared;
 mod regressor;
 mod sensitivities;
-pub mod signatures;
 mod singular;
 
+use derivation::Derivation;
+use derivatives::Derivatives;
 use regressor::Identification;
-use signatures::Sizes;
+
+pub use output::{Constant, FrameSteps, Function, LinkSteps, Output, PLACEMENT, Prepared, TWIST};
 
 /// Most products of the elimination of constraints.
 const MOST_PRODUCTS: usize = 100_000;
@@ -45,7 +46,10 @@ pub fn derive_with<'g>(
     let passes = without(passes, requests.skipped);
     let joints = mechanics::joints(model);
     if model.kinematic {
-        return finite(model, kinematics(model, &joints), cx);
+        // The configuration space, frames, constraints, the forces of inputs, and outputs.
+        let functions =
+            functions(model, Requests::default(), passes, &joints, &Extras::default(), Stage::Whole);
+        return sound(model, steps(model, &joints, functions), cx);
     }
     let mass = crba::mass_matrix(model, &joints);
     if !singular::check(model, &joints, &mass, cx) {
@@ -70,9 +74,9 @@ pub fn derive_with<'g>(
     let functions = all(Stage::Whole);
     let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
     let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
-    constants.extend(extras.entries.map(|entries| signatures::entries(&entries)));
+    constants.extend(extras.entries.map(|entries| Constant::entries(&entries)));
     if requests.sensitivities {
-        constants.push(signatures::parameters(&model.parameters));
+        constants.push(Constant::parameters(&model.parameters));
     }
     let output = Output {
         equations: written(model, &joints, &mass),
@@ -80,29 +84,7 @@ pub fn derive_with<'g>(
         constants,
         ..steps(model, &joints, functions)
     };
-    finite(model, output, cx)
-}
-
-/// What is left without dynamics: the configuration space, frames, constraints, the forces of inputs, and outputs.
-fn kinematics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Output {
-    let mut functions = signatures::kinematic(&Sizes::of(model));
-    if !model.constraints.is_empty() {
-        let (nh, nc) = (model.holonomic(), model.constraints.len());
-        functions.extend(signatures::constraints(&Sizes::of(model), nh, nc));
-    }
-    for f in &mut functions {
-        let outputs = match f.name.as_str() {
-            "neutral" => neutral(model),
-            "generalized_forces" => forces::generalized_forces(model, joints),
-            name => constraints::outputs(name, model).unwrap_or_default(),
-        };
-        f.program = Stage::Whole.program(&outputs);
-    }
-    // A reaction would need the motion.
-    let outputs = model.outputs.iter().filter(|output| !reactions::names_one(&output.values));
-    functions.extend(outputs.flat_map(|output| output_functions(model, output, Stage::Whole)));
-    finish(&mut functions);
-    steps(model, joints, functions)
+    sound(model, output, cx)
 }
 
 /// Functions, with what leads to the frames.
@@ -118,14 +100,22 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
     }
 }
 
-/// What was derived, if its figures are finite.
-fn finite(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
-    if output.functions.iter().all(|f| f.program.is_finite()) {
-        return Some(output);
+/// What was derived, if its figures are finite, and if every program has the numbers that its result is made of.
+fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
+    if !output.functions.iter().all(|f| f.program.is_finite()) {
+        cx.error(model.place.clone(), "the figures of this mechanism are too large")
+            .help("a product of masses, lengths or forces in its equations is not a finite number");
+        return None;
     }
-    cx.error(model.place.clone(), "the figures of this mechanism are too large")
-        .help("a product of masses, lengths or forces in its equations is not a finite number");
-    None
+    if let Some(name) = output.misfit() {
+        cx.error(
+            model.place.clone(),
+            format!("Linkwork made a mistake: the program of `{name}` does not fit its result"),
+        )
+        .help("this is no mistake of yours: please report it with the declaration of the mechanism");
+        return None;
+    }
+    Some(output)
 }
 
 /// Those passes that a user has not switched off.
@@ -156,11 +146,20 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
 }
 
 /// What some words need beside the model.
+#[derive(Default)]
 struct Extras<'a, 'g> {
     /// For `regressor`.
     identification: Option<Identification<'a, 'g>>,
     /// For `packed`.
     entries: Option<Vec<(usize, usize)>>,
+}
+
+impl<'g> Extras<'_, 'g> {
+    fn facts(&self, model: &Model<'g>, requests: Requests) -> Facts {
+        let [bodies, base] = self.identification.as_ref().map_or([0, 0], Identification::counts);
+        let entries = self.entries.clone().unwrap_or_default();
+        Facts { bodies, base, entries, ..Facts::of(model, requests) }
+    }
 }
 
 /// Row and column of the entries of the lower triangle that are not always zero, column by column.
@@ -255,45 +254,19 @@ fn functions<'g>(
     extras: &Extras<'_, 'g>,
     stage: Stage,
 ) -> Vec<Function> {
-    let sizes = Sizes::of(model);
+    let facts = extras.facts(model, requests);
     let passes = Passes { free_parameters: stage == Stage::Prepared, ..passes };
-    let mut functions = signatures::always(&sizes);
-    constraints::replace(&mut functions, model);
-    if requests.centroidal {
-        functions.extend(signatures::centroidal(&sizes));
-    }
-    let dynamics = dynamics::Dynamics::new(model, passes, stage);
-    for f in &mut functions {
-        f.program = match f.name.as_str() {
-            "neutral" => stage.program(&neutral(model)),
-            "generalized_forces" => stage.program(&forces::generalized_forces(model, joints)),
-            "dissipated_power" => stage.program(&[power::dissipated(model)]),
-            "control_power" => stage.program(&[power::control(model, joints)]),
-            "disturbance_power" => stage.program(&[power::disturbance(model)]),
-            "total_mass" => stage.program(&[energy::mass_and_moment(model, joints).0]),
-            name => match constraints::outputs(name, model) {
-                Some(outputs) => stage.program(&outputs),
-                None => dynamics.program(name).unwrap_or_default(),
-            },
-        };
-    }
-    functions.extend(model.outputs.iter().flat_map(|output| output_functions(model, output, stage)));
-    if requests.derivatives {
-        functions.extend(derivatives::functions(model, passes, stage));
-    }
-    if let Some(identification) = &extras.identification {
-        functions.extend(identification.functions(joints, stage));
-    }
-    if requests.sensitivities {
-        functions.extend(sensitivities::functions(model, passes, stage));
-    }
-    if let Some(entries) = &extras.entries {
-        let at: Vec<usize> = entries.iter().map(|(i, j)| j * model.nv() + i).collect();
-        let program = dynamics.program("mass_matrix").map(|whole| whole.with_outputs(&at));
-        for f in signatures::packed(&sizes, entries) {
-            functions.push(Function { program: program.clone().unwrap_or_default(), ..f });
-        }
-    }
+    let derivation = Derivation::new(model, joints, passes, stage, &facts);
+    let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
+    let functions = derivation.derive(outputs::declared(model, &facts), functions);
+    let forms = if facts.requests.derivatives { derivatives::forms(model, passes) } else { Vec::new() };
+    let derivatives = Derivatives::new(model, &forms, passes, stage);
+    // How the derivatives of a large mechanism are put together is known only now.
+    let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
+    let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
+    let facts = Facts { calls, calls_linear, ..facts.clone() };
+    let derivation = derivation.with(&facts, extras.identification.as_ref(), derivatives.as_ref());
+    let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
     finish(&mut functions);
     functions
 }
@@ -327,65 +300,6 @@ fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>)
 
 fn done(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).fused()
-}
-
-/// The function of an output, and its Jacobian: how it changes with the velocities, or how its rate does if it depends
-/// on the configuration alone.
-fn output_functions(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Vec<Function> {
-    if reactions::names_one(&output.values) {
-        return vec![reaction_function(model, output, stage)];
-    }
-    let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
-    let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
-    let uses = Uses {
-        velocities: has(|q| matches!(q, Quantity::Velocity(_))),
-        accelerations: has(|q| matches!(q, Quantity::Acceleration(_))),
-        inputs: has(|q| matches!(q, Quantity::Input(_))),
-    };
-    let sizes = Sizes::of(model);
-    let mut functions = signatures::output(&output.name, output.values.len(), uses, &sizes);
-    for f in &mut functions {
-        f.program = match f.shape {
-            Shape::Matrix(..) => stage.program(&output_jacobian(model, output, uses)),
-            _ => stage.program(&output.values),
-        };
-    }
-    functions
-}
-
-/// The hidden function of an output that names reactions, for given accelerations and multipliers.
-fn reaction_function(model: &Model<'_>, output: &OutputValue<'_>, stage: Stage) -> Function {
-    let mut f =
-        signatures::reaction(&output.name, output.values.len(), &Sizes::of(model), model.constraints.len());
-    f.program = stage.program(&reactions::resolved(model, &output.values));
-    f
-}
-
-/// The Jacobian column by column.
-fn output_jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>, uses: Uses) -> Vec<Expr<'g>> {
-    let rates: Vec<Expr<'g>> = match uses.velocities {
-        true => output.values.clone(),
-        false => output.values.iter().map(|e| time_derivative(model.space(), *e)).collect(),
-    };
-    let mut entries = Vec::new();
-    for k in 0..model.nv() {
-        let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
-        entries.extend(rates.iter().map(|e| d.of(*e)));
-    }
-    entries
-}
-
-fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let g = model.graph;
-    let mut q = vec![g.zero(); model.nq()];
-    for chart in &model.charts {
-        match chart {
-            Chart::Plain(..) => {}
-            Chart::Ball(k, _) => q[*k + 3] = g.one(),
-            Chart::Free(k, _) => q[*k + 6] = g.one(),
-        }
-    }
-    q
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {

@@ -1,5 +1,7 @@
 #![doc = include_str!("../README.md")]
 
+pub mod catalogue;
+pub mod derive;
 pub mod diag;
 pub mod emit;
 pub mod expr;
@@ -10,10 +12,7 @@ pub mod model;
 pub mod passes;
 pub mod syntax;
 
-mod derive;
-
-use derive::absent::absent;
-use derive::signatures::{self, Sizes};
+use catalogue::{ConstraintFacts, Facts, JACOBIAN};
 use diag::Diagnostics;
 use emit::{Constraints, Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
@@ -21,7 +20,6 @@ use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 use syntax::{Description, Mechanism};
 
-pub use derive::in_lanes;
 pub use derive::{derive, derive_with, equations, equations_latex};
 
 /// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.
@@ -124,7 +122,7 @@ pub fn compile<'g>(
     source: &Source,
     graph: &'g Graph,
     cx: &mut Diagnostics,
-) -> Option<(model::Model<'g>, emit::Output)> {
+) -> Option<(model::Model<'g>, derive::Output)> {
     compile_with(source, graph, passes::Passes::default(), cx)
 }
 
@@ -134,24 +132,25 @@ pub fn compile_with<'g>(
     graph: &'g Graph,
     passes: passes::Passes,
     cx: &mut Diagnostics,
-) -> Option<(model::Model<'g>, emit::Output)> {
+) -> Option<(model::Model<'g>, derive::Output)> {
     // What failed to parse would only lead to further complaints.
     if !cx.is_empty() {
         return None;
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
-    let mut output = derive_with(&model, source.mechanism.requests, passes, cx)?;
+    let requests = source.mechanism.requests;
+    let mut output = derive_with(&model, requests, passes, cx)?;
     describe(&mut output, &source.mechanism);
-    check_outputs(&source.mechanism.description, &output.functions, source.mechanism.requests, cx)
+    check_outputs(&source.mechanism.description, &output.functions, &Facts::of(&model, requests), cx)
         .then_some((model, output))
 }
 
 /// Puts what the user says of an output before the documentation of its function.
-fn describe(output: &mut emit::Output, mechanism: &Mechanism) {
+fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
     let outputs = &mechanism.description.outputs;
     let notes = mechanism.shell.notes.iter().filter(|(name, _)| outputs.iter().any(|o| o.name.text == *name));
     let prepared = output.prepared.iter_mut().flat_map(|prepared| &mut prepared.functions);
-    let mut functions: Vec<&mut emit::Function> = output.functions.iter_mut().chain(prepared).collect();
+    let mut functions: Vec<&mut derive::Function> = output.functions.iter_mut().chain(prepared).collect();
     for (name, note) in notes {
         for f in functions.iter_mut().filter(|f| f.name == *name && !f.docs.is_empty()) {
             f.docs.insert(0, note.clone());
@@ -159,77 +158,24 @@ fn describe(output: &mut emit::Output, mechanism: &Mechanism) {
     }
 }
 
-/// Functions that are not derived but written as they are, those of mechanisms with constraints included.
-const WRITTEN: [&str; 17] = [
-    "assemble",
-    "complete_velocity",
-    "constrained_dynamics",
-    "constraint_correction",
-    "difference",
-    "forward_dynamics",
-    "frame_acceleration",
-    "frame_index",
-    "frame_jacobian",
-    "frame_placement",
-    "frame_placements",
-    "frame_velocity",
-    "integrate",
-    "project_configuration",
-    "project_velocity",
-    "tangent_rate",
-    "try_constrained_dynamics",
-];
-
-/// Constants of mechanisms.
-const CONSTANTS: [&str; 17] = [
-    "BASE_PARAMETERS",
-    "BODIES",
-    "CONFIGURATION",
-    "CONSTRAINTS",
-    "EQUATIONS",
-    "EQUATIONS_LATEX",
-    "FRAMES",
-    "INPUTS",
-    "MASS_MATRIX_ENTRIES",
-    "NC",
-    "NH",
-    "NP",
-    "NQ",
-    "NS",
-    "NU",
-    "NV",
-    "PARAMETERS",
-];
-
 /// True for names that neither Rust nor what is generated needs.
 fn can_be_a_function(name: &str) -> bool {
-    syn::parse_str::<syn::Ident>(name).is_ok() && !CONSTANTS.contains(&name) && !name.starts_with("__")
+    syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
 }
 
 /// Reports outputs that would be functions of the same name as others, or of none that a function can have.
 fn check_outputs(
     description: &Description,
-    functions: &[emit::Function],
-    requests: syntax::Requests,
+    functions: &[derive::Function],
+    facts: &Facts,
     cx: &mut Diagnostics,
 ) -> bool {
     let outputs = &description.outputs;
-    let jacobian = |name: &str| format!("{name}_jacobian");
-    // Each output brings one function of its name and may bring its Jacobian: what is there besides was there before.
+    let jacobian = |name: &str| format!("{name}{JACOBIAN}");
     let is_taken = |name: &str| {
-        let on_request = match name {
-            "prepare" => requests.prepare,
-            "linearize" | "forward_dynamics_derivatives" => requests.derivatives,
-            _ => false,
-        };
-        if on_request {
-            return true;
-        }
-        let own = outputs.iter().filter(|o| o.name.text == name || jacobian(&o.name.text) == name).count();
-        let one = name.strip_suffix("_lanes").filter(|_| requests.batch);
-        let in_lanes =
-            one.is_some_and(|one| WRITTEN.contains(&one) || functions.iter().any(|f| f.name == one));
-        in_lanes || WRITTEN.contains(&name) || functions.iter().filter(|f| f.name == name).count() > own
+        let other = outputs.iter().map(|output| output.name.text.as_str());
+        let mut in_lanes = other.filter(|_| facts.requests.batch).map(|other| format!("{other}_lanes"));
+        catalogue::has(name, facts) || in_lanes.any(|other| other == name)
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
@@ -268,25 +214,18 @@ fn check_outputs(
 
 impl Source {
     /// What the outside sees of the mechanism.
-    fn interface(&self, m: &model::Model<'_>, output: &emit::Output) -> Interface<'_> {
+    fn interface(&self, m: &model::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
-        let constrained = !m.constraints.is_empty();
+        let facts = Facts::of(m, self.mechanism.requests);
         Interface {
             configuration: m.configuration.clone(),
             velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
             inputs: m.inputs.iter().map(|(name, _)| name.clone()).collect(),
             frames: m.frames.iter().map(|f| f.name.clone()).collect(),
             units: m.units.clone(),
-            time: m.time,
-            velocity_inputs: m.velocity_inputs,
             constraints: Constraints::of(m),
-            absent: absent(
-                &Sizes::of(m),
-                self.mechanism.requests,
-                &output.functions,
-                &bare.outputs,
-                constrained,
-            ),
+            absent: emit::absent(&facts, &output.functions, &bare.outputs),
+            facts,
             ..bare
         }
     }
@@ -305,10 +244,7 @@ impl Source {
             constraints: Constraints::default(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: model::units::Units::default(),
-            kinematic: d.inertias == syntax::Inertias::None,
-            time: false,
-            velocity_inputs: false,
-            batch: self.mechanism.requests.batch,
+            facts: Facts::default(),
             detect: !self.mechanism.requests.target_only,
             snapped: &d.snapped,
             absent: Vec::new(),
@@ -319,68 +255,78 @@ impl Source {
     /// The interface of a mechanism that failed to compile, as far as it can be guessed.
     fn emit_failed(&self) -> Emitted {
         let outline = model::outline(&self.mechanism.description);
-        let sizes = Sizes {
-            nq: outline.configuration.len(),
-            nv: outline.velocities.len(),
-            nu: outline.inputs.len(),
-            time: outline.time,
-            velocity_inputs: outline.velocity_inputs,
-            massless: false,
-        };
-        let kinematic = self.mechanism.description.inertias == syntax::Inertias::None;
-        let (mut functions, requests) = match kinematic {
-            true => (signatures::kinematic(&sizes), syntax::Requests::default()),
-            false => (signatures::always(&sizes), self.mechanism.requests),
-        };
-        functions.extend(signatures::requested(&sizes, requests));
-        let mut constants = Vec::new();
-        if requests.regressor {
-            // How many base parameters there are, only the equations could tell.
-            let base = vec![String::new(); 7 * sizes.nv];
-            functions.extend(signatures::regressor(&sizes, outline.bodies.len(), base.len()));
-            constants.extend(signatures::names(&outline.bodies, &base));
-        }
-        if requests.sensitivities {
-            let parameters: Vec<String> =
-                self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
-            functions.extend(signatures::sensitivities(&sizes, parameters.len()));
-            constants.push(signatures::parameters(&parameters));
-        }
-        if requests.packed {
-            let entries = vec![(0, 0); sizes.nv * (sizes.nv + 1) / 2];
-            functions.extend(signatures::packed(&sizes, &entries));
-            constants.push(signatures::entries(&entries));
-        }
-        if outline.constrained && kinematic {
-            functions.extend(signatures::constraints(&sizes, 1, 1));
-        } else if outline.constrained {
-            signatures::constrain(&mut functions, &sizes, usize::from(outline.slipping), requests);
-        }
+        let facts = self.guess(&outline);
+        let mut functions = catalogue::before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
-            for f in signatures::output(&output.name, output.size, output.uses, &sizes) {
+            for f in catalogue::output(&output.name, output.size, output.uses, &facts) {
                 // An output may have the wrong name.
-                if !WRITTEN.contains(&f.name.as_str()) && functions.iter().all(|known| known.name != f.name) {
+                if !catalogue::has(&f.name, &facts) && functions.iter().all(|known| known.name != f.name) {
                     functions.push(f);
                 }
             }
         }
+        functions.extend(catalogue::after_outputs(&facts));
+        let functions: Vec<derive::Function> = functions.into_iter().map(derive::Function::stub).collect();
+        let mut constants = Vec::new();
+        if facts.requests.regressor {
+            constants.extend(derive::Constant::regressor(&outline.bodies, &vec![String::new(); facts.base]));
+        }
+        if facts.requests.sensitivities {
+            let parameters: Vec<String> =
+                self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
+            constants.push(derive::Constant::parameters(&parameters));
+        }
+        if facts.requests.packed {
+            constants.push(derive::Constant::entries(&facts.entries));
+        }
         let bare = self.bare_interface();
         let interface = Interface {
-            absent: absent(&sizes, requests, &functions, &bare.outputs, outline.constrained),
+            absent: emit::absent(&facts, &functions, &bare.outputs),
             configuration: outline.configuration,
             velocities: outline.velocities,
             inputs: outline.inputs,
             frames: outline.frames,
-            time: outline.time,
-            velocity_inputs: outline.velocity_inputs,
             constraints: if outline.constrained {
                 Constraints::unknown(outline.slipping)
             } else {
                 Constraints::default()
             },
+            facts,
             ..bare
         };
-        emit_failed(&interface, &functions, &constants, requests.prepare)
+        emit_failed(&interface, &functions, &constants)
+    }
+
+    /// What signatures of a mechanism that failed to compile depend on, as far as it can be guessed.
+    fn guess(&self, outline: &model::Outline) -> Facts {
+        let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
+        let kinematic = description.inertias == syntax::Inertias::None;
+        let nv = outline.velocities.len();
+        let constraints = outline.constrained.then(|| ConstraintFacts {
+            all: 1,
+            holonomic: 1,
+            slipping: usize::from(outline.slipping),
+            ..ConstraintFacts::default()
+        });
+        Facts {
+            nq: outline.configuration.len(),
+            nv,
+            nu: outline.inputs.len(),
+            time: outline.time,
+            velocity_inputs: outline.velocity_inputs,
+            kinematic,
+            requests: match kinematic {
+                true => syntax::Requests { batch: requests.batch, ..syntax::Requests::default() },
+                false => requests,
+            },
+            constraints,
+            bodies: outline.bodies.len(),
+            // How many base parameters there are, only the equations could tell.
+            base: 7 * nv,
+            parameters: description.parameters.len(),
+            entries: vec![(0, 0); nv * (nv + 1) / 2],
+            ..Facts::default()
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 //! as the format defines them, differentiated twice in time by polynomials of second degree, and Kane's equations.
 
 use jets::{Jet, Matrix, Vector};
+use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::emit::{Function, Output};
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::model::{Quantity, build_model};
 use linkwork_compiler::syntax::{self, Base, Inertias, Name, UrdfOptions};

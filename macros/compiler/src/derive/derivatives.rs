@@ -1,15 +1,15 @@
 //! The functions of the word `derivatives`.
 
-use super::signatures::{self, Sizes};
+use super::output::Function;
 use super::{Stage, done, in_lanes};
-use crate::emit::{Function, Parted, Shape};
+use crate::catalogue::{Parted, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::{Operand, Program};
 use crate::mechanics::derivatives::{
     self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, divided, invariance,
     symbolic,
 };
-use crate::mechanics::{self, Joint, constraints, crba, forces, massless, rnea};
+use crate::mechanics::{self, Joint, constraints, crba, forces, rnea};
 use crate::model::{Chart, Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
@@ -28,8 +28,8 @@ const WRITTEN_OUT: usize = 12;
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
-/// All of them, from the form of the model in which the derivatives of inverse dynamics cost least.
-pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
+/// The forms of the model that are tried.
+pub(super) fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
     let mut forms = passes::forms(model, passes);
     if passes.frames && model.nv() <= SMALL {
         forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
@@ -41,69 +41,95 @@ pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<
     if passes.parallel {
         forms.extend(passes::in_common_axes(&forms));
     }
-    let mut parts: Vec<Parts<'_, '_>> = forms.iter().map(|form| Parts::new(form, stage)).collect();
-    if model.nv() <= DIFFERENTIATE {
-        parts.extend(
-            forms.iter().map(|form| Parts { method: Method::Differentiation, ..Parts::new(form, stage) }),
-        );
+    forms
+}
+
+/// The functions, from the form of the model in which the derivatives of inverse dynamics cost least.
+pub(super) struct Derivatives<'a, 'g> {
+    parts: Parts<'a, 'g>,
+    /// The forces of the inputs.
+    tau: Vec<Expr<'g>>,
+    /// There are constraints.
+    constrained: bool,
+}
+
+impl<'a, 'g> Derivatives<'a, 'g> {
+    pub(super) fn new(
+        model: &Model<'g>,
+        forms: &'a [Form<'g>],
+        passes: Passes,
+        stage: Stage,
+    ) -> Option<Derivatives<'a, 'g>> {
+        let mut parts: Vec<Parts<'_, '_>> = forms.iter().map(|form| Parts::new(form, stage)).collect();
+        if model.nv() <= DIFFERENTIATE {
+            parts.extend(
+                forms.iter().map(|form| Parts { method: Method::Differentiation, ..Parts::new(form, stage) }),
+            );
+        }
+        let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
+        parts.known = invariance::known(parts.model, &parts.joints);
+        if derivatives::is_analytic(parts.model) {
+            parts.wide = passes.wide(model.nv());
+            parts.take_apart(passes.lanes && stage == Stage::Whole);
+        }
+        let tau = forces::generalized_forces(model, &mechanics::joints(model));
+        Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
-    let Some(mut parts) = parts.into_iter().min_by_key(Parts::cost) else { return Vec::new() };
-    parts.known = invariance::known(parts.model, &parts.joints);
-    if derivatives::is_analytic(parts.model) {
-        parts.wide = passes.wide(model.nv());
-        parts.take_apart(passes.lanes && stage == Stage::Whole);
+
+    /// True if the derivatives of forward dynamics call other functions.
+    pub(super) fn calls(&self) -> bool {
+        !self.constrained && self.parts.is_large()
     }
-    let tau = forces::generalized_forces(model, &mechanics::joints(model));
-    let mut functions = signatures::derivatives(&Sizes::of(model));
-    if model.constraints.is_empty() && parts.is_large() {
-        functions.push(signatures::accelerated(&Sizes::of(model)));
+
+    /// True if the linear system is made of them.
+    pub(super) fn calls_linear(&self) -> bool {
+        self.parts.model.nv() > SMALL
     }
-    if !model.constraints.is_empty() {
-        functions.retain(|f| !matches!(f.name.as_str(), "forward_dynamics_derivatives" | "linearize"));
-        // Coordinates without inertia leave the mass matrix singular.
-        functions.retain(|f| f.name != "mass_matrix_inverse" || massless::rows(model).is_empty());
+
+    pub(super) fn mass_matrix_inverse(&self) -> (Program, Structure) {
+        self.parts.inverse_function(false)
     }
-    for f in &mut functions {
-        f.shape = match f.shape {
-            Shape::Forward(n) if parts.is_large() => Shape::CalledForward(n),
-            Shape::Linear(n, m) if n > SMALL => Shape::CalledLinear(n, m),
-            shape => shape,
+
+    pub(super) fn accelerations_and_inverse(&self) -> (Program, Structure) {
+        self.parts.inverse_function(true)
+    }
+
+    pub(super) fn coriolis_matrix(&self) -> Program {
+        self.parts.coriolis_matrix()
+    }
+
+    pub(super) fn inverse_dynamics_derivatives(&self) -> Program {
+        self.parts.inverse_dynamics()
+    }
+
+    /// The derivatives of forward dynamics; those of inverse dynamics say which entries are always zero.
+    pub(super) fn forward_dynamics_derivatives(&self, forces: Option<&Function>) -> (Program, Structure) {
+        let parts = &self.parts;
+        let is_zero = |o: &Operand| *o == Operand::Const(0.0);
+        let zeros = forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero).collect());
+        let (inverse, known) = (parts.parted(), parts.known.indices());
+        let program = match (self.calls(), &parts.trunk) {
+            (true, _) => parts.stage.program(&parts.known.all()),
+            (false, Some(trunk)) => parts.forward_dynamics_in_parts(trunk),
+            (false, None) => parts.forward_dynamics(),
         };
-        f.program = parts.program(f, &tau);
+        (program, Structure { inverse, zeros, known, ..Structure::default() })
     }
-    let is_zero = |o: &Operand| *o == Operand::Const(0.0);
-    let forces = functions.iter().find(|f| matches!(f.shape, Shape::Pair(_)));
-    let zeros: Vec<bool> = forces.map_or(Vec::new(), |f| f.program.outputs.iter().map(is_zero).collect());
-    for f in &mut functions {
-        f.structure.inverse = match f.shape {
-            Shape::Inverse(_) | Shape::Accelerated(_) if parts.is_divided() => {
-                let trunk = parts.trunk_or_all();
-                Parted::Divided { trunk: trunk.velocities.clone(), limbs: trunk.limbs() }
-            }
-            Shape::Linear(..) => Parted::Whole,
-            _ => match &parts.trunk {
-                Some(trunk) => Parted::Trunk(trunk.velocities.clone()),
-                None => Parted::Whole,
-            },
-        };
-        if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
-            f.structure.zeros.clone_from(&zeros);
-            f.structure.known = parts.known.indices();
+
+    pub(super) fn linearize(&self) -> Program {
+        match self.calls_linear() {
+            true => self.parts.inputs(&self.tau),
+            false => self.parts.linearization(&self.tau),
         }
     }
-    let into: Vec<Function> = functions.iter().filter_map(|f| signatures::into(f, model.nv())).collect();
-    functions.extend(into);
-    if !model.constraints.is_empty() {
-        let mut hidden = signatures::constrained_derivatives(&Sizes::of(model), model.constraints.len());
-        for f in &mut hidden {
-            f.program = match f.name.as_str() {
-                "__motion_derivatives" => parts.constrained_motion(),
-                _ => parts.inputs_alone(&tau),
-            };
-        }
-        functions.extend(hidden);
+
+    pub(super) fn motion_derivatives(&self) -> Program {
+        self.parts.constrained_motion()
     }
-    functions
+
+    pub(super) fn input_derivatives(&self) -> Program {
+        self.parts.inputs_alone(&self.tau)
+    }
 }
 
 /// A model with what all functions need of it.
@@ -330,29 +356,27 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.stage.program(&outputs)
     }
 
-    /// The program of a function, with `tau` the forces of the inputs.
-    fn program(&self, f: &Function, tau: &[Expr<'g>]) -> Program {
-        match f.shape {
-            Shape::CalledForward(_) => return self.stage.program(&self.known.all()),
-            Shape::CalledLinear(..) => return self.inputs(tau),
-            _ => {}
-        }
-        match f.name.as_str() {
-            "mass_matrix_inverse" if self.is_divided() => self.divided(false),
-            "mass_matrix_inverse" => self.inverse(false),
-            "__accelerations_and_inverse" if self.is_divided() => self.divided(true),
-            "__accelerations_and_inverse" => self.inverse(true),
-            "coriolis_matrix" => {
-                let v = mechanics::velocities(self.model);
-                self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+    fn coriolis_matrix(&self) -> Program {
+        let v = mechanics::velocities(self.model);
+        self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+    }
+
+    /// `M⁻¹` with how its outputs make it; on request after the accelerations.
+    fn inverse_function(&self, accelerated: bool) -> (Program, Structure) {
+        let (program, inverse) = match self.is_divided() {
+            true => {
+                let trunk = self.trunk_or_all();
+                let parted = Parted::Divided { trunk: trunk.velocities.clone(), limbs: trunk.limbs() };
+                (self.divided(accelerated), parted)
             }
-            "inverse_dynamics_derivatives" => self.inverse_dynamics(),
-            "forward_dynamics_derivatives" => match &self.trunk {
-                Some(trunk) => self.forward_dynamics_in_parts(trunk),
-                None => self.forward_dynamics(),
-            },
-            _ => self.linearization(tau),
-        }
+            false => (self.inverse(accelerated), self.parted()),
+        };
+        (program, Structure { inverse, ..Structure::default() })
+    }
+
+    /// How the inverse is made of straight lines alone.
+    fn parted(&self) -> Parted {
+        self.trunk.as_ref().map_or(Parted::Whole, |trunk| Parted::Trunk(trunk.velocities.clone()))
     }
 }
 

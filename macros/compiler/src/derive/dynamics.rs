@@ -61,32 +61,78 @@ impl<'g> Dynamics<'g> {
         }
     }
 
-    /// The program of a function; `None` if it is none of dynamics.
-    pub(super) fn program(&self, name: &str) -> Option<Program> {
-        let forms = self.kinds.first()?;
-        let expressions: fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>> = match name {
-            "mass_matrix" => return Some(self.mass_matrix.clone()),
-            "inverse_dynamics" => return Some(self.inverse_dynamics.clone()),
-            "bias_forces" => return Some(self.bias.clone()),
-            "forward_dynamics" => return Some(self.forward_dynamics()),
-            "__constrained_dynamics" => return Some(forms.constrained_dynamics()),
-            "__constraint_correction" => return Some(forms.constraint_correction()),
-            "__slipping_response" => return Some(forms.slipping_response()),
-            "kinetic_energy" => |m, j, v| vec![energy::kinetic_energy(m, j, v)],
-            "potential_energy" => |m, j, _| vec![energy::potential_energy(m, j)],
-            "generalized_momentum" => |m, j, v| momentum::generalized_momentum(m, j, v),
-            "momentum_rate" => |m, j, v| momentum::momentum_rate(m, j, v),
-            "center_of_mass" => |m, j, _| energy::center_of_mass(m, j).0.to_vec(),
-            "momentum" => |m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)),
-            "centroidal_momentum_matrix" => |m, j, _| momentum::centroidal_momentum_matrix(m, j),
-            "centroidal_momentum_bias" => |m, j, v| frames::flat(&momentum::centroidal_bias(m, j, v)),
-            _ => return None,
-        };
-        Some(forms.smallest(|model| expressions(model, &forms.joints, &mechanics::velocities(model))))
+    pub(super) fn mass_matrix(&self) -> Program {
+        self.mass_matrix.clone()
+    }
+
+    pub(super) fn inverse_dynamics(&self) -> Program {
+        self.inverse_dynamics.clone()
+    }
+
+    pub(super) fn bias_forces(&self) -> Program {
+        self.bias.clone()
+    }
+
+    pub(super) fn kinetic_energy(&self) -> Program {
+        self.smallest(|m, j, v| vec![energy::kinetic_energy(m, j, v)])
+    }
+
+    pub(super) fn potential_energy(&self) -> Program {
+        self.smallest(|m, j, _| vec![energy::potential_energy(m, j)])
+    }
+
+    pub(super) fn generalized_momentum(&self) -> Program {
+        self.smallest(momentum::generalized_momentum)
+    }
+
+    pub(super) fn momentum_rate(&self) -> Program {
+        self.smallest(momentum::momentum_rate)
+    }
+
+    pub(super) fn center_of_mass(&self) -> Program {
+        self.smallest(|m, j, _| energy::center_of_mass(m, j).0.to_vec())
+    }
+
+    pub(super) fn momentum(&self) -> Program {
+        self.smallest(|m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)))
+    }
+
+    pub(super) fn centroidal_momentum_matrix(&self) -> Program {
+        self.smallest(|m, j, _| momentum::centroidal_momentum_matrix(m, j))
+    }
+
+    pub(super) fn centroidal_momentum_bias(&self) -> Program {
+        self.smallest(|m, j, v| frames::flat(&momentum::centroidal_bias(m, j, v)))
+    }
+
+    pub(super) fn constrained_dynamics(&self) -> Program {
+        self.of_best(Forms::constrained_dynamics)
+    }
+
+    pub(super) fn constraint_response(&self) -> Program {
+        self.of_best(Forms::constraint_response)
+    }
+
+    pub(super) fn slipping_response(&self) -> Program {
+        self.of_best(Forms::slipping_response)
+    }
+
+    fn of_best(&self, program: impl FnOnce(&Forms<'g>) -> Program) -> Program {
+        self.kinds.first().map(program).unwrap_or_default()
+    }
+
+    /// The program of the form in which these expressions of model, joints and velocities are the smallest.
+    fn smallest(
+        &self,
+        expressions: impl Fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
+    ) -> Program {
+        self.of_best(|forms| {
+            forms.smallest(|model| expressions(model, &forms.joints, &mechanics::velocities(model)))
+        })
     }
 
     /// Articulated bodies or factorisation, whichever takes less time: the chains of the first are longer.
-    fn forward_dynamics(&self) -> Program {
+    pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> = self.kinds.iter().flat_map(Forms::articulated).collect();
         let is_large = self.kinds.first().is_some_and(|forms| forms.nv() > COMPARE);
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
@@ -313,7 +359,7 @@ impl<'g> Forms<'g> {
     }
 
     /// The same for forces and biases that are given.
-    fn constraint_correction(&self) -> Program {
+    fn constraint_response(&self) -> Program {
         let Some(form) = self.all.first() else { return Program::default() };
         let (force, bias) = constraints::given(&form.model);
         self.multipliers(&force, &bias)

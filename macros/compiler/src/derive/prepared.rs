@@ -1,7 +1,7 @@
 //! Functions of the word `prepare`: their programs begin with numbers that depend on the parameters alone, which are
 //! computed once and shared by all of them.
 
-use crate::emit::{Function, Prepared};
+use super::output::{Function, Prepared};
 use crate::expr::{Expr, Graph, Id};
 use crate::lower::{lower, place_hoisted};
 use crate::model::Quantity;

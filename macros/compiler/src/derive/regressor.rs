@@ -1,9 +1,7 @@
 //! The functions of the word `regressor`: the dynamics as linear functions of the mass properties, and the smallest set
 //! of combinations that they act by.
 
-use super::Stage;
-use super::signatures::{self, Sizes};
-use crate::emit::{Constant, Function};
+use super::output::Constant;
 use crate::expr::Expr;
 use crate::mechanics::independence::{Part, independent};
 use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
@@ -37,19 +35,9 @@ impl<'a, 'g> Identification<'a, 'g> {
         Identification { model, bodies, base }
     }
 
-    /// The functions.
-    pub(super) fn functions(&self, joints: &[Joint<'g>], stage: Stage) -> Vec<Function> {
-        let (bodies, count) = (self.bodies.len(), self.base.entries.len());
-        let mut functions = signatures::regressor(&Sizes::of(self.model), bodies, count);
-        for f in &mut functions {
-            f.program = match f.name.as_str() {
-                "joint_torque_regressor" => stage.program(&self.regressor(joints)),
-                "standard_parameters" => stage.program(&self.standard()),
-                "base_regressor" => stage.program(&self.base.columns.concat()),
-                _ => stage.program(&self.base.values),
-            };
-        }
-        functions
+    /// How many bodies and base parameters there are.
+    pub(super) fn counts(&self) -> [usize; 2] {
+        [self.bodies.len(), self.base.entries.len()]
     }
 
     /// Names of the bodies and of the base parameters.
@@ -62,10 +50,10 @@ impl<'a, 'g> Identification<'a, 'g> {
         };
         let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", link(*k), NAMES[*p]));
         let bodies: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
-        signatures::names(&bodies, &base.collect::<Vec<String>>())
+        Constant::regressor(&bodies, &base.collect::<Vec<String>>())
     }
 
-    fn regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    pub(super) fn joint_torque_regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
         let (v, a) = (mechanics::velocities(self.model), mechanics::accelerations(self.model));
         let sites: Vec<Site<'g>> = self.bodies.iter().filter_map(|body| site(body)).collect();
         let all: Vec<(usize, usize)> =
@@ -73,8 +61,16 @@ impl<'a, 'g> Identification<'a, 'g> {
         columns(self.model, joints, &v, &a, &sites, &all).concat()
     }
 
+    pub(super) fn base_regressor(&self) -> Vec<Expr<'g>> {
+        self.base.columns.concat()
+    }
+
+    pub(super) fn base_parameters(&self) -> Vec<Expr<'g>> {
+        self.base.values.clone()
+    }
+
     /// The parameters that the model has.
-    fn standard(&self) -> Vec<Expr<'g>> {
+    pub(super) fn standard_parameters(&self) -> Vec<Expr<'g>> {
         let zero = Inertia::zero(self.model.graph);
         let sites = self.bodies.iter().filter_map(|body| site(body));
         sites

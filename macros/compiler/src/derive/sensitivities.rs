@@ -1,9 +1,8 @@
 //! The functions of the word `sensitivities`: how the motion depends on the parameters.
 
 use super::Stage;
-use super::signatures::{self, Sizes};
-use crate::emit::Function;
 use crate::expr::Expr;
+use crate::lower::Program;
 use crate::mechanics;
 use crate::mechanics::derivatives::parameters;
 use crate::model::{Model, Quantity};
@@ -12,29 +11,41 @@ use crate::passes::{self, Form, Passes};
 /// Up to how many velocities several forms of the model are tried.
 const SMALL: usize = 10;
 
-/// Both, from the model as it is or one of its forms, whichever costs less. Under constraints the accelerations depend
-/// on multipliers as well; there the forces alone have derivatives.
-pub(super) fn functions(model: &Model<'_>, passes: Passes, stage: Stage) -> Vec<Function> {
-    let mut forms = if model.nv() <= SMALL { passes::forms(model, passes) } else { Vec::new() };
-    forms.retain(|form| !form.anchored);
-    forms.push(Form { joints: mechanics::joints(model), model: model.clone(), anchored: false });
-    if passes.parallel {
-        forms.extend(passes::in_common_axes(&forms));
-    }
-    let inverse =
-        |form: &Form<'_>| stage.program(&parameters::inverse_dynamics(&form.model, &form.joints).concat());
-    let best =
-        forms.iter().map(|form| (form, inverse(form))).min_by_key(|(_, program)| program.counts.total());
-    let Some((form, program)) = best else { return Vec::new() };
-    let mut functions = signatures::sensitivities(&Sizes::of(model), model.parameters.len());
-    functions.retain(|f| model.constraints.is_empty() || f.name == "inverse_dynamics_by_parameters");
-    for f in &mut functions {
-        f.program = match f.name.as_str() {
-            "inverse_dynamics_by_parameters" => program.clone(),
-            _ => stage.program(&accelerations(form).concat()),
+/// What both functions are derived from: the model as it is or one of its forms, whichever costs less.
+pub(super) struct Sensitivities<'g> {
+    form: Option<Form<'g>>,
+    inverse: Program,
+    stage: Stage,
+}
+
+impl<'g> Sensitivities<'g> {
+    pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Sensitivities<'g> {
+        let mut forms = if model.nv() <= SMALL { passes::forms(model, passes) } else { Vec::new() };
+        forms.retain(|form| !form.anchored);
+        forms.push(Form { joints: mechanics::joints(model), model: model.clone(), anchored: false });
+        if passes.parallel {
+            forms.extend(passes::in_common_axes(&forms));
+        }
+        let inverse = |form: &Form<'_>| {
+            stage.program(&parameters::inverse_dynamics(&form.model, &form.joints).concat())
         };
+        let all = forms.into_iter().map(|form| {
+            let program = inverse(&form);
+            (form, program)
+        });
+        let best = all.min_by_key(|(_, program)| program.counts.total());
+        let (form, inverse) = best.map_or((None, Program::default()), |(form, p)| (Some(form), p));
+        Sensitivities { form, inverse, stage }
     }
-    functions
+
+    pub(super) fn inverse_dynamics(&self) -> Program {
+        self.inverse.clone()
+    }
+
+    pub(super) fn forward_dynamics(&self) -> Program {
+        let accelerations = self.form.as_ref().map_or_else(Vec::new, accelerations);
+        self.stage.program(&accelerations.concat())
+    }
 }
 
 fn accelerations<'g>(form: &Form<'g>) -> Vec<Vec<Expr<'g>>> {

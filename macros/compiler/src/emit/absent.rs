@@ -2,6 +2,8 @@
 
 use super::function::Signature;
 use super::item::{ALLOW, Head, Interface};
+use crate::catalogue::{self, Facts, JACOBIAN, Need, Row};
+use crate::derive::Function;
 use std::fmt::Write;
 
 /// Functions and constants that are not there, all for one reason.
@@ -13,6 +15,34 @@ pub struct Absent {
     pub functions: Vec<String>,
     /// Names of the constants.
     pub constants: Vec<&'static str>,
+}
+
+/// All that a mechanism with these functions and outputs lacks.
+pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
+    let in_lanes = |name: &str| format!("{name}_lanes");
+    let of_need = |(need, rows): (Need, Vec<&Row>)| {
+        let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
+        if facts.requests.batch {
+            names.extend(rows.iter().filter(|row| row.batched).map(|row| in_lanes(row.name)));
+        } else if need == Need::Batch {
+            let of_state = functions.iter().filter(|f| !f.is_hidden() && !f.arguments.is_empty());
+            names.extend(of_state.map(|f| in_lanes(&f.name)));
+            names.extend(catalogue::written_in_lanes(facts).map(in_lanes));
+        }
+        let constants = catalogue::absent_constants(need, facts);
+        Some(Absent { reason: need.reason()?, functions: names, constants })
+    };
+    let mut all: Vec<Absent> = catalogue::absent(facts).into_iter().filter_map(of_need).collect();
+    all.push(Absent {
+        reason: "HasJacobiansOfAccelerations",
+        functions: outputs.iter().map(|name| format!("{name}{JACOBIAN}")).collect(),
+        constants: Vec::new(),
+    });
+    // Outputs may have such a name.
+    for absent in &mut all {
+        absent.functions.retain(|name| functions.iter().all(|f| f.name != *name));
+    }
+    all
 }
 
 /// What a prepared mechanism leaves to the one that it was prepared from.

@@ -2,10 +2,12 @@
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
 use super::angles::{Angle, Angles, Calls, WIDTH};
-use super::function::{Argument, Function, Shape, Signature};
+use super::function::{Signature, given, index};
 use super::matrices;
 use super::scalar::ScalarSpelling;
 use super::stores;
+use crate::catalogue::{Argument, Shape};
+use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
 use crate::model::Quantity;
@@ -67,7 +69,7 @@ struct Writer<'a> {
 /// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
     if let Shape::CalledForward(n) = f.shape
-        && f.given().is_empty()
+        && given(f).is_empty()
     {
         out.push_str(&matrices::called(f, n, s));
         return;
@@ -107,7 +109,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let rest = w.statements.split_off(head);
     let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero };
-    if !f.given().is_empty() {
+    if !given(f).is_empty() {
         let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
         out.push_str(&matrices::finish(f, s, &results));
@@ -169,7 +171,7 @@ impl Writer<'_> {
                 op.operands(&mut note);
             }
         }
-        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+        let is_needed = |a: &Argument| symbols.iter().any(|s| index(*a, Quantity::of(*s)).is_some());
         self.arguments.iter().copied().filter(is_needed).collect()
     }
 
@@ -269,7 +271,7 @@ impl Writer<'_> {
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
-                let is_input = |a: &Argument| gather.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+                let is_input = |a: &Argument| gather.iter().any(|s| index(*a, Quantity::of(*s)).is_some());
                 // Parameters of the lanes are no arguments.
                 plain(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
@@ -310,7 +312,7 @@ impl Writer<'_> {
         }
         self.arguments
             .iter()
-            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name())))
+            .find_map(|a| index(*a, quantity).map(|k| format!("{}{k}", a.name())))
             .unwrap_or_else(|| "missing".to_string())
     }
 
@@ -424,7 +426,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             (false, true) => writeln!(out, "let [{list}] = *Ops::each(&{name}.data.0[0]);"),
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
-            if gather.iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
+            if gather.iter().any(|s| index(*argument, Quantity::of(*s)).is_some()) {
                 let _ = writeln!(out, "let lanes{k} = {};", w.gathered(gather));
             }
         }

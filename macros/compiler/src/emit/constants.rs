@@ -1,6 +1,7 @@
 //! Associated constants of a mechanism.
 
-use super::item::{Constant, Interface};
+use super::item::Interface;
+use crate::derive::Constant;
 use crate::expr::print::Written;
 use std::fmt::Write;
 
@@ -52,7 +53,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
     for (name, text, about) in texts {
         let about = match text.as_str() {
             "" if i.velocities.is_empty() => "Empty: nothing moves.",
-            "" if i.kinematic => "Empty: without inertia there are no equations of motion.",
+            "" if i.facts.kinematic => "Empty: without inertia there are no equations of motion.",
             "" => "Empty: the equations of this mechanism are too long to be read.",
             _ => about,
         };

@@ -1,7 +1,9 @@
 //! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
 //! projection.
 
-use super::function::{Argument, Function, Shape, Signature};
+use super::function::Signature;
+use crate::catalogue::{Argument, Id, Shape};
+use crate::derive::Function;
 use crate::model::Model;
 use std::fmt::Write;
 
@@ -186,7 +188,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         rank = s.nv.saturating_sub(c.freedom[1]),
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
     );
-    if functions.iter().any(|f| f.name == "__motion_derivatives") {
+    if functions.iter().any(|f| f.id == Id::MotionDerivatives) {
         write_derivatives(out, c, s);
     }
 }

@@ -2,8 +2,10 @@
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
 use super::body::{Build, write_body};
-use super::function::{Function, Shape, Signature, write_function, write_head};
+use super::function::{Signature, given, write_function, write_head};
 use super::item::{ALLOW, Head};
+use crate::catalogue::Shape;
+use crate::derive::Function;
 use std::fmt::Write;
 
 /// Fewest operations of a function that chooses. The choice costs about two nanoseconds, and a function that is called
@@ -38,7 +40,7 @@ struct Body {
 fn is_large(f: &Function) -> bool {
     match f.shape {
         // Calls the one that is given matrices, no more.
-        Shape::CalledForward(_) => !f.given().is_empty(),
+        Shape::CalledForward(_) => !given(f).is_empty(),
         shape => shape.calls() || f.program.instructions.len() >= LARGE,
     }
 }
@@ -78,7 +80,7 @@ impl Bodies {
         self.list.push(Body {
             types,
             names,
-            result: f.result(s),
+            result: s.result(f),
             in_lanes: s.scalar.is_in_lanes(),
             text,
             debug,

@@ -1,7 +1,8 @@
 //! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
 
-use super::function::Function;
-use super::item::{Interface, Output};
+use super::item::Interface;
+use crate::catalogue::Id;
+use crate::derive::{Function, Output};
 use crate::expr::Symbol;
 use crate::lower::Program;
 use crate::model::Quantity;
@@ -41,7 +42,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         }
     }
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
-        let about = match interface.kinematic {
+        let about = match interface.facts.kinematic {
             true => {
                 "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
             }
@@ -67,7 +68,7 @@ pub fn operations(functions: &[Function]) -> String {
     let mut text = String::from(
         "\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n",
     );
-    for f in functions.iter().filter(|f| !f.docs.is_empty() || f.name == "__constrained_dynamics") {
+    for f in functions.iter().filter(|f| !f.is_hidden() || f.id == Id::ConstrainedDynamics) {
         let c = f.program.counts;
         if c.total() + c.calls > 0 {
             let _ = writeln!(

@@ -1,50 +1,17 @@
 //! Access to named frames: for each frame, calls of the steps along its path, without computing anything else.
 
-use super::function::{Argument, Function, Shape, Signature, write_function};
+use super::function::{Signature, write_function};
+use crate::catalogue::Argument;
+use crate::derive::{FrameSteps, Function, LinkSteps};
 use crate::lower::Program;
 use std::fmt::Write;
-
-/// The steps of one link.
-pub struct LinkSteps {
-    /// Parent link.
-    pub parent: Option<usize>,
-    /// Entries of `v` of its degrees of freedom.
-    pub velocities: Vec<usize>,
-    /// Its motion subspace depends on the configuration.
-    pub driven: bool,
-    /// Placement from the parent's.
-    pub placement: Program,
-    /// Twist from the parent's.
-    pub twist: Program,
-    /// Acceleration from the parent's twist and acceleration.
-    pub acceleration: Program,
-    /// Columns of a Jacobian from the link's placement and the frame's position.
-    pub columns: Program,
-}
-
-/// The steps of one frame on its link.
-pub struct FrameSteps {
-    /// Its name.
-    pub name: String,
-    /// The link that carries it.
-    pub link: Option<usize>,
-    /// True if the frame is the link's own.
-    pub is_link: bool,
-    /// Placement from the link's.
-    pub placement: Program,
-    /// Twist in ground axes from the link's placement and twist.
-    pub twist: Program,
-    /// Acceleration in ground axes from the link's placement, twist and acceleration.
-    pub acceleration: Program,
-}
 
 const PARENT: Argument = Argument::Given("p", 0, 12);
 
 /// Writes the private steps and the implementations of `NamedFrame`.
 pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
-        let f = Function { name, arguments, program: program.clone(), ..Function::new(Shape::Array(n)) };
-        write_function(out, &f, s, false);
+        write_function(out, &Function::part(name, arguments, n, program.clone()), s, false);
     };
     for (k, link) in links.iter().enumerate() {
         let from_parent = |arguments: &[Argument], given: Argument| {

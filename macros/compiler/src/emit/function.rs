@@ -1,184 +1,33 @@
-//! A generated function: its arguments, its result, and what it computes.
+//! How generated functions are spelt: their arguments, their results, and what stands around their bodies.
 
 use super::body::{Build, write_body};
 use super::matrices;
 use super::scalar::ScalarSpelling;
-use crate::lower::Program;
+use crate::catalogue::{Argument, Shape};
+use crate::derive::Function;
 use crate::model::Quantity;
 use std::fmt::Write;
 
-/// An argument of a generated function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Argument {
-    /// Time `t`.
-    T,
-    /// Configuration `q`.
-    Q,
-    /// Velocity `v`.
-    V,
-    /// Acceleration `a`.
-    A,
-    /// Generalized force `tau`.
-    Tau,
-    /// Inputs `u`.
-    U,
-    /// Given numbers: name of the argument, index of the first, how many.
-    Given(&'static str, usize, usize),
-    /// Parameters of mass properties, so many given numbers in a vector.
-    Standard(usize),
-    /// A square matrix of so many rows that a result goes into.
-    Into(&'static str, usize),
-}
-
-impl Argument {
-    /// The name in the signature.
-    pub fn name(self) -> &'static str {
-        match self {
-            Argument::T => "t",
-            Argument::Q => "q",
-            Argument::V => "v",
-            Argument::A => "a",
-            Argument::Tau => "tau",
-            Argument::U => "u",
-            Argument::Given(name, ..) | Argument::Into(name, _) => name,
-            Argument::Standard(_) => "standard",
+/// The index in an argument of what a symbol stands for.
+pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
+    match (argument, quantity) {
+        (Argument::Q, Quantity::Configuration(k))
+        | (Argument::V, Quantity::Velocity(k))
+        | (Argument::A, Quantity::Acceleration(k))
+        | (Argument::Tau, Quantity::Force(k))
+        | (Argument::U, Quantity::Input(k)) => Some(k),
+        (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
+            Some(k - first)
         }
-    }
-
-    /// The index in this argument of what a symbol stands for.
-    pub fn index(self, quantity: Quantity) -> Option<usize> {
-        match (self, quantity) {
-            (Argument::Q, Quantity::Configuration(k))
-            | (Argument::V, Quantity::Velocity(k))
-            | (Argument::A, Quantity::Acceleration(k))
-            | (Argument::Tau, Quantity::Force(k))
-            | (Argument::U, Quantity::Input(k)) => Some(k),
-            (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
-                Some(k - first)
-            }
-            (Argument::Standard(_), Quantity::Given(k)) => Some(k),
-            _ => None,
-        }
+        (Argument::Standard(_), Quantity::Given(k)) => Some(k),
+        _ => None,
     }
 }
 
-/// The result of a generated function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// A number.
-    Scalar,
-    /// A column vector.
-    Vector(usize),
-    /// A square matrix; the outputs are its columns one after another.
-    Square(usize),
-    /// A matrix; the outputs are its columns one after another.
-    Matrix(usize, usize),
-    /// Two square matrices.
-    Pair(usize),
-    /// `M⁻¹`. The outputs are what [`Parted`] says.
-    Inverse(usize),
-    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
-    /// themselves, and those of `Inverse`.
-    Forward(usize),
-    /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
-    /// what turns displacements.
-    Linear(usize, usize),
-    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
-    /// where the inverse is divided, and those of `Inverse`.
-    Accelerated(usize),
-    /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
-    CalledForward(usize),
-    /// The same as `Linear`, from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
-    /// derivatives by `q`, `v` and the inputs, and what turns displacements.
-    CalledLinear(usize, usize),
-    /// A plain array.
-    Array(usize),
-    /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
-    Symmetric(usize),
-}
-
-impl Shape {
-    /// True for what is composed of other functions' results.
-    pub fn calls(self) -> bool {
-        matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
-    }
-}
-
-/// A generated function.
-pub struct Function {
-    /// Its name.
-    pub name: String,
-    /// Documentation, a paragraph each; none for a hidden function.
-    pub docs: Vec<String>,
-    /// Arguments after `&self`.
-    pub arguments: Vec<Argument>,
-    /// Result.
-    pub shape: Shape,
-    /// What it computes.
-    pub program: Program,
-    /// What is known of its matrices.
-    pub structure: Structure,
-}
-
-/// How the outputs make the inverse of a mass matrix.
-#[derive(Clone, Debug, Default)]
-pub enum Parted {
-    /// They are its columns.
-    #[default]
-    Whole,
-    /// After the columns comes for each velocity a row of factors, in the order of these velocities of the trunk, whose product
-    /// with their columns is added.
-    Trunk(Vec<usize>),
-    /// After columns, of which those of limbs are the inverses of their blocks, comes for each velocity a row with its entries of
-    /// the mass matrix in the rows of the trunk.
-    Divided {
-        /// Velocities of the trunk, in the order of the entries.
-        trunk: Vec<usize>,
-        /// Those of each limb, in their order.
-        limbs: Vec<Vec<usize>>,
-    },
-}
-
-/// What is known of the matrices of a function.
-#[derive(Clone, Debug, Default)]
-pub struct Structure {
-    /// In which parts the inverse of the mass matrix is.
-    pub inverse: Parted,
-    /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
-    pub entries: Vec<(usize, usize)>,
-    /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
-    pub zeros: Vec<bool>,
-    /// The columns of `∂v̇/∂q` and of `∂v̇/∂v` that are outputs themselves, not those of forces.
-    pub known: [Vec<usize>; 2],
-}
-
-impl Function {
-    /// The names of the matrices that results go into.
-    pub fn given(&self) -> Vec<&'static str> {
-        let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
-        self.arguments.iter().filter_map(given).collect()
-    }
-
-    /// The type of what is returned.
-    pub fn result(&self, s: &Signature<'_>) -> String {
-        match self.shape {
-            Shape::Accelerated(n) => s.vector(n),
-            shape if self.given().is_empty() => s.shape(shape),
-            _ => "()".to_string(),
-        }
-    }
-
-    /// A hidden function without arguments that does nothing yet.
-    pub fn new(shape: Shape) -> Function {
-        Function {
-            name: String::new(),
-            docs: Vec::new(),
-            arguments: Vec::new(),
-            shape,
-            program: Program::default(),
-            structure: Structure::default(),
-        }
-    }
+/// The names of the matrices that a function's results go into.
+pub fn given(f: &Function) -> Vec<&'static str> {
+    let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+    f.arguments.iter().filter_map(given).collect()
 }
 
 /// Dimensions and names that signatures need.
@@ -197,6 +46,15 @@ pub struct Signature<'a> {
 }
 
 impl Signature<'_> {
+    /// The type of what a function returns.
+    pub fn result(&self, f: &Function) -> String {
+        match f.shape {
+            Shape::Accelerated(n) => self.vector(n),
+            shape if given(f).is_empty() => self.shape(shape),
+            _ => "()".to_string(),
+        }
+    }
+
     /// The type of an argument.
     pub fn argument(&self, a: Argument) -> String {
         let n = match a {
@@ -270,7 +128,7 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if !f.docs.is_empty() {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
-    let result = f.result(s);
+    let result = s.result(f);
     let must_use = if result == "()" { "" } else { "#[must_use]\n" };
     let _ = writeln!(
         out,

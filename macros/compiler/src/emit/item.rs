@@ -5,15 +5,16 @@ use super::constants::{write_constants, write_frame_index};
 use super::constraints::{self, Constraints};
 use super::dispatch::Bodies;
 use super::docs::struct_docs;
-use super::frames::{FrameSteps, LinkSteps, write_all_placements, write_frame_impl, write_steps};
-use super::function::{Argument, Function, Shape, Signature, write_function};
+use super::frames::{write_all_placements, write_frame_impl, write_steps};
+use super::function::{Signature, write_function};
 use super::lanes;
 use super::manifold::write_manifold;
-use super::prepared::{Content, Prepared, write_prepared};
+use super::prepared::{Content, write_prepared};
 use super::reactions;
 use super::scalar::ScalarSpelling;
+use crate::catalogue::{self, Argument, Facts, Row};
+use crate::derive::{Constant, Function, Output};
 use crate::expr::print::Written;
-use crate::model::Chart;
 use crate::model::units::Units;
 use crate::syntax::{ScalarType, Shell};
 use proc_macro2::TokenStream;
@@ -44,14 +45,8 @@ pub struct Interface<'a> {
     pub units: Units,
     /// A file whose change asks for another expansion.
     pub file: Option<String>,
-    /// There are no dynamics.
-    pub kinematic: bool,
-    /// The mechanism contains time: its functions take it first.
-    pub time: bool,
-    /// Inputs act by way of the velocity.
-    pub velocity_inputs: bool,
-    /// There are functions of several states at once.
-    pub batch: bool,
+    /// What signatures depend on.
+    pub facts: Facts,
     /// Large functions choose their arithmetic at run time.
     pub detect: bool,
     /// Numbers of the file that were rounded.
@@ -59,49 +54,6 @@ pub struct Interface<'a> {
     /// What the mechanism does not have, and why.
     pub absent: Vec<Absent>,
 }
-
-/// What was derived.
-pub struct Output {
-    /// The generated functions.
-    pub functions: Vec<Function>,
-    /// Steps of the links.
-    pub links: Vec<LinkSteps>,
-    /// Steps of the frames.
-    pub frames: Vec<FrameSteps>,
-    /// First entries in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
-    pub charts: Vec<Chart>,
-    /// The equations of motion for reading; empty for large mechanisms.
-    pub equations: Written,
-    /// The functions of numbers that are computed before, if they were asked for.
-    pub prepared: Option<Prepared>,
-    /// Further constants.
-    pub constants: Vec<Constant>,
-}
-
-/// An associated constant: a list.
-pub struct Constant {
-    /// Its name.
-    pub name: &'static str,
-    /// What it holds.
-    pub docs: &'static str,
-    /// The type of an item.
-    pub item: &'static str,
-    /// The items as they are written.
-    pub list: Vec<String>,
-}
-
-/// Functions of the traits that depend on the state, with their arguments there.
-pub(super) const TRAIT_FUNCTIONS: [(&str, &[Argument]); 9] = [
-    ("mass_matrix", &[Argument::Q]),
-    ("bias_forces", &[Argument::Q, Argument::V]),
-    ("inverse_dynamics", &[Argument::Q, Argument::V, Argument::A]),
-    ("forward_dynamics", &[Argument::Q, Argument::V, Argument::Tau]),
-    ("generalized_forces", &[Argument::Q, Argument::V, Argument::U]),
-    ("kinetic_energy", &[Argument::Q, Argument::V]),
-    ("potential_energy", &[Argument::Q]),
-    ("generalized_momentum", &[Argument::Q, Argument::V]),
-    ("momentum_rate", &[Argument::Q, Argument::V]),
-];
 
 /// What stands before generated implementations.
 pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
@@ -137,7 +89,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         bodies.write_function(&mut methods, f, &s);
     }
     constraints::write_constants(&mut methods, &interface.constraints);
-    if !interface.kinematic {
+    if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
         reactions::write_methods(&mut methods, interface, &output.functions, &s);
     }
@@ -177,12 +129,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
 }
 
 /// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
-pub fn emit_failed(
-    interface: &Interface<'_>,
-    functions: &[Function],
-    constants: &[Constant],
-    prepare: bool,
-) -> Emitted {
+pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants: &[Constant]) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
     let mut methods = String::new();
@@ -192,7 +139,7 @@ pub fn emit_failed(
         write_function(&mut methods, f, &s, true);
     }
     constraints::write_constants(&mut methods, &interface.constraints);
-    if !interface.kinematic {
+    if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
     }
     write_manifold(&mut methods, None, &s);
@@ -212,7 +159,7 @@ pub fn emit_failed(
     );
     let mut emitted = assemble(interface, &s, &methods, &[], "");
     write_absent(&mut emitted.text, interface, &s);
-    if prepare {
+    if interface.facts.requests.prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
     }
     emitted.text = at_home(emitted.text, interface.shell);
@@ -230,7 +177,7 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
         nq: interface.configuration.len(),
         nv: interface.velocities.len(),
         nu: interface.inputs.len(),
-        time: interface.time,
+        time: interface.facts.time,
     }
 }
 
@@ -272,19 +219,9 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// The arguments of a function of the traits that the inherent one takes.
-pub(super) fn needed(name: &str, arguments: &[Argument], velocity_inputs: bool) -> Vec<Argument> {
-    let own = |a: &&Argument| name != "generalized_forces" || **a != Argument::V || velocity_inputs;
-    arguments.iter().filter(own).copied().collect()
-}
-
-/// The result of a function of the traits.
-pub(super) fn result_of(name: &str, nv: usize) -> Shape {
-    match name {
-        "mass_matrix" => Shape::Square(nv),
-        "kinetic_energy" | "potential_energy" => Shape::Scalar,
-        _ => Shape::Vector(nv),
-    }
+/// The arguments that the inherent function takes of those of the trait's.
+pub(super) fn needed(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
+    (row.declare)(&i.facts).arguments
 }
 
 /// The trait's functions, in terms of the inherent ones, which take only what they need.
@@ -294,9 +231,9 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
     }
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    for (name, arguments) in TRAIT_FUNCTIONS {
-        let result = s.shape(result_of(name, s.nv));
-        let needed = needed(name, arguments, i.velocity_inputs);
+    for (row, arguments) in catalogue::of_trait() {
+        let (name, result) = (row.name, s.shape((row.declare)(&i.facts).shape));
+        let needed = needed(row, i);
         let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
@@ -350,7 +287,7 @@ impl Head {
     ) {
         let Head { generics, arguments, bounds } = self;
         let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
-        if i.kinematic {
+        if i.facts.kinematic {
             return;
         }
         let _ = writeln!(
@@ -363,7 +300,7 @@ impl Head {
         );
         write_trait(out, i, s);
         out.push_str("}\n");
-        if i.batch {
+        if i.facts.requests.batch {
             let _ = writeln!(
                 out,
                 "{ALLOW}impl{generics} ::linkwork::Batch<{}, {}, {}> for {name}{arguments} {bounds} {{",

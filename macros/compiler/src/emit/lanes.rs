@@ -1,9 +1,11 @@
 //! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
 
 use super::dispatch::Bodies;
-use super::function::{Argument, Function, Shape, Signature, write_function};
-use super::item::{Interface, TRAIT_FUNCTIONS, needed, result_of};
+use super::function::{Signature, write_function};
+use super::item::{Interface, needed};
 use super::manifold::write_manifold;
+use crate::catalogue::{self, Argument, Id};
+use crate::derive::Function;
 use crate::model::Chart;
 use std::fmt::Write;
 
@@ -17,16 +19,16 @@ pub fn write_methods(
     charts: Option<&[Chart]>,
     s: &Signature<'_>,
 ) {
-    if !i.batch {
+    if !i.facts.requests.batch {
         return;
     }
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
-    let wanted = |f: &&Function| match (f.name.as_str(), f.shape) {
-        ("__constrained_dynamics", _) => !i.constraints.overdetermined,
+    let wanted = |f: &&Function| match f.id {
+        Id::ConstrainedDynamics => !i.constraints.overdetermined,
         // What the derivatives of forward dynamics call.
-        (_, Shape::Accelerated(_)) => true,
-        _ => !f.docs.is_empty() && !f.arguments.is_empty(),
+        Id::AccelerationsAndInverse => true,
+        _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
         let exact = match f.program.in_lanes {
@@ -34,14 +36,8 @@ pub fn write_methods(
             Some(_) => "up to rounding: for a single state the lanes are limbs or joints",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
-        let twin = Function {
-            name: f.name.clone(),
-            docs: if f.docs.is_empty() { Vec::new() } else { docs },
-            arguments: f.arguments.clone(),
-            shape: f.shape,
-            program: f.program.clone(),
-            structure: f.structure.clone(),
-        };
+        let docs = if f.is_hidden() { Vec::new() } else { docs };
+        let twin = Function { docs, ..f.clone() };
         match charts {
             Some(_) => bodies.write_function(out, &twin, &lanes),
             None => write_function(out, &twin, &lanes, true),
@@ -112,15 +108,16 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let in_lanes = s.scalar.in_lanes();
     let s = &Signature { scalar: &in_lanes, ..*s };
-    for (name, arguments) in TRAIT_FUNCTIONS {
+    for (row, arguments) in catalogue::of_trait() {
+        let name = row.name;
         let all: Vec<Argument> = [&[Argument::T], arguments].concat();
-        let needed = s.timed(&needed(name, arguments, i.velocity_inputs));
+        let needed = s.timed(&needed(row, i));
         let names: Vec<&str> = needed.iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}_lanes<const LANES: usize>({}) -> {} {{ Self::{name}_lanes(self, {}) }}",
             s.parameters(&all),
-            s.shape(result_of(name, s.nv)),
+            s.shape((row.declare)(&i.facts).shape),
             names.join(", ")
         );
     }

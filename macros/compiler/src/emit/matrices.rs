@@ -1,7 +1,9 @@
 //! Results of several matrices, and what is composed of them at run time.
 
 use super::body::Outputs;
-use super::function::{Function, Parted, Shape, Signature, Structure};
+use super::function::{Signature, given};
+use crate::catalogue::{Parted, Shape, Structure};
+use crate::derive::Function;
 
 const RUNTIME: &str = "::linkwork::__private";
 /// Before the columns of a matrix.
@@ -26,7 +28,7 @@ pub fn several(shape: Shape, s: &Signature<'_>) -> String {
 
 /// What is left to do after the outputs are in their places.
 pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let given: Vec<String> = f.given().iter().map(|name| format!("*{name}")).collect();
+    let given: Vec<String> = given(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}",
@@ -226,7 +228,7 @@ fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, S
 
 /// The columns that are known, put into the matrices.
 fn known(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
-    let columns = f.given().into_iter().zip(&f.structure.known);
+    let columns = given(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
         format!("{matrix}.data.0[{column}] = {};\n", outputs.list(k * n..(k + 1) * n))

@@ -6,23 +6,16 @@ use super::constants::write_sizes;
 use super::constraints;
 use super::dispatch::Bodies;
 use super::docs::operations;
-use super::function::{Function, Shape, Signature, write_function};
+use super::function::{Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
 use super::lanes;
 use super::manifold::write_manifold;
 use super::reactions;
+use crate::derive::Function;
 use crate::lower::Program;
 use crate::model::Chart;
 use quote::ToTokens;
 use std::fmt::Write;
-
-/// What was derived.
-pub struct Prepared {
-    /// The numbers, of the parameters.
-    pub numbers: Program,
-    /// Functions of the state and the numbers.
-    pub functions: Vec<Function>,
-}
 
 /// What the functions are written from; nothing for a mechanism that failed to compile.
 #[derive(Default)]
@@ -72,11 +65,8 @@ pub fn write_prepared(
         #[must_use]
         pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers() }} }}"
     );
-    let numbers = Function {
-        name: "__prepared_numbers".to_string(),
-        program: content.numbers.cloned().unwrap_or_default(),
-        ..Function::new(Shape::Array(count))
-    };
+    let program = content.numbers.cloned().unwrap_or_default();
+    let numbers = Function::part("__prepared_numbers".to_string(), Vec::new(), count, program);
     write_function(out, &numbers, s, content.numbers.is_none());
     out.push_str("}\n");
 }

@@ -2,28 +2,25 @@
 //! multipliers.
 
 use super::docs::output_docs;
-use super::function::{Argument, Function, Signature};
+use super::function::Signature;
 use super::item::Interface;
+use crate::catalogue::{Argument, REACTION};
+use crate::derive::Function;
 use std::fmt::Write;
-
-/// What the hidden function of a reaction's output is called, after which the output is.
-pub const HIDDEN: &str = "__reaction_";
 
 /// Writes the outputs whose hidden functions are among these.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let c = &i.constraints;
-    let by_velocity =
-        functions.iter().any(|f| f.name == "generalized_forces" && f.arguments.contains(&Argument::V));
     let t = if s.time { "t, " } else { "" };
     for f in functions {
-        let Some(name) = f.name.strip_prefix(HIDDEN) else { continue };
+        let Some(name) = f.name.strip_prefix(REACTION) else { continue };
         let mut arguments = vec![Argument::Q, Argument::V];
         let mut pass = String::from("q, v, &a");
         if s.nu > 0 {
             arguments.push(Argument::U);
             pass.push_str(", u");
         }
-        let tau = match (s.nu > 0, by_velocity) {
+        let tau = match (s.nu > 0, i.facts.velocity_inputs) {
             (true, true) => format!("self.generalized_forces({t}q, v, u)"),
             (true, false) => format!("self.generalized_forces({t}q, u)"),
             _ => format!("<{}>::zeros()", s.vector(s.nv)),

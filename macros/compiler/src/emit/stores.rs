@@ -2,7 +2,9 @@
 //! memory of their own.
 
 use super::body::{Outputs, Piece, Statement};
-use super::function::{Function, Parted, Shape};
+use super::function::given;
+use crate::catalogue::{Parted, Shape};
+use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
 use std::fmt;
 
@@ -49,7 +51,7 @@ pub fn with_stores(
 /// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added; nor do the
 /// columns of it that are still to come.
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
-    let given = f.given();
+    let given = given(f);
     let Some(&matrix) = given.first() else { return Vec::new() };
     let (before, forces, n) = match f.shape {
         Shape::Symmetric(_) => {

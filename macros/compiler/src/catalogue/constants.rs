@@ -1,0 +1,36 @@
+//! Associated constants.
+
+use super::{Facts, Need};
+
+/// Constants of mechanisms, with what each needs.
+const CONSTANTS: [(&str, &[Need]); 18] = [
+    ("BASE_PARAMETERS", &[Need::Inertia, Need::Regressor]),
+    ("BODIES", &[Need::Inertia, Need::Regressor]),
+    ("CONFIGURATION", &[]),
+    ("CONSTRAINTS", &[Need::Constraints]),
+    ("EQUATIONS", &[]),
+    ("EQUATIONS_LATEX", &[]),
+    ("FRAMES", &[]),
+    ("INPUTS", &[]),
+    ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Packed]),
+    ("NC", &[Need::Constraints]),
+    ("NH", &[Need::Constraints]),
+    ("NP", &[Need::Constraints]),
+    ("NQ", &[]),
+    ("NS", &[Need::Constraints]),
+    ("NU", &[]),
+    ("NV", &[]),
+    ("PARAMETERS", &[Need::Inertia, Need::Sensitivities]),
+    ("VELOCITIES", &[]),
+];
+
+/// True for the name of a constant that mechanisms may have.
+pub fn is_constant(name: &str) -> bool {
+    CONSTANTS.iter().any(|(known, _)| *known == name)
+}
+
+/// The constants that a mechanism with these facts lacks because of this.
+pub fn absent_constants(need: Need, facts: &Facts) -> Vec<&'static str> {
+    let first = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meet(*need));
+    CONSTANTS.iter().filter(|(_, needs)| first(needs) == Some(need)).map(|(name, _)| *name).collect()
+}

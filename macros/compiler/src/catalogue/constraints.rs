@@ -1,0 +1,82 @@
+//! What constraints say of a state, and the eliminations that constrained dynamics is made of.
+
+use super::Argument::{Q, Tau, V};
+use super::{Argument, ConstraintFacts, Declaration, Facts, Id, Need, Row, Shape};
+
+const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
+
+/// Functions of mechanisms with constraints that follow from equations.
+pub const ROWS: &[Row] = &[
+    Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Vector(of(f).holonomic),
+        docs: vec!["Residuals `φ(q)` of the constraints on configurations, m and rad: zero where they hold."],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(of(f).all),
+        docs: vec!["Rates `J(q) v + …` of all constraints, m/s and rad/s: zero where they hold."],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Matrix(of(f).all, f.nv),
+        docs: vec!["Jacobian `J(q)` of the constraints: how their rates change with the velocities."],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(of(f).all),
+        docs: vec!["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
+        arguments: vec![Q, force(f), bias(f)],
+        shape: solution(f),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
+        arguments: [vec![Q, V, Tau], sides(f)].concat(),
+        shape: solution(f),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(
+        Id::SlippingResponse,
+        "__slipping_response",
+        &[Need::Constraints, Need::Inertia, Need::Slipping],
+        |f| Declaration {
+            arguments: [vec![Q, V, force(f), bias(f)], sides(f)].concat(),
+            shape: solution(f),
+            ..Declaration::default()
+        },
+    )
+    .alone(),
+];
+
+fn of(f: &Facts) -> ConstraintFacts {
+    f.constraints.unwrap_or_default()
+}
+
+fn force(f: &Facts) -> Argument {
+    Argument::Given("force", 0, f.nv)
+}
+
+fn bias(f: &Facts) -> Argument {
+    Argument::Given("bias", f.nv, of(f).all)
+}
+
+/// Signs of the normal forces of contacts that slip.
+fn sides(f: &Facts) -> Vec<Argument> {
+    let ConstraintFacts { all, slipping, .. } = of(f);
+    if slipping > 0 { vec![Argument::Given("sides", f.nv + all, slipping)] } else { Vec::new() }
+}
+
+/// Accelerations and multipliers with what tells whether they can be trusted; of an overdetermined mechanism what they follow
+/// from.
+fn solution(f: &Facts) -> Shape {
+    let (nv, nc) = (f.nv, of(f).all);
+    Shape::Array(if of(f).overdetermined { (nv + nc) * (1 + nc) } else { nv + 3 * nc })
+}

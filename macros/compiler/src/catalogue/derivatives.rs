@@ -1,0 +1,133 @@
+//! The functions of the word `derivatives`.
+
+use super::Argument::{A, Q, Tau, U, V};
+use super::{Argument, Declaration, Facts, Id, Need, Row, Shape};
+
+const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
+const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
+
+const ASKED: &[Need] = &[Need::Inertia, Need::Derivatives];
+const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Derivatives, Need::NoConstraints];
+const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Derivatives, Need::Constraints];
+
+/// Derivatives of the dynamics.
+pub const ROWS: &[Row] = &[
+    Row::derived(
+        Id::MassMatrixInverse,
+        "mass_matrix_inverse",
+        &[Need::Inertia, Need::Derivatives, Need::RegularMass],
+        |f| Declaration {
+            arguments: vec![Q],
+            shape: Shape::Inverse(f.nv),
+            docs: vec![
+                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
+                "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
+            ],
+            ..Declaration::default()
+        },
+    ),
+    Row::derived(Id::CoriolisMatrix, "coriolis_matrix", ASKED, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Square(f.nv),
+        docs: vec![
+            "A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.",
+            "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols* (2021).",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::InverseDynamicsDerivatives, "inverse_dynamics_derivatives", ASKED, |f| Declaration {
+        arguments: vec![Q, V, A],
+        shape: Shape::Pair(f.nv),
+        docs: vec![
+            "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
+            TANGENT,
+            "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022).",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ForwardDynamicsDerivatives, "forward_dynamics_derivatives", UNCONSTRAINED, |f| {
+        Declaration {
+            arguments: vec![Q, V, Tau],
+            shape: forward(f),
+            docs: vec![
+                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
+                TANGENT,
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a large mechanism it calls other functions. The operations counted are those without calls and products.",
+                "How a mechanism with a free base moves in the axes of the base does not depend on its linear velocity, and on its orientation only by the components of uniform gravity: where no other force comes from the ground, these six columns are exact.",
+            ],
+            ..Declaration::default()
+        }
+    }),
+    Row::derived(Id::Linearize, "linearize", UNCONSTRAINED, |f| Declaration {
+        arguments: vec![Q, V, U],
+        shape: if f.calls_linear { Shape::CalledLinear(f.nv, f.nu) } else { Shape::Linear(f.nv, f.nu) },
+        docs: vec![
+            "`(A, B)` of `ẋ = A x + B δu`: the motion to first order about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
+            TANGENT,
+            "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(
+        Id::AccelerationsAndInverse,
+        "__accelerations_and_inverse",
+        &[Need::Inertia, Need::Derivatives, Need::NoConstraints, Need::Calls],
+        |f| Declaration {
+            arguments: vec![Q, V, Tau, Argument::Into("inverse", f.nv)],
+            shape: Shape::Accelerated(f.nv),
+            ..Declaration::default()
+        },
+    ),
+    Row::derived(Id::InverseDynamicsDerivativesInto, "inverse_dynamics_derivatives_into", ASKED, |f| {
+        Declaration {
+            arguments: vec![Q, V, A, Argument::Into("by_q", f.nv), Argument::Into("by_v", f.nv)],
+            shape: Shape::Pair(f.nv),
+            docs: vec![
+                "Puts [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) into `by_q` and `by_v`, `NV` by `NV` each.",
+                KEPT,
+            ],
+            ..Declaration::default()
+        }
+    }),
+    Row::derived(
+        Id::ForwardDynamicsDerivativesInto,
+        "forward_dynamics_derivatives_into",
+        &[Need::Inertia, Need::NoConstraints, Need::Derivatives],
+        |f| Declaration {
+            arguments: [
+                vec![Q, V, Tau],
+                ["by_q", "by_v", "inverse"].map(|name| Argument::Into(name, f.nv)).to_vec(),
+            ]
+            .concat(),
+            shape: forward(f),
+            docs: vec![
+                "Puts [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) into `by_q`, `by_v` and `inverse`, `NV` by `NV` each.",
+                KEPT,
+            ],
+            ..Declaration::default()
+        },
+    ),
+    Row::derived(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
+        let nc = constraints(f);
+        Declaration {
+            arguments: vec![Q, V, A, Argument::Given("lambda", 0, nc)],
+            shape: Shape::Array(3 * f.nv * f.nv + 3 * nc * f.nv),
+            ..Declaration::default()
+        }
+    })
+    .alone(),
+    Row::derived(Id::InputDerivatives, "__input_derivatives", CONSTRAINED, |f| Declaration {
+        arguments: vec![Q, V, U],
+        shape: Shape::Array(f.nv + 2 * f.nv * f.nv + f.nv * f.nu),
+        ..Declaration::default()
+    })
+    .alone(),
+];
+
+fn constraints(f: &Facts) -> usize {
+    f.constraints.map_or(0, |c| c.all)
+}
+
+fn forward(f: &Facts) -> Shape {
+    if f.calls { Shape::CalledForward(f.nv) } else { Shape::Forward(f.nv) }
+}

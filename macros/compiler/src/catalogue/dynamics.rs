@@ -1,0 +1,151 @@
+//! Functions of every mechanism.
+
+use super::Argument::{A, Q, Tau, U, V};
+use super::{Declaration, Id, Need, Row, Shape};
+
+const INERTIA: &[Need] = &[Need::Inertia];
+
+/// Equations of motion, energies and powers, and the mechanism as one body.
+pub const ROWS: &[Row] = &[
+    Row::derived(Id::Neutral, "neutral", &[], |f| Declaration {
+        timeless: true,
+        shape: Shape::Vector(f.nq),
+        docs: vec!["The configuration with all coordinates zero; identity quaternions."],
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Square(f.nv),
+        docs: vec![
+            match f.constraints.is_some_and(|c| c.determining) {
+                true => {
+                    "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular where coordinates have no inertia and follow from constraints."
+                }
+                false => "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
+            },
+            "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q]),
+    Row::derived(Id::BiasForces, "bias_forces", INERTIA, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations, N·m for rotations.",
+            "Recursive Newton–Euler algorithm without accelerations.",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V]),
+    Row::derived(Id::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
+        arguments: vec![Q, V, A],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+            "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V, A]),
+    Row::derived(Id::ForwardDynamics, "forward_dynamics", &[Need::Inertia, Need::NoConstraints], |f| Declaration {
+        arguments: vec![Q, V, Tau],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
+            "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V, Tau]),
+    Row::derived(Id::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
+        arguments: if f.velocity_inputs { vec![Q, V, U] } else { vec![Q, U] },
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "Generalized forces `τ` of the inputs `u`, by virtual work: N for translations, N·m for rotations.",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V, U]),
+    Row::derived(Id::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Scalar,
+        docs: vec![match f.time {
+            true => {
+                "Kinetic energy `T`, J. It is `½ vᵀ M v` only where nothing is driven: driven motion adds terms of first degree in `v` and of none."
+            }
+            false => "Kinetic energy `T = ½ vᵀ M(q) v`, J.",
+        }],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V]),
+    Row::derived(Id::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Scalar,
+        docs: vec!["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q]),
+    Row::derived(Id::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.nv),
+        docs: vec![match f.time {
+            true => {
+                "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M v` only where nothing is driven."
+            }
+            false => "Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.",
+        }],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V]),
+    Row::derived(Id::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "Rate of the generalized momentum without inputs, N for translations, N·m for rotations: `ṗ = momentum_rate(q, v) + τ`.",
+            "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
+        ],
+        ..Declaration::default()
+    })
+    .of_trait(&[Q, V]),
+    Row::derived(Id::DissipatedPower, "dissipated_power", INERTIA, |_| power(
+        vec![Q, V],
+        vec![
+            "Power that dashpots, friction and dissipation functions take out, W.",
+            "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − dissipated_power`.",
+        ],
+    )),
+    Row::derived(Id::ControlPower, "control_power", INERTIA, |_| {
+        power(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
+    }),
+    Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |_| power(
+        vec![Q, V],
+        vec!["Power of applied forces that are neither conservative nor dissipative nor inputs, W."],
+    )),
+    Row::derived(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
+        timeless: true,
+        shape: Shape::Scalar,
+        docs: vec!["Mass of everything that moves, kg."],
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Vector(3),
+        docs: vec!["Centre of mass of everything that moves, m, from the ground's origin in ground axes."],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::Momentum, "momentum", INERTIA, |_| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(6),
+        docs: vec![
+            "Momentum in ground axes: linear (kg·m/s), then angular about the centre of mass (kg·m²/s).",
+        ],
+        ..Declaration::default()
+    }),
+];
+
+fn power(arguments: Vec<super::Argument>, docs: Vec<&'static str>) -> Declaration {
+    Declaration { arguments, shape: Shape::Scalar, docs, ..Declaration::default() }
+}

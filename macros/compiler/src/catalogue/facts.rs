@@ -1,0 +1,165 @@
+//! What signatures depend on.
+
+use crate::model::Model;
+use crate::syntax::Requests;
+
+/// What a function needs of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Masses and inertias.
+    Inertia,
+    /// Loops, rolling or other constraints.
+    Constraints,
+    /// None of those.
+    NoConstraints,
+    /// The word `derivatives`.
+    Derivatives,
+    /// The word `centroidal`.
+    Centroidal,
+    /// The word `regressor`.
+    Regressor,
+    /// The word `sensitivities`.
+    Sensitivities,
+    /// The word `packed`.
+    Packed,
+    /// The word `prepare`.
+    Prepare,
+    /// The word `batch`.
+    Batch,
+    /// A mass matrix that can be inverted: constraints determine no coordinates without inertia.
+    RegularMass,
+    /// Contacts that slip.
+    Slipping,
+    /// Derivatives of forward dynamics by calls of other functions.
+    Calls,
+}
+
+impl Need {
+    /// All of them, those first that come before others as a reason.
+    pub const ALL: [Need; 13] = [
+        Need::Inertia,
+        Need::Derivatives,
+        Need::Centroidal,
+        Need::Regressor,
+        Need::Sensitivities,
+        Need::Packed,
+        Need::Prepare,
+        Need::Batch,
+        Need::NoConstraints,
+        Need::RegularMass,
+        Need::Constraints,
+        Need::Slipping,
+        Need::Calls,
+    ];
+
+    /// The trait of the runtime that says so. None for what only others call.
+    pub fn reason(self) -> Option<&'static str> {
+        Some(match self {
+            Need::Inertia => "HasInertia",
+            Need::Constraints => "HasConstraints",
+            Need::NoConstraints => "HasNoConstraints",
+            Need::Derivatives => "AsksForDerivatives",
+            Need::Centroidal => "AsksForCentroidal",
+            Need::Regressor => "AsksForRegressor",
+            Need::Sensitivities => "AsksForSensitivities",
+            Need::Packed => "AsksForPacked",
+            Need::Prepare => "AsksForPrepare",
+            Need::Batch => "AsksForBatch",
+            Need::RegularMass => "HasRegularMass",
+            Need::Slipping => "HasSlipping",
+            Need::Calls => return None,
+        })
+    }
+}
+
+/// What signatures of a mechanism depend on.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// `NQ`.
+    pub nq: usize,
+    /// `NV`.
+    pub nv: usize,
+    /// `NU`.
+    pub nu: usize,
+    /// Functions take time first.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
+    /// There are no dynamics.
+    pub kinematic: bool,
+    /// The words of the attribute.
+    pub requests: Requests,
+    /// Its constraints, if there are any.
+    pub constraints: Option<ConstraintFacts>,
+    /// The derivatives of forward dynamics call other functions.
+    pub calls: bool,
+    /// The linear system is made of them.
+    pub calls_linear: bool,
+    /// How many bodies have standard parameters.
+    pub bodies: usize,
+    /// How many base parameters there are.
+    pub base: usize,
+    /// How many parameters the struct has.
+    pub parameters: usize,
+    /// Row and column of the entries of the mass matrix in its lower triangle that are not always zero, column by column.
+    pub entries: Vec<(usize, usize)>,
+}
+
+/// What they depend on where there are constraints.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ConstraintFacts {
+    /// `NC`.
+    pub all: usize,
+    /// `NH`: how many are on configurations.
+    pub holonomic: usize,
+    /// How many belong to contacts that slip.
+    pub slipping: usize,
+    /// Some follow from others everywhere.
+    pub overdetermined: bool,
+    /// Some determine coordinates without inertia.
+    pub determining: bool,
+}
+
+impl Facts {
+    /// What a model says; counts that only the equations tell are left at zero.
+    pub fn of(model: &Model<'_>, requests: Requests) -> Facts {
+        let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
+            all: model.constraints.len(),
+            holonomic: model.holonomic(),
+            slipping: model.constraints.iter().filter(|c| !c.drags.is_empty()).count(),
+            overdetermined: model.is_overdetermined(),
+            determining: model.constraints.iter().any(|c| c.determines),
+        });
+        Facts {
+            nq: model.nq(),
+            nv: model.nv(),
+            nu: model.nu(),
+            time: model.time,
+            velocity_inputs: model.velocity_inputs,
+            kinematic: model.kinematic,
+            requests,
+            constraints,
+            parameters: model.parameters.len(),
+            ..Facts::default()
+        }
+    }
+
+    /// True if the mechanism has what is needed.
+    pub fn meet(&self, need: Need) -> bool {
+        match need {
+            Need::Inertia => !self.kinematic,
+            Need::Constraints => self.constraints.is_some(),
+            Need::NoConstraints => self.constraints.is_none(),
+            Need::Derivatives => self.requests.derivatives,
+            Need::Centroidal => self.requests.centroidal,
+            Need::Regressor => self.requests.regressor,
+            Need::Sensitivities => self.requests.sensitivities,
+            Need::Packed => self.requests.packed,
+            Need::Prepare => self.requests.prepare,
+            Need::Batch => self.requests.batch,
+            Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
+            Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
+            Need::Calls => self.calls,
+        }
+    }
+}

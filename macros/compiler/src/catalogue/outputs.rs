@@ -1,0 +1,59 @@
+//! The functions of a mechanism's outputs.
+
+use super::Argument::{A, Q, T, U, V};
+use super::{Argument, Declared, Facts, Id, Shape};
+use crate::model::Uses;
+
+/// What the hidden function of a reaction's output is called, after which the output is.
+pub const REACTION: &str = "__reaction_";
+
+/// What stands after an output's name in that of its Jacobian.
+pub const JACOBIAN: &str = "_jacobian";
+
+fn of_size(size: usize) -> Shape {
+    if size == 1 { Shape::Scalar } else { Shape::Vector(size) }
+}
+
+fn declared(
+    id: Id,
+    name: String,
+    arguments: &[Argument],
+    shape: Shape,
+    docs: Vec<String>,
+    f: &Facts,
+) -> Declared {
+    let arguments = f.time.then_some(T).into_iter().chain(arguments.iter().copied()).collect();
+    Declared { id, name, docs, arguments, shape }
+}
+
+/// The function of an output, and its Jacobian unless it depends on accelerations.
+pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
+    let mut arguments = vec![Q];
+    arguments.extend((uses.velocities || uses.accelerations).then_some(V));
+    arguments.extend(uses.accelerations.then_some(A));
+    arguments.extend(uses.inputs.then_some(U));
+    let about = match uses.accelerations {
+        true => format!("The output `{name}`, of given accelerations. It has no Jacobian yet."),
+        false => format!("The output `{name}`."),
+    };
+    let mut functions =
+        vec![declared(Id::Output, name.to_string(), &arguments, of_size(size), vec![about], f)];
+    if !uses.accelerations {
+        let what = match uses.velocities {
+            true => "it changes with the velocities",
+            false => "its rate is this times `v`",
+        };
+        let docs = vec![format!("Jacobian of the output `{name}`: {what}.")];
+        let shape = Shape::Matrix(size, f.nv);
+        functions.push(declared(Id::OutputJacobian, format!("{name}{JACOBIAN}"), &arguments, shape, docs, f));
+    }
+    functions
+}
+
+/// The hidden function of an output that names reactions: of the motion, its accelerations and its multipliers.
+pub fn reaction(name: &str, size: usize, f: &Facts) -> Declared {
+    let mut arguments = vec![Q, V, A];
+    arguments.extend((f.nu > 0).then_some(U));
+    arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
+    declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
+}

@@ -1,0 +1,116 @@
+//! The functions of the words `centroidal`, `regressor`, `sensitivities` and `packed`.
+
+use super::Argument::{A, Q, Tau, V};
+use super::{Argument, Declaration, Id, Need, Row, Shape};
+
+/// How many numbers the mass properties of a body are.
+const STANDARD: usize = 10;
+
+const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Centroidal];
+const REGRESSOR: &[Need] = &[Need::Inertia, Need::Regressor];
+const PACKED: &[Need] = &[Need::Inertia, Need::Packed];
+
+/// The functions of the word `centroidal`.
+pub const CENTROIDAL: &[Row] = &[
+    Row::derived(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
+        Declaration {
+            arguments: vec![Q],
+            shape: Shape::Matrix(6, f.nv),
+            docs: vec![
+                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part first, then angular about the centre of mass, in ground axes. Of a mechanism that is driven in time, the part that the velocities contribute.",
+                "kg and kg·m for translations, kg·m and kg·m² for rotations (Orin, Goswami and Lee, *Centroidal dynamics of a humanoid robot*, 2013).",
+            ],
+            ..Declaration::default()
+        }
+    }),
+    Row::derived(Id::CentroidalMomentumBias, "centroidal_momentum_bias", CENTROIDAL_ASKED, |_| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(6),
+        docs: vec![
+            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) where all accelerations are zero, so that it is `A v̇ + Ȧ v` in every motion.",
+        ],
+        ..Declaration::default()
+    }),
+];
+
+/// The functions of the words `regressor`, `sensitivities` and `packed`.
+pub const ROWS: &[Row] = &[
+    Row::derived(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
+        arguments: vec![Q, V, A],
+        shape: Shape::Matrix(f.nv, STANDARD * f.bodies),
+        docs: vec![
+            "Regressor `Y(q, v, a)`: without springs, friction and other elements, [`inverse_dynamics`](Self::inverse_dynamics) is `Y π`, with the [`standard_parameters`](Self::standard_parameters) `π`.",
+            "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* (1986); columns as in Pinocchio.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::StandardParameters, "standard_parameters", REGRESSOR, |f| Declaration {
+        timeless: true,
+        shape: Shape::Vector(STANDARD * f.bodies),
+        docs: vec![
+            "The mass properties `π`: for every one of `BODIES`, with all that is fixed to it, its mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) about the body's origin in its axes.",
+        ],
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
+        arguments: vec![Q, V, A],
+        shape: Shape::Matrix(f.nv, f.base),
+        docs: vec![
+            "The regressor of the base parameters, whose columns are linearly independent: `base_regressor(q, v, a) · base_parameters(π)` is `joint_torque_regressor(q, v, a) · π` for every `π`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::BaseParameters, "base_parameters", REGRESSOR, |f| Declaration {
+        timeless: true,
+        arguments: vec![Argument::Standard(STANDARD * f.bodies)],
+        shape: Shape::Vector(f.base),
+        docs: vec![
+            "The base parameters of given standard parameters: the fewest linear combinations by which mass properties act on the motion, all that can be identified from it.",
+            "What a joint's motion neither changes nor sets moving is moved to the parent (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial robots*, 1990); what then still depends on others is found in numbers. Where the geometry has parameters, combinations whose factors depend on them beyond those rules are left apart.",
+        ],
+    }),
+    Row::derived(
+        Id::InverseDynamicsByParameters,
+        "inverse_dynamics_by_parameters",
+        &[Need::Inertia, Need::Sensitivities],
+        |f| Declaration {
+            arguments: vec![Q, V, A],
+            shape: Shape::Matrix(f.nv, f.parameters),
+            docs: vec![
+                "`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+            ],
+            ..Declaration::default()
+        },
+    ),
+    Row::derived(
+        Id::ForwardDynamicsByParameters,
+        "forward_dynamics_by_parameters",
+        &[Need::Inertia, Need::Sensitivities, Need::NoConstraints],
+        |f| Declaration {
+            arguments: vec![Q, V, Tau],
+            shape: Shape::Matrix(f.nv, f.parameters),
+            docs: vec![
+                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+                "`∂v̇/∂p = −M⁻¹ ∂τ/∂p` at `a = v̇`.",
+            ],
+            ..Declaration::default()
+        },
+    ),
+    Row::derived(Id::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Vector(f.entries.len()),
+        docs: vec![
+            "The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: entry `k` stands at `MASS_MATRIX_ENTRIES[k]`, row first.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::MassMatrixInto, "mass_matrix_into", PACKED, |f| Declaration {
+        arguments: vec![Q, Argument::Into("m", f.nv)],
+        shape: Shape::Symmetric(f.nv),
+        docs: vec![
+            "Puts the [`mass_matrix`](Self::mass_matrix) into `m`, `NV` by `NV`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too.",
+        ],
+        ..Declaration::default()
+    }),
+];

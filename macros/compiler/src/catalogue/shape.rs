@@ -1,0 +1,150 @@
+//! Arguments and results.
+
+/// An argument of a generated function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Time `t`.
+    T,
+    /// Configuration `q`.
+    Q,
+    /// Velocity `v`.
+    V,
+    /// Acceleration `a`.
+    A,
+    /// Generalized force `tau`.
+    Tau,
+    /// Inputs `u`.
+    U,
+    /// Given numbers: name of the argument, index of the first, how many.
+    Given(&'static str, usize, usize),
+    /// Parameters of mass properties, so many given numbers in a vector.
+    Standard(usize),
+    /// A square matrix of so many rows that a result goes into.
+    Into(&'static str, usize),
+}
+
+impl Argument {
+    /// The name in the signature.
+    pub fn name(self) -> &'static str {
+        match self {
+            Argument::T => "t",
+            Argument::Q => "q",
+            Argument::V => "v",
+            Argument::A => "a",
+            Argument::Tau => "tau",
+            Argument::U => "u",
+            Argument::Given(name, ..) | Argument::Into(name, _) => name,
+            Argument::Standard(_) => "standard",
+        }
+    }
+}
+
+/// The result of a generated function, and how it is put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A number.
+    Scalar,
+    /// A column vector.
+    Vector(usize),
+    /// A square matrix; the outputs are its columns one after another.
+    Square(usize),
+    /// A matrix; the outputs are its columns one after another.
+    Matrix(usize, usize),
+    /// Two square matrices.
+    Pair(usize),
+    /// `M⁻¹`. The outputs are what [`Parted`] says.
+    Inverse(usize),
+    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
+    /// themselves, and those of `Inverse`.
+    Forward(usize),
+    /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
+    /// what turns displacements.
+    Linear(usize, usize),
+    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
+    /// where the inverse is divided, and those of `Inverse`.
+    Accelerated(usize),
+    /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
+    CalledForward(usize),
+    /// The same as `Linear`, from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
+    /// derivatives by `q`, `v` and the inputs, and what turns displacements.
+    CalledLinear(usize, usize),
+    /// A plain array.
+    Array(usize),
+    /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
+    Symmetric(usize),
+}
+
+impl Default for Shape {
+    /// Nothing.
+    fn default() -> Shape {
+        Shape::Array(0)
+    }
+}
+
+impl Shape {
+    /// True for what is composed of other functions' results.
+    pub fn calls(self) -> bool {
+        matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
+    }
+
+    /// How many outputs a program must have for this result.
+    pub fn outputs(self, structure: &Structure) -> usize {
+        let parts = |n: usize| n * structure.inverse.width();
+        match self {
+            Shape::Scalar => 1,
+            Shape::Vector(n) | Shape::Array(n) => n,
+            Shape::Square(n) => n * n,
+            Shape::Matrix(m, n) => m * n,
+            Shape::Pair(n) => 2 * n * n,
+            Shape::Inverse(n) => n * n + parts(n),
+            Shape::Forward(n) => 3 * n * n + parts(n),
+            Shape::Linear(n, m) => 4 * n * n + parts(n) + n * m,
+            Shape::Accelerated(n) => n + n * n + parts(n),
+            Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
+            Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
+            Shape::Symmetric(_) => structure.entries.len(),
+        }
+    }
+}
+
+/// How the outputs make the inverse of a mass matrix.
+#[derive(Clone, Debug, Default)]
+pub enum Parted {
+    /// They are its columns.
+    #[default]
+    Whole,
+    /// After the columns comes for each velocity a row of factors, in the order of these velocities of the trunk, whose product
+    /// with their columns is added.
+    Trunk(Vec<usize>),
+    /// After columns, of which those of limbs are the inverses of their blocks, comes for each velocity a row with its entries of
+    /// the mass matrix in the rows of the trunk.
+    Divided {
+        /// Velocities of the trunk, in the order of the entries.
+        trunk: Vec<usize>,
+        /// Those of each limb, in their order.
+        limbs: Vec<Vec<usize>>,
+    },
+}
+
+impl Parted {
+    /// How many numbers come for each velocity after the columns.
+    fn width(&self) -> usize {
+        match self {
+            Parted::Whole => 0,
+            Parted::Trunk(trunk) | Parted::Divided { trunk, .. } => trunk.len(),
+        }
+    }
+}
+
+/// What is known of the matrices of a function.
+#[derive(Clone, Debug, Default)]
+pub struct Structure {
+    /// In which parts the inverse of the mass matrix is.
+    pub inverse: Parted,
+    /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
+    pub entries: Vec<(usize, usize)>,
+    /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
+    pub zeros: Vec<bool>,
+    /// The columns of `∂v̇/∂q` and of `∂v̇/∂v` that are outputs themselves, not those of forces.
+    pub known: [Vec<usize>; 2],
+}

@@ -1,0 +1,34 @@
+//! Functions that are written as they are: they call others and the runtime.
+
+use super::{Need, Row};
+
+const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
+
+/// Constrained dynamics, assembly and projection.
+pub const CONSTRAINED: &[Row] = &[
+    Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
+    Row::written("forward_dynamics_derivatives", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
+    Row::written("linearize", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
+    Row::written("assemble", SOLVED),
+    Row::written("complete_velocity", SOLVED),
+    Row::written("constrained_dynamics", SOLVED),
+    Row::written("constraint_correction", SOLVED),
+    Row::written("__constraint_solution", SOLVED),
+    Row::written("project_configuration", SOLVED),
+    Row::written("project_velocity", SOLVED),
+    Row::written("try_constrained_dynamics", &[Need::Constraints, Need::Inertia, Need::Slipping]),
+];
+
+/// The configuration space, frames, and the prepared mechanism.
+pub const ROWS: &[Row] = &[
+    Row::written("difference", &[]).and_batched(),
+    Row::written("integrate", &[]).and_batched(),
+    Row::written("tangent_rate", &[]).and_batched(),
+    Row::written("frame_acceleration", &[]),
+    Row::written("frame_index", &[]),
+    Row::written("frame_jacobian", &[]),
+    Row::written("frame_placement", &[]),
+    Row::written("frame_placements", &[]),
+    Row::written("frame_velocity", &[]),
+    Row::written("prepare", &[Need::Inertia, Need::Prepare]),
+];

@@ -1,0 +1,179 @@
+//! From the rows of the catalogue to programs: each function's equations, by its id.
+
+use super::derivatives::Derivatives;
+use super::dynamics::Dynamics;
+use super::output::Function;
+use super::regressor::Identification;
+use super::sensitivities::Sensitivities;
+use super::{Stage, constraints, outputs};
+use crate::catalogue::{Declared, Facts, Id, Structure};
+use crate::expr::Expr;
+use crate::lower::Program;
+use crate::mechanics::{Joint, energy, forces, power};
+use crate::model::{Chart, Model};
+use crate::passes::Passes;
+use std::cell::OnceCell;
+
+/// The functions of a mechanism, derived when they are asked for; what several of them need is derived once.
+pub(super) struct Derivation<'a, 'g> {
+    model: &'a Model<'g>,
+    joints: &'a [Joint<'g>],
+    passes: Passes,
+    stage: Stage,
+    facts: &'a Facts,
+    /// For the word `regressor`.
+    identification: Option<&'a Identification<'a, 'g>>,
+    /// For the word `derivatives`.
+    derivatives: Option<&'a Derivatives<'a, 'g>>,
+    dynamics: OnceCell<Dynamics<'g>>,
+    sensitivities: OnceCell<Sensitivities<'g>>,
+}
+
+impl<'a, 'g> Derivation<'a, 'g> {
+    pub(super) fn new(
+        model: &'a Model<'g>,
+        joints: &'a [Joint<'g>],
+        passes: Passes,
+        stage: Stage,
+        facts: &'a Facts,
+    ) -> Derivation<'a, 'g> {
+        let (dynamics, sensitivities) = (OnceCell::new(), OnceCell::new());
+        let (identification, derivatives) = (None, None);
+        Derivation {
+            model,
+            joints,
+            passes,
+            stage,
+            facts,
+            identification,
+            derivatives,
+            dynamics,
+            sensitivities,
+        }
+    }
+
+    /// The same with what the functions of some words need; what was derived already is kept.
+    pub(super) fn with<'b>(
+        self,
+        facts: &'b Facts,
+        identification: Option<&'b Identification<'b, 'g>>,
+        derivatives: Option<&'b Derivatives<'b, 'g>>,
+    ) -> Derivation<'b, 'g>
+    where
+        'a: 'b,
+    {
+        Derivation { facts, identification, derivatives, ..self }
+    }
+
+    /// The functions that are declared, after those that are `done`: some consist of the same numbers as others.
+    pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
+        for declared in declared {
+            let (program, structure) = self.program(&declared, &done);
+            done.push(Function::new(declared, program, structure));
+        }
+        done
+    }
+
+    fn dynamics(&self) -> &Dynamics<'g> {
+        self.dynamics.get_or_init(|| Dynamics::new(self.model, self.passes, self.stage))
+    }
+
+    fn sensitivities(&self) -> &Sensitivities<'g> {
+        self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.stage))
+    }
+
+    /// A function of the word `derivatives`, which is given where one is declared.
+    fn derivatives(
+        &self,
+        function: impl FnOnce(&Derivatives<'a, 'g>) -> (Program, Structure),
+    ) -> (Program, Structure) {
+        self.derivatives.map(function).unwrap_or_default()
+    }
+
+    /// What a function of the word `regressor` gives; the word is given where one is declared.
+    fn identified(&self, outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.identification.map(outputs).unwrap_or_default()
+    }
+
+    fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
+        let plain = |program: Program| (program, Structure::default());
+        let of = |outputs: &[Expr<'g>]| plain(self.stage.program(outputs));
+        let (model, joints) = (self.model, self.joints);
+        let known = |id: Id| done.iter().find(|f| f.id == id);
+        match declared.id {
+            Id::Neutral => of(&neutral(model)),
+            Id::GeneralizedForces => of(&forces::generalized_forces(model, joints)),
+            Id::DissipatedPower => of(&[power::dissipated(model)]),
+            Id::ControlPower => of(&[power::control(model, joints)]),
+            Id::DisturbancePower => of(&[power::disturbance(model)]),
+            Id::TotalMass => of(&[energy::mass_and_moment(model, joints).0]),
+            Id::MassMatrix => plain(self.dynamics().mass_matrix()),
+            Id::InverseDynamics => plain(self.dynamics().inverse_dynamics()),
+            Id::BiasForces => plain(self.dynamics().bias_forces()),
+            Id::ForwardDynamics => plain(self.dynamics().forward_dynamics()),
+            Id::KineticEnergy => plain(self.dynamics().kinetic_energy()),
+            Id::PotentialEnergy => plain(self.dynamics().potential_energy()),
+            Id::GeneralizedMomentum => plain(self.dynamics().generalized_momentum()),
+            Id::MomentumRate => plain(self.dynamics().momentum_rate()),
+            Id::CenterOfMass => plain(self.dynamics().center_of_mass()),
+            Id::Momentum => plain(self.dynamics().momentum()),
+            Id::CentroidalMomentumMatrix => plain(self.dynamics().centroidal_momentum_matrix()),
+            Id::CentroidalMomentumBias => plain(self.dynamics().centroidal_momentum_bias()),
+            Id::ConstraintResiduals => of(&constraints::residuals(model)),
+            Id::ConstraintRates => of(&constraints::rates(model)),
+            Id::ConstraintJacobian => of(&constraints::jacobian(model)),
+            Id::ConstraintBias => of(&constraints::biases(model)),
+            Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
+            Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
+            Id::SlippingResponse => plain(self.dynamics().slipping_response()),
+            Id::Output | Id::OutputJacobian | Id::Reaction => of(&outputs::values(model, declared)),
+            Id::MassMatrixInverse => self.derivatives(Derivatives::mass_matrix_inverse),
+            Id::CoriolisMatrix => self.derivatives(|d| plain(d.coriolis_matrix())),
+            Id::InverseDynamicsDerivatives => self.derivatives(|d| plain(d.inverse_dynamics_derivatives())),
+            Id::ForwardDynamicsDerivatives => {
+                self.derivatives(|d| d.forward_dynamics_derivatives(known(Id::InverseDynamicsDerivatives)))
+            }
+            Id::Linearize => self.derivatives(|d| plain(d.linearize())),
+            Id::AccelerationsAndInverse => self.derivatives(Derivatives::accelerations_and_inverse),
+            Id::MotionDerivatives => self.derivatives(|d| plain(d.motion_derivatives())),
+            Id::InputDerivatives => self.derivatives(|d| plain(d.input_derivatives())),
+            Id::InverseDynamicsDerivativesInto => as_of(known(Id::InverseDynamicsDerivatives)),
+            Id::ForwardDynamicsDerivativesInto => as_of(known(Id::ForwardDynamicsDerivatives)),
+            Id::JointTorqueRegressor => of(&self.identified(|i| i.joint_torque_regressor(joints))),
+            Id::StandardParameters => of(&self.identified(Identification::standard_parameters)),
+            Id::BaseRegressor => of(&self.identified(Identification::base_regressor)),
+            Id::BaseParameters => of(&self.identified(Identification::base_parameters)),
+            Id::InverseDynamicsByParameters => plain(self.sensitivities().inverse_dynamics()),
+            Id::ForwardDynamicsByParameters => plain(self.sensitivities().forward_dynamics()),
+            Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
+            Id::Part => plain(Program::default()),
+        }
+    }
+
+    /// The entries of the mass matrix that are not always zero.
+    fn packed(&self, id: Id) -> (Program, Structure) {
+        let entries = &self.facts.entries;
+        let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
+        let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };
+        (self.dynamics().mass_matrix().with_outputs(&at), Structure { entries, ..Structure::default() })
+    }
+}
+
+/// The numbers of another function.
+fn as_of(other: Option<&Function>) -> (Program, Structure) {
+    other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
+}
+
+/// All coordinates zero, with identity quaternions.
+fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    let mut q = vec![g.zero(); model.nq()];
+    for chart in &model.charts {
+        match chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(k, _) => q[*k + 3] = g.one(),
+            Chart::Free(k, _) => q[*k + 6] = g.one(),
+        }
+    }
+    q
+}

@@ -1,0 +1,208 @@
+//! What is derived: everything that emission writes.
+
+use crate::catalogue::{Argument, Declared, Id, Shape, Structure};
+use crate::expr::print::Written;
+use crate::lower::Program;
+use crate::model::Chart;
+
+/// A generated function.
+#[derive(Clone)]
+pub struct Function {
+    /// Which it is.
+    pub id: Id,
+    /// Its name.
+    pub name: String,
+    /// Documentation, a paragraph each; none for a hidden function.
+    pub docs: Vec<String>,
+    /// Arguments after `&self`.
+    pub arguments: Vec<Argument>,
+    /// Result.
+    pub shape: Shape,
+    /// What it computes.
+    pub program: Program,
+    /// What is known of its matrices.
+    pub structure: Structure,
+}
+
+impl Function {
+    /// A function with its program and with what is known of its matrices.
+    pub fn new(declared: Declared, program: Program, structure: Structure) -> Function {
+        let Declared { id, name, docs, arguments, shape } = declared;
+        Function { id, name, docs, arguments, shape, program, structure }
+    }
+
+    /// A function of a mechanism with a mistake, which does nothing.
+    pub fn stub(declared: Declared) -> Function {
+        Function::new(declared, Program::default(), Structure::default())
+    }
+
+    /// A hidden part of what is written as it is.
+    pub fn part(name: String, arguments: Vec<Argument>, length: usize, program: Program) -> Function {
+        let shape = Shape::Array(length);
+        Function {
+            id: Id::Part,
+            name,
+            docs: Vec::new(),
+            arguments,
+            shape,
+            program,
+            structure: Structure::default(),
+        }
+    }
+
+    /// True for a function that only others call.
+    pub fn is_hidden(&self) -> bool {
+        self.docs.is_empty()
+    }
+
+    /// True if its program, and the one in lanes, has as many outputs as the result takes.
+    fn is_whole(&self) -> bool {
+        let expected = self.shape.outputs(&self.structure);
+        let programs = [Some(&self.program), self.program.in_lanes.as_deref()];
+        programs.into_iter().flatten().all(|program| program.outputs.len() == expected)
+    }
+}
+
+/// Everything that is derived from a model.
+pub struct Output {
+    /// The generated functions.
+    pub functions: Vec<Function>,
+    /// Steps of the links.
+    pub links: Vec<LinkSteps>,
+    /// Steps of the frames.
+    pub frames: Vec<FrameSteps>,
+    /// First entries in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
+    pub charts: Vec<Chart>,
+    /// The equations of motion for reading; empty for large mechanisms.
+    pub equations: Written,
+    /// The functions of numbers that are computed before, if they were asked for.
+    pub prepared: Option<Prepared>,
+    /// Further constants.
+    pub constants: Vec<Constant>,
+}
+
+impl Output {
+    /// All functions, those of the prepared mechanism included.
+    pub fn all_functions(&self) -> impl Iterator<Item = &Function> {
+        self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
+    }
+
+    /// The name of a function whose program does not fit its result: a mistake of the compiler's, which would make wrong code.
+    pub fn misfit(&self) -> Option<&str> {
+        let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());
+        let link = self.links.iter().any(|l| !l.is_whole()).then_some("the steps of a link");
+        let frame = self.frames.iter().find(|f| !f.is_whole()).map(|f| f.name.as_str());
+        function.or(link).or(frame)
+    }
+}
+
+/// The functions of the word `prepare`.
+pub struct Prepared {
+    /// The numbers, of the parameters.
+    pub numbers: Program,
+    /// Functions of the state and the numbers.
+    pub functions: Vec<Function>,
+}
+
+/// Numbers of a placement: a rotation matrix column by column, and a position.
+pub const PLACEMENT: usize = 12;
+/// Numbers of a twist, or of its rate.
+pub const TWIST: usize = 6;
+
+/// The steps of one link.
+pub struct LinkSteps {
+    /// Parent link.
+    pub parent: Option<usize>,
+    /// Entries of `v` of its degrees of freedom.
+    pub velocities: Vec<usize>,
+    /// Its motion subspace depends on the configuration.
+    pub driven: bool,
+    /// Placement from the parent's.
+    pub placement: Program,
+    /// Twist from the parent's.
+    pub twist: Program,
+    /// Acceleration from the parent's twist and acceleration.
+    pub acceleration: Program,
+    /// Columns of a Jacobian from the link's placement and the frame's position.
+    pub columns: Program,
+}
+
+impl LinkSteps {
+    fn is_whole(&self) -> bool {
+        [&self.placement, &self.twist, &self.acceleration, &self.columns]
+            .map(|program| program.outputs.len())
+            .eq(&[PLACEMENT, TWIST, TWIST, TWIST * self.velocities.len()])
+    }
+}
+
+/// The steps of one frame on its link.
+pub struct FrameSteps {
+    /// Its name.
+    pub name: String,
+    /// The link that carries it.
+    pub link: Option<usize>,
+    /// True if the frame is the link's own.
+    pub is_link: bool,
+    /// Placement from the link's.
+    pub placement: Program,
+    /// Twist in ground axes from the link's placement and twist.
+    pub twist: Program,
+    /// Acceleration in ground axes from the link's placement, twist and acceleration.
+    pub acceleration: Program,
+}
+
+impl FrameSteps {
+    fn is_whole(&self) -> bool {
+        [&self.placement, &self.twist, &self.acceleration].map(|program| program.outputs.len())
+            == [PLACEMENT, TWIST, TWIST]
+    }
+}
+
+/// An associated constant: a list.
+pub struct Constant {
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub docs: &'static str,
+    /// The type of an item.
+    pub item: &'static str,
+    /// The items as they are written.
+    pub list: Vec<String>,
+}
+
+impl Constant {
+    fn strings(name: &'static str, docs: &'static str, list: &[String]) -> Constant {
+        Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
+    }
+
+    /// The lists of names that go with the word `regressor`.
+    pub fn regressor(bodies: &[String], base: &[String]) -> Vec<Constant> {
+        vec![
+            Constant::strings(
+                "BODIES",
+                "Name of the body that every ten standard parameters belong to, with all that is fixed to it.",
+                bodies,
+            ),
+            Constant::strings(
+                "BASE_PARAMETERS",
+                "Name of every base parameter: the parameter of a link, about the frame of its joint, that stands for the combination.",
+                base,
+            ),
+        ]
+    }
+
+    /// Where the entries stand that the word `packed` gives.
+    pub fn entries(list: &[(usize, usize)]) -> Constant {
+        Constant {
+            name: "MASS_MATRIX_ENTRIES",
+            docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass matrix without what is always zero.",
+            item: "(usize, usize)",
+            list: list.iter().map(|entry| format!("{entry:?}")).collect(),
+        }
+    }
+
+    /// The names of the parameters.
+    pub fn parameters(list: &[String]) -> Constant {
+        Constant::strings("PARAMETERS", "Name of every parameter of the struct.", list)
+    }
+}

@@ -1,0 +1,63 @@
+//! Outputs: their functions, their Jacobians, and reactions.
+
+use crate::catalogue::{self, Declared, Facts, Id, JACOBIAN, REACTION};
+use crate::expr::Expr;
+use crate::expr::diff::Derivative;
+use crate::mechanics::reactions;
+use crate::model::kinematics::{symbols_in, time_derivative};
+use crate::model::{Model, OutputValue, Quantity, Uses};
+
+/// The functions of all outputs, in order. Without dynamics there are no reactions.
+pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
+    let functions = |output: &OutputValue<'_>| {
+        let size = output.values.len();
+        match (reactions::names_one(&output.values), facts.kinematic) {
+            (true, true) => Vec::new(),
+            (true, false) => vec![catalogue::reaction(&output.name, size, facts)],
+            (false, _) => catalogue::output(&output.name, size, uses(output), facts),
+        }
+    };
+    model.outputs.iter().flat_map(functions).collect()
+}
+
+fn uses(output: &OutputValue<'_>) -> Uses {
+    let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
+    let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+    Uses {
+        velocities: has(|q| matches!(q, Quantity::Velocity(_))),
+        accelerations: has(|q| matches!(q, Quantity::Acceleration(_))),
+        inputs: has(|q| matches!(q, Quantity::Input(_))),
+    }
+}
+
+/// What one of these functions gives.
+pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
+    let name = match declared.id {
+        Id::Reaction => declared.name.strip_prefix(REACTION),
+        Id::OutputJacobian => declared.name.strip_suffix(JACOBIAN),
+        _ => Some(declared.name.as_str()),
+    };
+    let Some(output) = model.outputs.iter().find(|output| Some(output.name.as_str()) == name) else {
+        return Vec::new();
+    };
+    match declared.id {
+        Id::Reaction => reactions::resolved(model, &output.values),
+        Id::OutputJacobian => jacobian(model, output),
+        _ => output.values.clone(),
+    }
+}
+
+/// The Jacobian column by column: how an output changes with the velocities, or how its rate does if it depends on the
+/// configuration alone.
+fn jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
+    let rates: Vec<Expr<'g>> = match uses(output).velocities {
+        true => output.values.clone(),
+        false => output.values.iter().map(|e| time_derivative(model.space(), *e)).collect(),
+    };
+    let mut entries = Vec::new();
+    for k in 0..model.nv() {
+        let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
+        entries.extend(rates.iter().map(|e| d.of(*e)));
+    }
+    entries
+}
