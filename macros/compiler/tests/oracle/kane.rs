@@ -4,9 +4,9 @@
 //! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and 5). Nothing here is the compiler's.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
-    transposed, turned,
+    C, Jet, Matrix, Vector, difference, dot, identity, product, real, rotation, scaled, still, sum, turned,
 };
+use crate::motion::{Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, turning, velocity};
 use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
 use std::array::from_fn;
 
@@ -26,22 +26,6 @@ impl State {
     }
 }
 
-/// A rigid pose.
-#[derive(Clone, Copy)]
-struct Pose {
-    r: Matrix,
-    p: Vector,
-}
-
-/// Something with mass.
-struct Piece {
-    mass: f64,
-    /// Inertia about the centre of mass in its own axes.
-    inertia: [[f64; 3]; 3],
-    r: Matrix,
-    p: Vector,
-}
-
 /// Everything that moves, at one state.
 struct World {
     poses: Vec<Pose>,
@@ -58,61 +42,8 @@ fn turns(list: &[(usize, f64)]) -> Matrix {
     })
 }
 
-fn compose(a: &Pose, b: &Pose) -> Pose {
-    Pose { r: product(&a.r, &b.r), p: sum(a.p, turned(&a.r, b.p)) }
-}
-
 fn of_place(place: &Place) -> Pose {
     Pose { r: turns(&place.turns), p: still(place.at) }
-}
-
-fn inverse(pose: &Pose) -> Pose {
-    let r = transposed(&pose.r);
-    Pose { r, p: turned(&r, pose.p).map(|x| -x) }
-}
-
-/// The rotation matrix of a quaternion x y z w.
-fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
-    let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
-    let two = real(2.0);
-    let one = real(1.0);
-    [
-        [one - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w)],
-        [two * (x * y + z * w), one - two * (x * x + z * z), two * (y * z - x * w)],
-        [two * (x * z - y * w), two * (y * z + x * w), one - two * (x * x + y * y)],
-    ]
-}
-
-/// `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that turns with the body's angular velocity.
-fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
-    let r0 = of_quaternion(q);
-    let skew = |w: [C; 3]| {
-        let o = real(0.0);
-        [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
-    };
-    let (k, l) = (skew(w), skew(rate));
-    from_fn(|i| {
-        from_fn(|j| {
-            let first: C = (0..3).map(|m| r0[i][m] * k[m][j]).sum();
-            let second: C = (0..3)
-                .map(|m| {
-                    let square: C = (0..3).map(|n| k[m][n] * k[n][j]).sum();
-                    r0[i][m] * (l[m][j] + square)
-                })
-                .sum();
-            Jet([r0[i][j], first, second * 0.5])
-        })
-    })
-}
-
-/// A position that moves with a velocity in carried axes.
-fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
-    let spin = cross(w, v);
-    from_fn(|i| {
-        let first: C = (0..3).map(|j| r[i][j].0[0] * v[j]).sum();
-        let second: C = (0..3).map(|j| r[i][j].0[0] * (rate[j] + spin[j])).sum();
-        Jet([p[i], first, second * 0.5])
-    })
 }
 
 /// The motion of a joint: its own pose, and the coordinates that elements act on.
@@ -162,7 +93,7 @@ fn world(spec: &Spec, state: &State) -> World {
         let (motion, coordinates) =
             joint_pose(body, &state.q[q0..q0 + nq], &state.v[v0..v0 + nv], &state.a[v0..v0 + nv]);
         (q0, v0) = (q0 + nq, v0 + nv);
-        let parent = body.parent.map_or(Pose { r: identity(), p: still([0.0; 3]) }, |k| world.poses[k]);
+        let parent = body.parent.map_or(Pose::identity(), |k| world.poses[k]);
         let carried = compose(&compose(&parent, &of_place(&body.on_parent)), &motion);
         let pose = compose(&carried, &inverse(&of_place(&body.on_child)));
         world.pieces.push(Piece {
@@ -198,17 +129,6 @@ fn inertia(body: &Body) -> [[f64; 3]; 3] {
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
 }
 
-/// Angular velocity and acceleration of an orientation, in ground axes: from `R' Rᵀ` and its rate.
-fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
-    let part = |order: (usize, usize), i: usize, j: usize| -> C {
-        (0..3).map(|k| r[i][k].0[order.0] * r[j][k].0[order.1]).sum()
-    };
-    // The coefficient of t² is half of the second derivative.
-    let w = |i: usize, j: usize| part((1, 0), i, j);
-    let d = |i: usize, j: usize| part((2, 0), i, j) * 2.0 + part((1, 1), i, j);
-    ([w(2, 1), w(0, 2), w(1, 0)], [d(2, 1), d(0, 2), d(1, 0)])
-}
-
 fn point(world: &World, end: &End) -> Vector {
     match end.body {
         None => still(end.at),
@@ -242,30 +162,11 @@ pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
         .collect()
 }
 
-fn velocity(p: Vector) -> [C; 3] {
-    p.map(Jet::rate)
-}
-
-fn complex_dot(a: [C; 3], b: [C; 3]) -> C {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// One of Kane's equations: of the speed by which `partial` moves.
 fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
     let mut tau = real(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
-        let force: [C; 3] = from_fn(|i| (piece.p[i].second_rate() - spec.gravity[i]) * piece.mass);
-        tau += complex_dot(force, velocity(moved.p));
-        let (w, alpha) = spin(&piece.r);
-        let r: [[C; 3]; 3] = from_fn(|i| from_fn(|j| piece.r[i][j].0[0]));
-        let turned_inertia = |x: [C; 3]| -> [C; 3] {
-            let own: [C; 3] = from_fn(|i| (0..3).map(|j| r[j][i] * x[j]).sum());
-            let product: [C; 3] = from_fn(|i| (0..3).map(|j| own[j] * piece.inertia[i][j]).sum());
-            from_fn(|i| (0..3).map(|j| r[i][j] * product[j]).sum())
-        };
-        let (first, second) = (turned_inertia(alpha), cross(w, turned_inertia(w)));
-        let torque: [C; 3] = from_fn(|i| first[i] + second[i]);
-        tau += complex_dot(torque, spin(&moved.r).0);
+        tau += piece.inertial_force(moved, spec.gravity);
     }
     for element in &spec.elements {
         tau += match element {

@@ -1,12 +1,15 @@
 //! An oracle that shares nothing with the compiler: Kane's equations of random mechanisms in numbers, by Taylor series in
 //! time and imaginary steps, against what the generated programs compute. Trees of every joint, with every base, with
 //! springs, dashpots and inerters between bodies and the ground; alike limbs; masses over many powers of ten; angles that
-//! miss those of a plain machine by rounding.
+//! miss those of a plain machine by rounding. Random URDF files with joints of every type, by the same motions.
 
+mod files;
 mod jet;
 mod kane;
+mod motion;
 mod programs;
 mod random;
+mod robot;
 mod spec;
 mod words;
 

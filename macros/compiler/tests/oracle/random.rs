@@ -18,4 +18,19 @@ impl Random {
         z ^= z >> 31;
         bound * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
     }
+
+    /// Less than `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        ((self.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
+    }
+
+    /// Between −1 and 1, with four digits: what is written to a file is read back.
+    pub fn figure(&mut self) -> f64 {
+        self.below(20_001) as f64 / 1e4 - 1.0
+    }
+
+    /// Figures between −1 and 1.
+    pub fn figures<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.figure())
+    }
 }

@@ -153,7 +153,7 @@ struct Source(Random);
 
 impl Source {
     fn below(&mut self, n: usize) -> usize {
-        ((self.0.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
+        self.0.below(n)
     }
 
     fn chance(&mut self, one_in: usize) -> bool {

@@ -1,7 +1,10 @@
 //! A random robot: as a file, as the order of its coordinates, and as places of its links in a motion.
 
-use super::jets::{self, Jet, Matrix, Vector};
-use super::{Random, State};
+use crate::jet::{C, Jet, Matrix, identity, product, rotation, scaled, still, sum};
+use crate::kane::State;
+use crate::motion::{Piece, Pose, compose, drifting, turning};
+use crate::random::Random;
+use std::array::from_fn;
 use std::fmt::Write;
 
 const KINDS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
@@ -39,41 +42,36 @@ pub struct Robot {
 
 /// `R_z(yaw) R_y(pitch) R_x(roll)`.
 fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
-    let about = |k: usize, angle| {
-        jets::turn(std::array::from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle))
-    };
-    jets::product(&jets::product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
+    let about = |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
+    product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
 }
 
 impl Link {
     fn random(k: usize, random: &mut Random) -> Link {
         // The inertia of four point masses in the axes of an inertial frame, about their centre.
-        let points: [([f64; 3], f64); 4] =
-            std::array::from_fn(|_| (random.numbers(), 1.0 + random.number().abs()));
+        let points: [([f64; 3], f64); 4] = from_fn(|_| (random.figures(), 1.0 + random.figure().abs()));
         let mass: f64 = points.iter().map(|(_, m)| m).sum();
-        let center: [f64; 3] =
-            std::array::from_fn(|i| points.iter().map(|(p, m)| m * p[i]).sum::<f64>() / mass);
+        let center: [f64; 3] = from_fn(|i| points.iter().map(|(p, m)| m * p[i]).sum::<f64>() / mass);
         let mut own = [[0.0; 3]; 3];
         for (p, m) in points {
-            let r: [f64; 3] = std::array::from_fn(|i| p[i] - center[i]);
+            let r: [f64; 3] = from_fn(|i| p[i] - center[i]);
             for (i, row) in own.iter_mut().enumerate() {
                 for (j, entry) in row.iter_mut().enumerate() {
-                    *entry += m * (if i == j { jets::dot(r, r) } else { 0.0 } - r[i] * r[j]);
+                    *entry += m * (if i == j { r.iter().map(|x| x * x).sum() } else { 0.0 } - r[i] * r[j]);
                 }
             }
         }
-        let (com, rpy) = (random.numbers(), random.numbers::<3>().map(|angle| 3.0 * angle));
+        let (com, rpy) = (random.figures(), random.figures::<3>().map(|angle| 3.0 * angle));
         let turned = fixed_axes(rpy);
-        let columns: [[f64; 3]; 3] = std::array::from_fn(|j| {
-            jets::inertia(&turned, &own, std::array::from_fn(|i| f64::from(u8::from(i == j))))
-        });
+        let r: [[f64; 3]; 3] = turned.map(|row| row.map(|entry| entry.0[0].re));
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
         let inertial = format!(
             "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
             spaced(com),
             spaced(rpy)
         );
-        let inertia = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        let inertia =
+            from_fn(|i| from_fn(|j| (0..9).map(|k| r[i][k / 3] * own[k / 3][k % 3] * r[j][k % 3]).sum()));
         Link { name: format!("l{k}"), mass, com, inertia, inertial, joint: None }
     }
 }
@@ -87,9 +85,9 @@ impl Joint {
         let kind = random.below(KINDS.len());
         let axis = match (KINDS[kind], random.below(3)) {
             // Where x and y point is a convention: about a coordinate axis the other two in cyclic order.
-            ("planar", k) => std::array::from_fn(|i| if i == k { 2.0 } else { 0.0 }),
-            (_, 0) => random.numbers::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
-            (_, k) => std::array::from_fn(|i| if i == k { random.number() - 2.0 } else { 0.0 }),
+            ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
+            (_, 0) => random.figures::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
+            (_, k) => from_fn(|i| if i == k { random.figure() - 2.0 } else { 0.0 }),
         };
         let leaders: Vec<usize> = (1..child).filter(|k| links[*k].leads()).collect();
         let follows = kind < 3 && !leaders.is_empty() && random.below(4) == 0;
@@ -97,12 +95,12 @@ impl Joint {
             name: format!("{}{child}", ["j", "J", "a", "joint_"][random.below(4)]),
             kind,
             parent: random.below(child),
-            xyz: random.numbers(),
-            rpy: if random.below(3) == 0 { [0.0; 3] } else { random.numbers::<3>().map(|angle| 3.0 * angle) },
+            xyz: random.figures(),
+            rpy: if random.below(3) == 0 { [0.0; 3] } else { random.figures::<3>().map(|angle| 3.0 * angle) },
             axis,
             locked: !follows && random.below(8) == 0,
             mimic: follows
-                .then(|| (leaders[random.below(leaders.len())], random.number() * 2.0, random.number())),
+                .then(|| (leaders[random.below(leaders.len())], random.figure() * 2.0, random.figure())),
         }
     }
 }
@@ -223,11 +221,11 @@ impl Robot {
         entries
     }
 
-    /// Unit quaternions, all else as it comes.
-    pub fn state(&self, random: &mut Random) -> State {
+    /// Unit quaternions, all else as it comes: `q`, `v`, `v̇`.
+    pub fn state(&self, random: &mut Random) -> [Vec<f64>; 3] {
         let entries = self.entries();
         let count = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
-        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.number()).collect() };
+        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.figure()).collect() };
         let (mut q, v, a) = (numbers(count(0)), numbers(count(1)), numbers(count(1)));
         for (link, [first, _]) in self.links.iter().zip(entries) {
             let [n, _] = link.sizes(self.free);
@@ -237,7 +235,7 @@ impl Robot {
                 quaternion.iter_mut().for_each(|x| *x /= norm);
             }
         }
-        State { q, v, a }
+        [q, v, a]
     }
 
     /// Whether a link moves at all.
@@ -249,19 +247,17 @@ impl Robot {
     }
 
     /// Axes and origin of every link in the ground.
-    pub fn motion(&self, state: &State) -> Vec<(Matrix, Vector)> {
+    fn places(&self, state: &State) -> Vec<Pose> {
         let entries = self.entries();
-        let mut places: Vec<(Matrix, Vector)> = Vec::new();
+        let mut places: Vec<Pose> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
-            let zero = [Jet::constant(0.0); 3];
             let Some(joint) = &link.joint else {
-                let still = (fixed_axes([0.0; 3]), zero);
-                places.push(if self.free { floating(state, entries[k]) } else { still });
+                places.push(if self.free { floating(state, entries[k]) } else { Pose::identity() });
                 continue;
             };
-            let start = (fixed_axes(joint.rpy), joint.xyz.map(Jet::constant));
+            let start = Pose { r: fixed_axes(joint.rpy), p: still(joint.xyz) };
             let moved = match joint.mimic {
-                _ if joint.locked => (fixed_axes([0.0; 3]), zero),
+                _ if joint.locked => Pose::identity(),
                 Some((leader, factor, offset)) => {
                     let angle = plain(state, entries[leader]);
                     joint.moved(angle * Jet::constant(factor) + Jet::constant(offset))
@@ -269,69 +265,71 @@ impl Robot {
                 None if joint.kind < 3 => joint.moved(plain(state, entries[k])),
                 None => joint.placed(state, entries[k]),
             };
-            let there = then(&places[joint.parent], &start);
-            places.push(then(&there, &moved));
+            let there = compose(&places[joint.parent], &start);
+            places.push(compose(&there, &moved));
         }
         places
+    }
+
+    /// What moves and has mass.
+    pub fn pieces(&self, state: &State) -> Vec<Piece> {
+        let places = self.places(state);
+        let moving = (0..self.links.len()).filter(|k| self.moves(*k));
+        let piece = |k: usize| {
+            let Link { mass, com, inertia, .. } = self.links[k];
+            let center = Pose { r: identity(), p: still(com) };
+            Piece { mass, inertia, r: places[k].r, p: compose(&places[k], &center).p }
+        };
+        moving.map(piece).collect()
     }
 }
 
 impl Joint {
     fn unit(&self) -> [f64; 3] {
-        let length = jets::dot(self.axis, self.axis).sqrt();
+        let length = self.axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         self.axis.map(|x| x / length)
     }
 
     /// What turns about or slides along the axis.
-    fn moved(&self, coordinate: Jet) -> (Matrix, Vector) {
+    fn moved(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
-            "prismatic" => (fixed_axes([0.0; 3]), self.unit().map(|n| Jet::constant(n) * coordinate)),
-            _ => (jets::turn(self.unit(), coordinate), [Jet::constant(0.0); 3]),
+            "prismatic" => Pose { p: scaled(coordinate, self.unit()), ..Pose::identity() },
+            _ => Pose { r: rotation(self.unit(), coordinate), ..Pose::identity() },
         }
     }
 
     /// What has several coordinates, or none.
-    fn placed(&self, state: &State, [q, v]: [usize; 2]) -> (Matrix, Vector) {
-        let zero = [Jet::constant(0.0); 3];
+    fn placed(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
         match KINDS[self.kind] {
             "floating" => floating(state, [q, v]),
             "planar" => {
                 let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
-                let mut shift = zero;
-                shift[(normal + 1) % 3] = plain(state, [q, v]);
-                shift[(normal + 2) % 3] = plain(state, [q + 1, v + 1]);
-                (jets::turn(self.unit(), plain(state, [q + 2, v + 2])), shift)
+                let along = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
+                let shift = |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), along(k));
+                let r = rotation(self.unit(), plain(state, [q + 2, v + 2]));
+                Pose { r, p: sum(shift(1), shift(2)) }
             }
-            "spherical" => (spun(state, [q, v]), zero),
-            _ => (fixed_axes([0.0; 3]), zero),
+            "spherical" => {
+                let r = turning(&state.q[q..q + 4], three(&state.v, v), three(&state.a, v));
+                Pose { r, ..Pose::identity() }
+            }
+            _ => Pose::identity(),
         }
     }
 }
 
 /// A coordinate in time.
 fn plain(state: &State, [q, v]: [usize; 2]) -> Jet {
-    Jet::new(state.q[q], state.v[v], state.a[v])
+    Jet([state.q[q], state.v[v], state.a[v] * 0.5])
 }
 
-fn three(list: &[f64], at: usize) -> [f64; 3] {
-    std::array::from_fn(|k| list[at + k])
+fn three(list: &[C], at: usize) -> [C; 3] {
+    from_fn(|k| list[at + k])
 }
 
-fn spun(state: &State, [q, v]: [usize; 2]) -> Matrix {
-    jets::spin(std::array::from_fn(|k| state.q[q + k]), three(&state.v, v), three(&state.a, v))
-}
-
-/// Position and quaternion; linear and angular velocity in the axes of what moves: `p' = R v`, `p'' = R (v' + ω × v)`.
-fn floating(state: &State, [q, v]: [usize; 2]) -> (Matrix, Vector) {
-    let rotation = spun(state, [q + 3, v + 3]);
-    let (speed, turning) = (three(&state.v, v), three(&state.v, v + 3));
-    let rate = jets::sum(three(&state.a, v), jets::cross(turning, speed));
-    let ground =
-        |own: [f64; 3]| -> [f64; 3] { rotation.map(|row| (0..3).map(|k| row[k].value() * own[k]).sum()) };
-    let (first, second) = (ground(speed), ground(rate));
-    (rotation, std::array::from_fn(|k| Jet::new(state.q[q + k], first[k], second[k])))
-}
-
-fn then(a: &(Matrix, Vector), b: &(Matrix, Vector)) -> (Matrix, Vector) {
-    (jets::product(&a.0, &b.0), jets::plus(&a.1, &jets::times(&a.0, &b.1)))
+/// Position and quaternion; linear and angular velocity in the axes of what moves.
+fn floating(state: &State, [q, v]: [usize; 2]) -> Pose {
+    let (w, rate) = (three(&state.v, v + 3), three(&state.a, v + 3));
+    let r = turning(&state.q[q + 3..q + 7], w, rate);
+    Pose { r, p: drifting(&state.q[q..q + 3], &r, three(&state.v, v), w, three(&state.a, v)) }
 }
