@@ -8,6 +8,7 @@ mod impacts;
 mod invariants;
 mod long_runs;
 mod overdetermined;
+mod planar;
 mod reactions;
 mod singular;
 mod slipping;

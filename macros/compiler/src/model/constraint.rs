@@ -14,6 +14,7 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::{eval, eval_one};
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Rotation, Vec3};
+use crate::model::axis::always;
 use crate::model::sample;
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
@@ -440,7 +441,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.constrains.set(true);
         let rows = self.difference(constraint, Level::Placement, cx);
         self.scope.constrains.set(false);
-        for (name, residual) in rows {
+        for (name, residual) in self.without_idle(rows) {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
@@ -449,6 +450,21 @@ impl<'g> Builder<'_, 'g> {
             let rate = time_derivative(self.model.space(), residual);
             self.push_rate((name, &constraint.name.place), measure, Some(residual), rate);
         }
+    }
+
+    /// The components of a vector without those that are zero wherever the mechanism is, as they are across its plane; all
+    /// of them if they all are.
+    fn without_idle(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
+        let is_idle = |e: &Expr<'g>| {
+            let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
+            symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
+        };
+        let (idle, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_idle(e));
+        if rest.is_empty() {
+            return idle;
+        }
+        self.model.redundant.extend(idle.into_iter().map(|(name, _)| name));
+        rest
     }
 
     /// Reads what a constraint says, for its mistakes alone.
@@ -466,7 +482,8 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        for (name, rate) in self.difference(constraint, Level::Motion, cx) {
+        let rows = self.difference(constraint, Level::Motion, cx);
+        for (name, rate) in self.without_idle(rows) {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();

@@ -1,0 +1,44 @@
+//! Constraints that restrict nothing in any of their components.
+
+use super::{answers, counts};
+
+/// Two carts on a table.
+const CARTS: &str = "h: f64, #[body(mass = 1)] first: Body, #[body(mass = 3)] second: Body,
+    #[joint(ground -> first, along = (x, y))] one: Stage, #[joint(ground.at(h * z) -> second, along = (x, y))] two: Stage,";
+
+#[test]
+fn what_restricts_nothing_is_refused() {
+    let carts = |constraint: &str| (String::new(), format!("{CARTS} {constraint}"));
+    answers(
+        carts,
+        &[
+            (
+                "#[constraint(dot(v(first / ground / ground), z) * z)] none: Nonholonomic",
+                "this restricts no velocity",
+                "a constraint on coordinates is a `Holonomic` one",
+            ),
+            (
+                "#[constraint(dot(r(first / ground), z) * z)] none: Holonomic",
+                "this restricts no coordinate",
+                "an expression of coordinates stays zero",
+            ),
+            // Not zero, and not to be made zero by any motion.
+            (
+                "#[constraint(r(first / ground) = r(second / ground))] same: Holonomic",
+                "this restricts no coordinate",
+                "an expression of coordinates stays zero",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn what_restricts_some_components_is_not() {
+    let fields = |constraint: &str| format!("{CARTS} {constraint}");
+    for constraint in [
+        "#[constraint(v(first / ground / ground) = v(second / ground / ground))] same: Nonholonomic",
+        "#[constraint(r(first / ground) = r(second / ground) - h * z)] same: Holonomic",
+    ] {
+        counts(&[("", &fields(constraint), 0)]);
+    }
+}

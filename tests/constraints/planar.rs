@@ -1,0 +1,54 @@
+//! Vectors that stay equal in a plane: across it they are equal anyway, and say nothing there.
+
+use linkwork::prelude::*;
+
+/// Two carts on a table that keep equal velocities.
+#[mechanism]
+struct Convoy {
+    #[body(mass = 1)]
+    first: Body,
+    #[body(mass = 3)]
+    second: Body,
+    #[joint(ground -> first, along = (x, y))]
+    one: Stage,
+    #[joint(ground -> second, along = (x, y))]
+    two: Stage,
+    #[constraint(v(first / ground / ground) = v(second / ground / ground))]
+    alike: Nonholonomic,
+}
+
+/// Two carts on a table that keep their distance and its direction.
+#[mechanism]
+struct Coupled {
+    gap: f64,
+    #[body(mass = 1)]
+    first: Body,
+    #[body(mass = 3)]
+    second: Body,
+    #[joint(ground -> first, along = (x, y))]
+    one: Stage,
+    #[joint(ground.at(0.3 * z) -> second, along = (x, y))]
+    two: Stage,
+    #[constraint(r(second / first) = gap * x + 0.3 * z)]
+    coupling: Holonomic,
+}
+
+#[test]
+fn equal_velocities_in_a_plane_are_two_conditions() {
+    assert_eq!((Convoy::NC, Convoy::NH), (2, 0));
+    assert_eq!(Convoy::CONSTRAINTS, ["alike.x", "alike.y"]);
+    let a = Convoy {}.forward_dynamics(&SVector::zeros(), &SVector::zeros(), &[4.0, 8.0, 0.0, 0.0].into());
+    // Newton's second law of both together.
+    assert!((a - SVector::from([1.0, 2.0, 1.0, 2.0])).amax() < 1e-12, "{a}");
+}
+
+#[test]
+fn a_vector_between_points_of_a_plane_is_two_conditions() {
+    assert_eq!((Coupled::NC, Coupled::NH), (2, 2));
+    assert_eq!(Coupled::CONSTRAINTS, ["coupling.x", "coupling.y"]);
+    let pair = Coupled { gap: 0.5 };
+    let q = pair.assemble(&SVector::zeros(), &[0, 1]).expect("the second cart is moved");
+    assert!((q - SVector::from([0.0, 0.0, 0.5, 0.0])).amax() < 1e-12, "{q}");
+    let a = pair.forward_dynamics(&q, &SVector::zeros(), &[4.0, 8.0, 0.0, 0.0].into());
+    assert!((a - SVector::from([1.0, 2.0, 1.0, 2.0])).amax() < 1e-12, "{a}");
+}
