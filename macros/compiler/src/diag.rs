@@ -88,6 +88,11 @@ impl Diagnostic {
         self
     }
 
+    /// One `compile_error!` at its token.
+    pub fn tokens(&self) -> TokenStream {
+        compile_error(&self.place, &self.text())
+    }
+
     /// The message with the position in the imported file and all help lines, as the user reads it.
     pub fn text(&self) -> String {
         let mut text = match &self.place.file {
@@ -179,7 +184,7 @@ impl Diagnostics {
 
     /// One `compile_error!` for each mistake, at its token.
     pub fn into_tokens(self) -> TokenStream {
-        self.errors.iter().flat_map(|e| compile_error(&e.place, &e.text())).collect()
+        self.errors.iter().flat_map(Diagnostic::tokens).collect()
     }
 }
 

@@ -13,7 +13,7 @@ pub mod passes;
 pub mod syntax;
 
 use catalogue::{ConstraintFacts, Facts, JACOBIAN};
-use diag::Diagnostics;
+use diag::{Diagnostic, Diagnostics};
 use emit::{Constraints, Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
 use proc_macro2::TokenStream;
@@ -39,21 +39,19 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     emitted
 }
 
-/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!`, and what keeps rustc
-/// from saying the same for each element and derive.
+/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!` for that, in place of
+/// the struct, and those of its grammar.
 pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     let Some(source) = read(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
-    let mut emitted = source.emit_failed();
-    if cx.is_empty() {
-        emitted.tokens.extend(emit::with_elements(&source.mechanism.shell));
-    }
-    cx.error(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`")
-        .help("write it below: there it sees the struct without its elements, which do not stay");
-    emitted.tokens.extend(cx.into_tokens());
-    emitted
+    let mut mistake =
+        Diagnostic::new(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`");
+    mistake.help("write it below: there it sees the struct without its elements, which do not stay");
+    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &mistake);
+    tokens.extend(cx.into_tokens());
+    Emitted { tokens, text: String::new() }
 }
 
 /// The messages of the mistakes in a mechanism; empty if there is none.
@@ -71,6 +69,8 @@ pub struct Source {
     pub mechanism: Mechanism,
     /// Where the file is.
     file: Option<PathBuf>,
+    /// The file, if one is named, could be read.
+    imported: bool,
 }
 
 /// Syntax and import: what the user wrote, from tokens and file. `None` if there is nothing to go on.
@@ -81,7 +81,7 @@ pub fn read(
     cx: &mut Diagnostics,
 ) -> Option<Source> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
-    let mut file = None;
+    let (mut file, before) = (None, cx.len());
     if let Some(options) = &mechanism.urdf {
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
@@ -90,7 +90,7 @@ pub fn read(
             merge(&mut mechanism.description, imported, cx);
         }
     }
-    Some(Source { mechanism, file })
+    Some(Source { mechanism, file, imported: cx.len() == before })
 }
 
 /// Puts the contents of a file before those of the struct.
@@ -133,8 +133,8 @@ pub fn compile_with<'g>(
     passes: passes::Passes,
     cx: &mut Diagnostics,
 ) -> Option<(model::Model<'g>, derive::Output)> {
-    // What failed to parse would only lead to further complaints.
     if !cx.is_empty() {
+        check_rest(source, graph, cx);
         return None;
     }
     let model = model::build_model(&source.mechanism.description, graph, cx)?;
@@ -143,6 +143,15 @@ pub fn compile_with<'g>(
     describe(&mut output, &source.mechanism);
     check_outputs(&source.mechanism.description, &output.functions, &Facts::of(&model, requests), cx)
         .then_some((model, output))
+}
+
+/// Reports what is wrong with those parts of a mechanism that mistakes of its grammar do not touch: what has to do with them
+/// would only lead to further complaints.
+pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
+    let Mechanism { reading, description, .. } = &source.mechanism;
+    if let Some(rest) = reading.rest(description).filter(|_| source.imported) {
+        model::build_model(&rest, graph, cx);
+    }
 }
 
 /// Puts what the user says of an output before the documentation of its function.

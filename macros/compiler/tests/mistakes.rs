@@ -20,10 +20,14 @@ mod figures;
 mod files;
 #[path = "mistakes/grammar.rs"]
 mod grammar;
+#[path = "mistakes/idle.rs"]
+mod idle;
 #[path = "mistakes/joints.rs"]
 mod joints;
 #[path = "mistakes/options.rs"]
 mod options;
+#[path = "mistakes/rounds.rs"]
+mod rounds;
 #[path = "mistakes/several.rs"]
 mod several;
 

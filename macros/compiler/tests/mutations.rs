@@ -1,11 +1,11 @@
 //! Slips of the hand in the gallery: one token of a mechanism is lost, doubled, exchanged with its neighbour or taken for
 //! another one. Whatever comes of it, it is said in few words, each with what to do about it. Seeded, so that a failure comes
-//! again; `MUTATIONS=20000` tries more than the usual number.
+//! again; `MUTATIONS=20000` tries more than the usual number, `SEED=2` others.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::model::build_model;
-use linkwork_compiler::read;
+use linkwork_compiler::{check_rest, read};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -13,7 +13,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Cases that are tried.
-const CASES: usize = 600;
+const CASES: u64 = 600;
+/// What they begin with.
+const SEED: u64 = 20;
 /// Most errors that one slip leads to.
 const MOST: usize = 3;
 /// Most tokens of a mechanism that is tried: larger ones take long, and their words are the same.
@@ -156,10 +158,11 @@ fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
 /// The messages of syntax and model.
 fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    if let Some(source) = read(arguments.clone(), item, Path::new(""), &mut cx)
-        && cx.is_empty()
-    {
-        build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+    if let Some(source) = read(arguments.clone(), item, Path::new(""), &mut cx) {
+        match cx.is_empty() {
+            true => drop(build_model(&source.mechanism.description, &Graph::new(), &mut cx)),
+            false => check_rest(&source, &Graph::new(), &mut cx),
+        }
     }
     cx.messages()
 }
@@ -172,10 +175,11 @@ fn class(message: &str) -> String {
 
 #[test]
 fn slips_of_the_hand_are_answered_in_few_words() {
-    let cases = std::env::var("MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(CASES);
+    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
+    let cases = number("MUTATIONS").unwrap_or(CASES);
     let gallery = gallery();
     assert!(gallery.len() > 40, "{} mechanisms", gallery.len());
-    let mut random = Random(20);
+    let mut random = Random(number("SEED").unwrap_or(SEED));
     let mut wrong: BTreeMap<String, (usize, String)> = BTreeMap::new();
     for case in 0..cases {
         let subject = &gallery[random.below(gallery.len())];
@@ -213,4 +217,62 @@ fn slips_of_the_hand_are_answered_in_few_words() {
     let list: Vec<String> =
         wrong.iter().map(|(what, (n, example))| format!("{n} × {what}\n    {example}")).collect();
     assert!(list.is_empty(), "{} classes:\n{}", list.len(), list.join("\n\n"));
+}
+
+/// What the grammar alone has to say.
+fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
+    let mut cx = Diagnostics::new();
+    read(arguments.clone(), item, Path::new(""), &mut cx);
+    cx.messages()
+}
+
+/// The item with a mistake of grammar in one field: an argument that nothing has, or a type that no parameter has.
+fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
+    let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
+    let field = item.fields.iter_mut().nth(at)?;
+    match field.attrs.iter_mut().find(|a| !a.path().is_ident("doc")) {
+        Some(attribute) => {
+            let syn::Meta::List(list) = &mut attribute.meta else { return None };
+            list.tokens.extend(", nothing = 1".parse::<TokenStream>().unwrap());
+        }
+        None => field.ty = syn::parse_str("Vec<f64>").unwrap(),
+    }
+    Some(item.into_token_stream())
+}
+
+#[test]
+fn a_field_that_cannot_be_read_makes_no_other_wrong() {
+    let mut wrong = Vec::new();
+    let mut tried = 0;
+    for subject in gallery() {
+        let fields = syn::parse2::<syn::ItemStruct>(subject.item.clone()).unwrap().fields.len();
+        for item in (0..fields).filter_map(|at| with_a_mistake(&subject.item, at)) {
+            tried += 1;
+            let grammar = messages_of_grammar(&subject.arguments, item.clone());
+            let all = messages(&subject.arguments, item);
+            if grammar.is_empty() || all.len() > grammar.len() {
+                wrong.push(format!("{}: {}", subject.name, all.join("\n  and ")));
+            }
+        }
+    }
+    assert!(tried > 500, "{tried} fields");
+    assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n\n"));
+}
+
+#[test]
+fn a_name_that_is_declared_otherwise_is_told_once() {
+    let mut wrong = Vec::new();
+    for subject in gallery() {
+        let item: syn::ItemStruct = syn::parse2(subject.item).unwrap();
+        for at in 0..item.fields.len() {
+            let mut other = item.clone();
+            let field = other.fields.iter_mut().nth(at).unwrap();
+            let name = field.ident.replace(syn::parse_str("declared_otherwise").unwrap()).unwrap();
+            let found = messages(&subject.arguments, other.into_token_stream());
+            if found.len() > 1 {
+                wrong.push(format!("{}, {name}: {}", subject.name, found.join("\n  and ")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n\n"));
 }

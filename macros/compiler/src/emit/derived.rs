@@ -1,24 +1,32 @@
-//! What derives want that have seen a struct with its elements: a mistake that is told once.
+//! What stands for a struct whose derives have seen its elements: a mistake that is told once.
 
-use super::item::runtime;
+use crate::diag::Diagnostic;
 use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// The elements as fields of what the struct dereferences to, where derived code finds them.
-pub fn with_elements(shell: &Shell) -> TokenStream {
-    let name = &shell.ident;
-    let elements = format_ident!("__ElementsOf{}", name.to_string().trim_start_matches("r#"));
-    let runtime = runtime(shell);
-    let fields = shell.elements.iter().map(|(name, kind)| quote!(pub #name: #runtime::elements::#kind));
-    let (generics, arguments, bounds) = shell.generics.split_for_impl();
-    quote! {
-        #[doc(hidden)]
-        pub struct #elements { #(#fields),* }
-        #[automatically_derived]
-        impl #generics ::core::ops::Deref for #name #arguments #bounds {
-            type Target = #elements;
-            fn deref(&self) -> &#elements { loop {} }
+/// The struct's name for a type that the mistake is an argument of. Derived code names the elements as fields, the user's code
+/// leaves them out, and no struct suits both; but of a type with a mistake in its arguments rustc says nothing more, whatever
+/// fields and methods it is asked for.
+pub fn a_mistake_in_a_type(shell: &Shell, mistake: &Diagnostic) -> TokenStream {
+    let Shell { attributes, visibility, ident, parameters, generics, .. } = shell;
+    let hidden = format_ident!("__{}BelowADerive", ident.to_string().trim_start_matches("r#"));
+    let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
+    let names = generics.type_params().map(|parameter| &parameter.ident);
+    let (all, _, _) = generics.split_for_impl();
+    let mistake = mistake.tokens();
+    // A struct without parameters is a value of its name.
+    let value = parameters.is_empty().then(|| {
+        quote! {
+            #[allow(non_upper_case_globals, reason = "the name of the struct")]
+            #visibility const #ident: #ident = #hidden {};
         }
+    });
+    quote! {
+        #(#attributes)*
+        #visibility struct #hidden<#(#bounds,)* const MISTAKE: bool> #condition { #(#parameters),* }
+        #[allow(type_alias_bounds, reason = "the bounds of the struct")]
+        #visibility type #ident #all = #hidden<#(#names,)* { #mistake }>;
+        #value
     }
 }

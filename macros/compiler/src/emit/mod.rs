@@ -22,5 +22,5 @@ mod stores;
 
 pub use absent::{Absent, absent};
 pub use constraints::Constraints;
-pub use derived::with_elements;
+pub use derived::a_mistake_in_a_type;
 pub use item::{Emitted, Interface, emit_failed, emit_mechanism};

@@ -157,19 +157,23 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let stretch = self.distance(a, b, cx);
+        // What has no place has no mass either, and that was told.
+        let is_placed = stretch.is_some();
+        let mut mass_of = |e: &Expr| if is_placed { self.mass_of(e, cx) } else { None };
         match (constant, mu) {
             (Some(constant), None) => {
+                let masses = [mass_of(a), mass_of(b)];
                 let constant = self.scope.scalar(constant, cx);
-                let (first, second) = (self.mass_of(a, cx), self.mass_of(b, cx));
-                if let (Some(g), Some(m1), Some(m2), Some(stretch)) = (constant, first, second, stretch) {
+                if let (Some(g), [Some(m1), Some(m2)], Some(stretch)) = (constant, masses, stretch) {
                     self.add_attraction(&stretch, g * m1 * m2);
                     self.turn_by_gravity(a, b, g * m1, cx);
                     self.turn_by_gravity(b, a, g * m2, cx);
                 }
             }
             (None, Some(mu)) => {
+                let mass = mass_of(b);
                 let mu = self.scope.scalar(mu, cx);
-                if let (Some(mu), Some(m), Some(stretch)) = (mu, self.mass_of(b, cx), stretch) {
+                if let (Some(mu), Some(m), Some(stretch)) = (mu, mass, stretch) {
                     self.add_attraction(&stretch, mu * m);
                     self.turn_by_gravity(a, b, mu, cx);
                 }
@@ -211,7 +215,8 @@ impl<'g> Builder<'_, 'g> {
                 return Some(mass);
             }
         }
-        cx.error(e.place.clone(), "expected a body or a particle, which has mass");
+        cx.error(e.place.clone(), "expected a body or a particle, which has mass")
+            .help("name one; of a point without mass, such as `ground`, `mu` says what it attracts with");
         None
     }
 
@@ -388,9 +393,14 @@ impl<'g> Builder<'_, 'g> {
                             .help(format!("write `on = {joint}` and give a direction, or name a joint"));
                         return None;
                     }
-                    let known = self.joint_names();
-                    cx.error(inner.place.clone(), format!("unknown joint `{joint}`"))
-                        .suggest(joint, known.iter().map(String::as_str));
+                    if self.scope.is_news(joint, cx) {
+                        let known = self.joint_names();
+                        let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
+                        error.suggest(joint, known.iter().map(String::as_str));
+                        if error.is_bare() {
+                            error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
+                        }
+                    }
                     return None;
                 };
                 let full = format!("{joint}.{}", member.text);

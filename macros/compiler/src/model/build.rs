@@ -140,7 +140,9 @@ fn build<'g>(
         let coordinates = &builder.scope.world.borrow().coordinates;
         builder.model.units = units::infer(description, &builder.model, coordinates, cx);
     }
-    cx.append(builder.mobility);
+    if !description.partial {
+        cx.append(builder.mobility);
+    }
     cx.is_empty().then_some(builder.model)
 }
 

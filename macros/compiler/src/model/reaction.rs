@@ -99,7 +99,8 @@ impl<'g> Scope<'_, 'g> {
                 }
             },
             _ => {
-                cx.error(function.place.clone(), format!("`{}` takes one joint", function.text));
+                cx.error(function.place.clone(), format!("`{}` takes one joint", function.text))
+                    .help(format!("write `{}(hinge)`", function.text));
                 return None;
             }
         };
@@ -107,7 +108,13 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let Some((j, link, rotation)) = world.transmissions.get(name) else {
-            cx.error(arguments[0].place.clone(), format!("unknown joint `{name}`")).suggest(name, known());
+            if self.is_news(name, cx) {
+                let error = cx.error(arguments[0].place.clone(), format!("unknown joint `{name}`"));
+                error.suggest(name, known());
+                if error.is_bare() {
+                    error.help(format!("name the joint, as in `{}(hinge)`", function.text));
+                }
+            }
             return None;
         };
         let first = OPEN * j + if function.text == "reaction_torque" { 3 } else { 0 };

@@ -501,6 +501,25 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     Ok(())
 }
 
+/// Names in quotes, with commas between them.
+fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
+    let mut texts = Vec::new();
+    while !input.is_empty() {
+        if !input.peek(LitStr) {
+            let help = "names in a list are quoted, all of them: `[\"first\", \"second\"]`";
+            return Err(syn_error(input.span(), "expected a name in quotes", help));
+        }
+        texts.push(input.parse()?);
+        if !input.is_empty() {
+            if !input.peek(Token![,]) {
+                return Err(no_comma(input));
+            }
+            input.parse::<Token![,]>()?;
+        }
+    }
+    Ok(texts)
+}
+
 fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
     if input.peek(LitStr) {
         return input.parse().map(Value::Text);
@@ -512,8 +531,7 @@ fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
         if content.peek(LitStr) {
             let content;
             bracketed!(content in input);
-            let texts = content.parse_terminated(<LitStr as syn::parse::Parse>::parse, Token![,])?;
-            return Ok(Value::Texts(texts.into_iter().collect()));
+            return parse_texts(&content).map(Value::Texts);
         }
     }
     parse_expr(input).map(Value::Expr)

@@ -4,6 +4,7 @@ use super::arguments::Arguments;
 use super::element;
 use super::expression::name;
 use super::skipped::Skipped;
+use super::sound::Reading;
 use super::{
     Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, guard, home,
     skipped, words,
@@ -24,6 +25,8 @@ pub struct Mechanism {
     pub urdf: Option<UrdfOptions>,
     /// What is generated on request.
     pub requests: Requests,
+    /// What could be read.
+    pub reading: Reading,
 }
 
 /// What is generated beside the functions of every mechanism, by words among the attribute's arguments.
@@ -148,16 +151,26 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let mut scalar: Option<(ScalarType, Place)> = None;
     // A type that is not known is told once.
     let mut strangers: Vec<Ident> = Vec::new();
+    let mut reading = Reading::default();
     for field in item.fields {
+        reading.field(&field);
         let kind = type_name(&field.ty);
         if kind.as_ref().is_some_and(|kind| refused.contains(kind) || strangers.contains(kind)) {
+            reading.blame_last();
             continue;
         }
         strangers.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
+        let before = cx.len();
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
+        if cx.len() > before {
+            reading.blame_last();
+        }
     }
-    let mut requests = Requests::default();
-    let urdf = read_options(arguments, &mut description, &mut scalar, &mut requests, cx);
+    let (mut requests, before) = (Requests::default(), cx.len());
+    let urdf = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
+    if cx.len() > before {
+        reading.blame_arguments(arguments);
+    }
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
@@ -173,8 +186,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
             );
         }
     }
-    check_duplicates(&description, cx);
-    Some(Mechanism { description, shell, urdf, requests })
+    check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
+    Some(Mechanism { description, shell, urdf, requests, reading })
 }
 
 fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
@@ -263,6 +276,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         snapped: Vec::new(),
         inertias: Inertias::Check,
         ground_frame: false,
+        partial: false,
     }
 }
 
@@ -565,7 +579,7 @@ fn read_requests(
 }
 
 /// Fields of a struct have distinct names by Rust's own rules, but Rust says so later and less clearly.
-fn check_duplicates(description: &Description, cx: &mut Diagnostics) {
+fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
     let mut names: Vec<&Name> = Vec::new();
     names.extend(&description.parameters);
     names.extend(description.bodies.iter().map(|b| &b.name));
@@ -577,19 +591,22 @@ fn check_duplicates(description: &Description, cx: &mut Diagnostics) {
     names.extend(description.points.iter().map(|p| &p.name));
     names.extend(description.definitions.iter().chain(&description.outputs).map(|d| &d.name));
     names.extend(description.energies.iter().chain(&description.dissipations).map(|(name, _)| name));
-    check_distinct(&names, cx);
+    check_distinct(&names, cx)
 }
 
-/// Reports every name that stands twice, at both places.
-pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) {
+/// Reports every name that stands twice, at its second place, and returns it.
+pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
     let mut sorted: Vec<(usize, &&Name)> = names.iter().enumerate().collect();
     sorted.sort_by(|a, b| a.1.text.cmp(&b.1.text).then(a.0.cmp(&b.0)));
+    let mut twice = Vec::new();
     for pair in sorted.windows(2) {
         let (first, second) = (pair[0].1, pair[1].1);
         if first.text == second.text {
             cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text))
                 .note("another field has this name as well")
                 .help("name one of the two otherwise");
+            twice.push(second.text.clone());
         }
     }
+    twice
 }

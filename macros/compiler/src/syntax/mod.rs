@@ -12,6 +12,7 @@ pub mod expression;
 pub mod guard;
 pub mod home;
 pub mod skipped;
+pub mod sound;
 pub mod words;
 
 pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
@@ -195,6 +196,8 @@ pub struct Description {
     pub inertias: Inertias,
     /// The file's root is the ground: it is a frame as other links are.
     pub ground_frame: bool,
+    /// Parts with mistakes are left out: nobody knows what they would hold.
+    pub partial: bool,
 }
 
 /// What is made of mass properties.

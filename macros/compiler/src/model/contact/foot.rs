@@ -56,7 +56,7 @@ impl<'g> Builder<'_, 'g> {
         let known = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
         let name = e.name().unwrap_or("");
         let found = world.coordinates.iter().find(|(n, ..)| n == name && known().any(|k| k == name));
-        if found.is_none() {
+        if found.is_none() && (name.is_empty() || self.scope.is_news(name, cx)) {
             cx.error(e.place.clone(), "expected a coordinate of the surface")
                 .suggest(name, known())
                 .help("declare it as a field of its own: `u: Coordinate`");

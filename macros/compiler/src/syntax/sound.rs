@@ -1,0 +1,132 @@
+//! What of a mechanism can be read in spite of mistakes of grammar: everything that has to do with none of them. What is said
+//! of it is true however they are mended, so that all mistakes are told in one round.
+
+use super::{Body, Description, Formulation, Name};
+use crate::diag::nearest;
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
+use std::collections::BTreeSet;
+use syn::Field;
+
+/// Arguments of `#[mechanism]` that say what the fields are held against.
+const FAR: [&str; 2] = ["urdf", "inertia"];
+
+/// The words of one field.
+struct Words {
+    name: Name,
+    words: BTreeSet<String>,
+    /// It is a body that joints place: whatever else is said of it, its name stands for it.
+    body: bool,
+    broken: bool,
+}
+
+/// The words of the attribute and of every field, and which of them could be read.
+#[derive(Default)]
+pub struct Reading {
+    fields: Vec<Words>,
+    lost: bool,
+}
+
+impl Reading {
+    /// Takes note of a field.
+    pub fn field(&mut self, field: &Field) {
+        let mut words = BTreeSet::new();
+        for attribute in &field.attrs {
+            collect(attribute.to_token_stream(), &mut words);
+        }
+        let placed = ["at", "frame", "massive"].iter().any(|word| words.contains(*word));
+        let body = field.ty.to_token_stream().to_string() == "Body" && !placed;
+        let name = field.ident.as_ref().map(super::expression::name);
+        self.fields.extend(name.map(|name| Words { name, words, body, broken: false }));
+    }
+
+    /// The last field could not be read as it stands.
+    pub fn blame_last(&mut self) {
+        if let Some(field) = self.fields.last_mut() {
+            field.broken = true;
+        }
+    }
+
+    /// A name stands for two things.
+    pub fn blame(&mut self, name: &str) {
+        for field in self.fields.iter_mut().filter(|field| field.name.text == name) {
+            (field.broken, field.body) = (true, false);
+        }
+    }
+
+    /// The attribute's own arguments could not be read as they stand.
+    pub fn blame_arguments(&mut self, arguments: TokenStream) {
+        let mut words = BTreeSet::new();
+        collect(arguments, &mut words);
+        self.lost |= words.iter().any(|word| nearest(word, &FAR).is_some() || FAR.contains(&word.as_str()));
+    }
+
+    /// The description without what has a mistake, or names something that has. `None` if nothing is left to be read.
+    pub fn rest(&self, whole: &Description) -> Option<Description> {
+        if self.lost {
+            return None;
+        }
+        let (lost, bodies) = self.lost_names();
+        let kept = |name: &Name| !lost.contains(name.text.as_str());
+        let reads = |e: &super::Expr| e.parts().iter().all(|e| e.name().is_none_or(|n| !lost.contains(n)));
+        let mut d = whole.clone();
+        d.partial = true;
+        d.formulation = Formulation::default();
+        d.gravity = d.gravity.filter(reads);
+        d.friction_speed = d.friction_speed.filter(reads);
+        d.bodies.retain(|b| kept(&b.name) && bodies.iter().all(|name| name.text != b.name.text));
+        d.bodies.extend(bodies.into_iter().map(massless));
+        d.particles.retain(|p| kept(&p.name));
+        d.joints.retain(|j| kept(&j.name));
+        d.actions.retain(|a| kept(&a.name));
+        d.coordinates.retain(|c| kept(&c.name));
+        d.inputs.retain(kept);
+        d.frames.retain(|f| kept(&f.name));
+        d.points.retain(|p| kept(&p.name));
+        d.definitions.retain(|d| kept(&d.name));
+        d.outputs.retain(|d| kept(&d.name));
+        d.energies.retain(|(name, _)| kept(name));
+        d.dissipations.retain(|(name, _)| kept(name));
+        d.constraints.retain(|c| kept(&c.name));
+        (!d.bodies.is_empty() || !d.particles.is_empty()).then_some(d)
+    }
+
+    /// The names of fields that cannot be read, those that name them, and so on; and bodies that are known by name alone.
+    fn lost_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
+        let mut lost = BTreeSet::new();
+        let mut bodies: Vec<&Name> = Vec::new();
+        let mut more = true;
+        while more {
+            more = false;
+            for field in &self.fields {
+                let name = field.name.text.as_str();
+                let known = lost.contains(name) || bodies.iter().any(|body| body.text == name);
+                if known || !(field.broken || field.words.iter().any(|word| lost.contains(word.as_str()))) {
+                    continue;
+                }
+                more = true;
+                match field.body {
+                    true => bodies.push(&field.name),
+                    false => _ = lost.insert(name),
+                }
+            }
+        }
+        (lost, bodies)
+    }
+}
+
+/// A body of which nothing but its name is known.
+fn massless(name: &Name) -> Body {
+    Body { name: name.clone(), mass: None, com: None, inertia: None, at: None, frame: None }
+}
+
+/// All words among tokens.
+fn collect(tokens: TokenStream, words: &mut BTreeSet<String>) {
+    for token in tokens {
+        match token {
+            TokenTree::Ident(word) => _ = words.insert(word.to_string()),
+            TokenTree::Group(group) => collect(group.stream(), words),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! A mistake of grammar and one of the mechanism: both are told in one round, where the first leaves the second true.
+
+use super::{ARM, counts, messages};
+
+/// An arm with a tool, by its parts.
+const PARTS: [&str; 12] = [
+    "k: f64",
+    "l: f64",
+    "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Body",
+    "#[body(mass = 0.5, com = x, inertia = sphere(1, 1))] tool: Body",
+    "#[joint(ground -> arm, about = z)] hinge: Pin",
+    "#[joint(arm.at(l * x) -> tool, about = z)] wrist: Pin",
+    "#[point(on = tool, at = l * x)] tip: Point",
+    "#[acts(on = wrist, stiffness = k)] coil: Spring",
+    "#[acts(on = hinge)] motor: Torque",
+    "#[acts(on = tip, value = k * l * x)] push: Force",
+    "#[define(sin(hinge))] s: Scalar",
+    "#[output(s * v(tip / ground / ground))] seen: Vector",
+];
+
+/// The parts with others in the place of some.
+fn with(changed: &[(usize, &str)]) -> String {
+    let part = |k: usize| changed.iter().find(|(at, _)| *at == k).map_or(PARTS[k], |(_, text)| text);
+    (0..PARTS.len()).map(part).collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn both_are_told() {
+    let rows: Vec<(String, usize)> = vec![
+        // Grammar of a force element; a name in another.
+        (
+            with(&[
+                (7, "#[acts(on = wrist, stifness = k)] coil: Spring"),
+                (9, "#[acts(on = tip, value = kk * x)] push: Force"),
+            ]),
+            2,
+        ),
+        // A body that cannot be read is a body all the same.
+        (
+            with(&[
+                (3, "#[body(mass = 0.5 com = x)] tool: Body"),
+                (5, "#[joint(arm.at(ll * x) -> tool, about = z)] wrist: Pin"),
+            ]),
+            2,
+        ),
+        (
+            with(&[
+                (2, "#[body(mas = 1)] arm: Body"),
+                (7, "#[acts(on = wrist, stiffness = stiff)] coil: Spring"),
+            ]),
+            2,
+        ),
+        // Without a joint the tree is not known; what is said of others is.
+        (
+            with(&[
+                (4, "#[joint(ground, arm, about = z)] hinge: Pin"),
+                (3, "#[body(mass = -1, inertia = sphere(1, 1))] tool: Body"),
+            ]),
+            2,
+        ),
+        (
+            with(&[
+                (5, "#[joint(arm -> tool, abuot = z)] wrist: Pin"),
+                (4, "#[joint(ground -> arm, about = 2 * z)] hinge: Pin"),
+            ]),
+            2,
+        ),
+        // An output; a definition.
+        (with(&[(11, "#[output(s +)] seen: Vector"), (10, "#[define(sine(hinge))] s: Scalar")]), 2),
+        // A name that stands twice, and an axis.
+        (with(&[(0, "tip: f64, k: f64"), (4, "#[joint(ground -> arm, about = l * z)] hinge: Pin")]), 2),
+        // A type that is not known, and one mistake in each of two elements that have nothing to do with it.
+        (
+            with(&[
+                (8, "#[acts(on = hinge)] motor: Engine"),
+                (7, "#[acts(on = elbow, stiffness = k)] coil: Spring"),
+                (10, "#[define(cosine(hinge))] s: Scalar"),
+            ]),
+            3,
+        ),
+    ];
+    let rows: Vec<(&str, &str, usize)> = rows.iter().map(|(fields, n)| ("", fields.as_str(), *n)).collect();
+    counts(&rows);
+    // An argument of the attribute.
+    counts(&[("gravty = -9.81 * y", &format!("{ARM} #[acts(on = hinges)] motor: Torque"), 2)]);
+    // What the attribute's argument may have meant decides on the others.
+    counts(&[
+        ("inertias = none", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin", 1),
+        ("urfd = \"robot.urdf\"", "#[acts(on = elbow)] motor: Torque", 1),
+    ]);
+}
+
+/// Whichever part has a mistake of grammar, nothing is said of the others, which have none.
+#[test]
+fn nothing_follows_from_a_mistake_of_grammar() {
+    for (k, part) in PARTS.iter().enumerate() {
+        let mut broken = vec![part.replace(": ", ": Un")];
+        if let Some((attribute, field)) = part.split_once(")] ") {
+            broken.extend([
+                format!("{attribute}, nothing = 1)] {field}"),
+                format!("{attribute}, + )] {field}"),
+            ]);
+            broken.push(field.to_string());
+            broken.push(part.replace("#[", "#[un"));
+        }
+        for text in broken {
+            let fields = with(&[(k, &text)]);
+            let found = messages("gravity = -9.81 * y", &fields);
+            assert!(found.len() == 1, "{text}\nexpected one error, found\n{}", found.join("\n"));
+        }
+    }
+}
