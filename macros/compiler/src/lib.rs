@@ -49,7 +49,7 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
     let mut mistake =
         Diagnostic::new(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`");
     mistake.help("write it below: there it sees the struct without its elements, which do not stay");
-    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &mistake);
+    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &mistake.tokens());
     tokens.extend(cx.into_tokens());
     Emitted { tokens, text: String::new() }
 }

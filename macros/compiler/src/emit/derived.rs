@@ -1,6 +1,5 @@
 //! What stands for a struct whose derives have seen its elements: a mistake that is told once.
 
-use crate::diag::Diagnostic;
 use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -8,13 +7,12 @@ use quote::{format_ident, quote};
 /// The struct's name for a type that the mistake is an argument of. Derived code names the elements as fields, the user's code
 /// leaves them out, and no struct suits both; but of a type with a mistake in its arguments rustc says nothing more, whatever
 /// fields and methods it is asked for.
-pub fn a_mistake_in_a_type(shell: &Shell, mistake: &Diagnostic) -> TokenStream {
+pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream {
     let Shell { attributes, visibility, ident, parameters, generics, .. } = shell;
     let hidden = format_ident!("__{}BelowADerive", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
     let names = generics.type_params().map(|parameter| &parameter.ident);
     let (all, _, _) = generics.split_for_impl();
-    let mistake = mistake.tokens();
     // A struct without parameters is a value of its name.
     let value = parameters.is_empty().then(|| {
         quote! {
