@@ -23,7 +23,7 @@ use core::fmt;
 use core::ops::{
     Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
-use nalgebra::SVector;
+use nalgebra::{ArrayStorage, SMatrix};
 pub(crate) use registers::{Registers, Work};
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
@@ -145,17 +145,36 @@ pub fn splat<T: Copy, const N: usize>(x: T) -> Lanes<T, N> {
 
 /// One lane of a column, for generated code.
 #[inline]
-pub fn lane<T: Real, const N: usize, const R: usize>(x: &SVector<Lanes<T, N>, R>, k: usize) -> SVector<T, R> {
+pub fn lane<T: Real, const N: usize, const R: usize, const C: usize>(
+    x: &SMatrix<Lanes<T, N>, R, C>,
+    k: usize,
+) -> SMatrix<T, R, C> {
     x.map(|x| x.0.get(k).copied().unwrap_or(T::zero()))
 }
 
-/// A column from the columns of its lanes, for generated code.
+/// A matrix from the matrices of its lanes, for generated code. One after another: in a debug build each takes its place on the
+/// stack.
 #[inline]
-pub fn lane_by_lane<T: Real, const N: usize, const R: usize>(
-    f: impl FnMut(usize) -> SVector<T, R>,
-) -> SVector<Lanes<T, N>, R> {
-    let columns: [SVector<T, R>; N] = core::array::from_fn(f);
-    SVector::from_fn(|i, _| Lanes(columns.each_ref().map(|column| column.data.0[0][i])))
+pub fn lane_by_lane<T: Real, const N: usize, const R: usize, const C: usize>(
+    mut f: impl FnMut(usize) -> SMatrix<T, R, C>,
+) -> SMatrix<Lanes<T, N>, R, C> {
+    let mut all = SMatrix::from_array_storage(ArrayStorage([[Lanes([T::zero(); N]); R]; C]));
+    for k in 0..N {
+        set_lane(&mut all, k, &f(k));
+    }
+    all
+}
+
+/// Puts a matrix into lane `k` of one, for generated code.
+#[inline]
+pub fn set_lane<T: Real, const N: usize, const R: usize, const C: usize>(
+    all: &mut SMatrix<Lanes<T, N>, R, C>,
+    k: usize,
+    one: &SMatrix<T, R, C>,
+) {
+    for (lanes, x) in all.iter_mut().zip(one) {
+        lanes.0.iter_mut().skip(k).take(1).for_each(|lane| *lane = *x);
+    }
 }
 
 impl<T, const N: usize> From<[T; N]> for Lanes<T, N> {

@@ -134,7 +134,7 @@ pub mod __private {
         slipping_response, slipping_solution,
     };
     pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
-    pub use crate::lanes::{Lanes, lane, lane_by_lane, splat};
+    pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,

@@ -3,8 +3,8 @@
 use linkwork_compiler::expand;
 use std::path::Path;
 
-/// The generated code of a floating body with arms of six joints.
-fn arms(names: &[&str]) -> String {
+/// The generated code of a floating body with arms of six joints, with words of the attribute.
+fn code(words: &str, names: &[&str]) -> String {
     let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,"
         .to_string();
     for name in names {
@@ -18,7 +18,8 @@ fn arms(names: &[&str]) -> String {
         }
     }
     item += "}";
-    let emitted = expand("gravity = -9.81 * z".parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    let arguments = format!("gravity = -9.81 * z, {words}");
+    let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
@@ -31,7 +32,7 @@ fn bodies(code: &str) -> Vec<(&str, &str)> {
 #[test]
 fn debug_builds_have_operators_for_calls() {
     for names in [&["one"][..], &["left", "right"]] {
-        let code = arms(names);
+        let code = code("", names);
         let bodies = bodies(&code);
         assert!(bodies.len() > 4, "{names:?}: inverse and forward dynamics, at least");
         for (debug, _) in &bodies {
@@ -40,5 +41,20 @@ fn debug_builds_have_operators_for_calls() {
         }
         assert!(bodies.iter().any(|(_, other)| other.contains("Ops::mul_add(")), "{names:?}");
         assert!(bodies.iter().any(|(_, other)| other.contains(".lane::<")), "{names:?}");
+    }
+}
+
+/// Lanes of states would each take their place on the stack.
+#[test]
+fn debug_builds_compute_one_state_after_another() {
+    let code = code("batch, derivatives", &["one"]);
+    let bodies = bodies(&code);
+    for call in [
+        "|k| self.inverse_dynamics(",
+        "|k| self.forward_dynamics(",
+        "\nself.forward_dynamics_derivatives_into(",
+    ] {
+        let one = format!("{call}&lane(q, k)");
+        assert!(bodies.iter().any(|(debug, other)| debug.contains(&one) && !other.contains(&one)), "{call}");
     }
 }

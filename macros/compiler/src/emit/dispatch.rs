@@ -4,6 +4,7 @@
 use super::body::{Build, write_body};
 use super::function::{Signature, given, write_function, write_head};
 use super::item::{ALLOW, Head};
+use super::lanes;
 use crate::catalogue::Shape;
 use crate::derive::Function;
 use std::fmt::Write;
@@ -70,13 +71,16 @@ impl Bodies {
         );
         let mut text = String::new();
         write_body(&mut text, f, s, true, Build::Optimised);
-        // What calls others multiplies their matrices, and several states are lanes in any build.
-        let differs = !f.shape.calls() && !s.scalar.is_in_lanes();
-        let debug = (differs && f.program.instructions.len() <= LARGEST).then(|| {
-            let mut text = String::new();
-            write_body(&mut text, f, s, true, Build::Debug);
-            text
-        });
+        let debug = match s.scalar.is_in_lanes() {
+            true => lanes::one_by_one(f),
+            // What calls others multiplies their matrices.
+            false if f.shape.calls() || f.program.instructions.len() > LARGEST => None,
+            false => {
+                let mut text = String::new();
+                write_body(&mut text, f, s, true, Build::Debug);
+                Some(text)
+            }
+        };
         self.list.push(Body {
             types,
             names,

@@ -1,10 +1,10 @@
 //! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
 
 use super::dispatch::Bodies;
-use super::function::{Signature, write_function};
+use super::function::{Signature, given, write_function};
 use super::item::{Interface, needed};
 use super::manifold::write_manifold;
-use crate::catalogue::{self, Argument, Id};
+use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
 use crate::model::Chart;
 use std::fmt::Write;
@@ -47,6 +47,45 @@ pub fn write_methods(
         write_constrained(out, i, &lanes);
     }
     write_manifold(out, charts, &lanes);
+}
+
+/// The body of a function in lanes for debug builds, where lanes would need more stack than a thread has: one state after
+/// another. `None` for what only others call that have such a body.
+pub fn one_by_one(f: &Function) -> Option<String> {
+    let argument = |a: &Argument| match a {
+        Argument::T => Some("t.0[k]".to_string()),
+        Argument::Into(name, _) => Some(format!("&mut one_{name}")),
+        Argument::Given(..) => None,
+        a => Some(format!("&lane({}, k)", a.name())),
+    };
+    let arguments: Option<Vec<String>> = f.arguments.iter().map(argument).collect();
+    let call = format!("self.{}({})", f.name, arguments?.join(", "));
+    let given = given(f);
+    if !given.is_empty() {
+        let each = |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
+        let (first, last) = (
+            each(&|name| format!("let mut one_{name} = lane({name}, k);\n")),
+            each(&|name| format!("set_lane({name}, k, &one_{name});\n")),
+        );
+        return (!matches!(f.shape, Shape::Accelerated(_))).then(|| {
+            format!("use ::linkwork::__private::{{lane, set_lane}};\nfor k in 0..LANES {{\n{first}{call};\n{last}}}\n")
+        });
+    }
+    let parts = |count: usize| {
+        let one = |part| format!("lane_by_lane(|k| all[k].{part})");
+        let parts: Vec<String> = (0..count).map(one).collect();
+        format!("let all: [_; LANES] = ::core::array::from_fn(|k| {call});\n({})", parts.join(", "))
+    };
+    let result = match f.shape {
+        Shape::Scalar => format!("Lanes(::core::array::from_fn(|k| {call}))"),
+        Shape::Vector(_) | Shape::Square(_) | Shape::Matrix(..) | Shape::Inverse(_) => {
+            format!("lane_by_lane(|k| {call})")
+        }
+        Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => parts(2),
+        Shape::Forward(_) | Shape::CalledForward(_) => parts(3),
+        Shape::Accelerated(_) | Shape::Array(_) | Shape::Symmetric(_) => return None,
+    };
+    Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))
 }
 
 /// Forward dynamics with constraints. Where the elimination fails in some lane, all take the way of a single state.

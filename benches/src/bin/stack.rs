@@ -1,0 +1,134 @@
+//! The stack that functions of robots need, with everything that they call.
+//!
+//! `cargo run -p linkwork-benches --bin stack` for debug builds, with `--release` for release builds. Each call is made on a
+//! painted stack of a thread, and what it leaves unpainted is counted: KiB, upwards, for one state and for eight.
+
+use linkwork::Rheonomic;
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::{Batch, Lanes, mechanism};
+use linkwork_benches::random::Random;
+use std::hint::black_box;
+use std::thread;
+
+/// How much of the stack is painted, bytes.
+const PAINTED: usize = 6 << 20;
+/// What is left for the painter itself, bytes: nothing less is seen.
+const MARGIN: usize = 512;
+/// Stack of the thread, bytes.
+const STACK: usize = PAINTED + (2 << 20);
+/// What it is painted with.
+const PAINT: u8 = 0xA5;
+
+#[mechanism(urdf = "../models/urdf/ur5.urdf", batch, derivatives)]
+struct Ur5;
+
+#[mechanism(urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch, derivatives)]
+struct Panda;
+
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch, derivatives)]
+struct Solo12;
+
+#[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, batch, derivatives)]
+struct Humanoid;
+
+fn main() {
+    let thread = thread::Builder::new().stack_size(STACK).spawn(table).expect("a thread");
+    thread.join().expect("the table is written");
+}
+
+fn table() {
+    println!("| robot | function | one state, KiB | eight states, KiB |");
+    println!("| --- | --- | ---: | ---: |");
+    macro_rules! robot {
+        ($name:literal, $m:expr) => {
+            dynamics($name, &$m);
+            let (q, v) = state(&$m);
+            derivatives($name, "derivatives of inverse dynamics", || {
+                black_box($m.inverse_dynamics_derivatives(&q, &v, &v));
+            });
+            derivatives($name, "derivatives of forward dynamics", || {
+                black_box($m.forward_dynamics_derivatives(&q, &v, &v));
+            });
+        };
+    }
+    robot!("UR5", Ur5);
+    robot!("Panda", Panda);
+    robot!("Solo 12", Solo12);
+    robot!("humanoid", Humanoid);
+}
+
+/// A random state.
+fn state<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> (SVector<f64, NQ>, SVector<f64, NV>)
+where
+    M: Batch<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(1);
+    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.within(2.0));
+    (m.integrate(&m.neutral(), &vector()), vector())
+}
+
+fn dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
+where
+    M: Batch<NQ, NV, NU, Scalar = f64>,
+{
+    let (q, v) = state(m);
+    let (q8, v8): (SVector<Lanes<f64, 8>, NQ>, SVector<Lanes<f64, 8>, NV>) =
+        (q.map(Lanes::splat), v.map(Lanes::splat));
+    let t8 = Lanes([0.0; 8]);
+    macro_rules! row {
+        ($text:literal, $one:ident, $eight:ident, $($x:ident $x8:ident),*) => {
+            let one = stack(&mut || { black_box(Rheonomic::$one(m, 0.0, $(&$x),*)); });
+            let eight = stack(&mut || { black_box(m.$eight(t8, $(&$x8),*)); });
+            println!("| {name} | {} | {} | {} |", $text, kib(one), kib(eight));
+        };
+    }
+    row!("mass matrix", mass_matrix, mass_matrix_lanes, q q8);
+    row!("bias forces", bias_forces, bias_forces_lanes, q q8, v v8);
+    row!("inverse dynamics", inverse_dynamics, inverse_dynamics_lanes, q q8, v v8, v v8);
+    row!("forward dynamics", forward_dynamics, forward_dynamics_lanes, q q8, v v8, v v8);
+}
+
+fn derivatives(name: &str, text: &str, mut call: impl FnMut()) {
+    println!("| {name} | {text} | {} | |", kib(stack(&mut call)));
+}
+
+/// In KiB, upwards.
+fn kib(bytes: usize) -> usize {
+    bytes.div_ceil(1 << 10)
+}
+
+/// The stack that a call needs below this function, bytes.
+#[inline(never)]
+fn stack(call: &mut dyn FnMut()) -> usize {
+    // What is loaded or looked up at the first call is not counted.
+    call();
+    let here = black_box(0_u8);
+    let top = std::ptr::from_ref(&here) as usize - MARGIN;
+    paint(top);
+    call();
+    top - lowest(top)
+}
+
+/// Paints the stack below an address.
+#[inline(never)]
+#[expect(unsafe_code, reason = "the stack below this function belongs to the thread, and nobody uses it")]
+fn paint(top: usize) {
+    let own = black_box(0_u8);
+    // Its own frame is left alone.
+    let top = top.min(std::ptr::from_ref(&own) as usize - MARGIN);
+    for address in top - PAINTED..top {
+        // SAFETY: the thread has `STACK` bytes, of which few are in use.
+        unsafe { std::ptr::with_exposed_provenance_mut::<u8>(address).write_volatile(PAINT) };
+    }
+}
+
+/// The lowest address below another one whose paint is gone.
+#[inline(never)]
+#[expect(unsafe_code, reason = "the stack below this function belongs to the thread")]
+fn lowest(top: usize) -> usize {
+    // SAFETY: as in `paint`.
+    let is_painted = |address: &usize| unsafe {
+        std::ptr::with_exposed_provenance::<u8>(*address).read_volatile() == PAINT
+    };
+    (top - PAINTED..top).find(|address| !is_painted(address)).unwrap_or(top)
+}
