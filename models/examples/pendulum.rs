@@ -31,11 +31,16 @@ fn main() -> Result<(), Error> {
 
     // Every function is generated for this mechanism alone. Configuration q, velocity v and forces are vectors.
     let (q, v) = (SVector::from([0.5]), SVector::from([0.0]));
-    println!("moment of inertia about the hinge  {:.3} kg·m²", pendulum.mass_matrix(&q)[0]);
-    println!("torque that holds it at 0.5 rad    {:.3} N·m", pendulum.bias_forces(&q, &v)[0]);
-    println!("acceleration if it is let go       {:.3} rad/s²\n", {
-        pendulum.forward_dynamics(&q, &v, &SVector::zeros())[0]
-    });
+    let inertia = pendulum.mass_matrix(&q)[0];
+    let torque = pendulum.bias_forces(&q, &v)[0];
+    let acceleration = pendulum.forward_dynamics(&q, &v, &SVector::zeros())[0];
+    println!("moment of inertia about the hinge  {inertia:.3} kg·m²");
+    println!("torque that holds it at 0.5 rad    {torque:.3} N·m");
+    println!("acceleration if it is let go       {acceleration:.3} rad/s²\n");
+    // A rod about its end: m l² / 3; its weight acts half way down.
+    assert!((inertia - 2.0 * 1.5 * 1.5 / 3.0).abs() < 1e-12);
+    assert!((torque - 2.0 * 9.81 * 0.75 * 0.5_f64.sin()).abs() < 1e-12);
+    assert!((acceleration + torque / inertia).abs() < 1e-12);
 
     // A motion: released at 0.5 rad, the motor pushing to and fro, a sample every half second.
     let run = simulate(&pendulum)
@@ -44,10 +49,15 @@ fn main() -> Result<(), Error> {
         .duration(5.0)
         .sample_every(0.5);
     println!("  t, s   {}, rad   motor, N·m   energy, J", Pendulum::CONFIGURATION[0]);
+    let mut samples = 0;
     for sample in run {
         let Sample { t, q, v, u, .. } = sample?;
         let energy = pendulum.kinetic_energy(&q, &v) + pendulum.potential_energy(&q);
         println!("{t:6.1}   {:10.4}   {:10.4}   {energy:9.4}", q[0], u[0]);
+        assert!(q[0].abs() <= 0.5, "grease and a weak motor never let it higher than it was");
+        assert!((u[0] - 0.5 * t.sin()).abs() < 1e-12, "the motor pushes to and fro");
+        samples += 1;
     }
+    assert_eq!(samples, 11, "one every half second, from the beginning to the end");
     Ok(())
 }

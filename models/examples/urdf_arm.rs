@@ -26,21 +26,33 @@ fn main() {
     // The Jacobian turns joint velocities into the velocity of the tool: linear, then angular, in ground axes.
     let jacobian = Arm.frame_jacobian(tool, &q);
     println!("moves with        {:.4?}", (jacobian * v).as_slice());
+    let step = 1e-6;
+    let [before, after] = [-step, step].map(|t| Arm.frame_placement(tool, &(q + v * t)).translation.vector);
+    let moved = (after - before) / (2.0 * step);
+    assert!((moved - (jacobian * v).fixed_rows::<3>(0)).amax() < 1e-9, "the tool moves as the Jacobian says");
 
     // Joint velocities that move the tool straight up at 0.1 m/s without turning it.
     let up = Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 0.0);
     if let Some(inverse) = jacobian.try_inverse() {
         println!("straight up by    {:.4?}", (inverse * up).as_slice());
+        let there = Arm.frame_placement(tool, &(q + inverse * up * step));
+        let climbed = (there.translation.vector - placement.translation.vector) / step;
+        assert!((climbed - up.fixed_rows::<3>(0)).amax() < 1e-5, "it rises by 0.1 m/s");
+        assert!(there.rotation.angle_to(&placement.rotation) < 1e-9, "and does not turn");
     }
 
     // Torques that hold the arm still, and torques that also accelerate its elbow by 2 rad/s².
     let rest = SVector::zeros();
     let mut a = SVector::zeros();
     a[2] = 2.0;
-    println!("held by           {:.3?}", Arm.inverse_dynamics(&q, &rest, &rest).as_slice());
+    let held = Arm.inverse_dynamics(&q, &rest, &rest);
+    println!("held by           {:.3?}", held.as_slice());
+    assert!(Arm.forward_dynamics(&q, &rest, &held).amax() < 1e-10, "the arm stands still");
     let tau = Arm.inverse_dynamics(&q, &rest, &a);
     println!("accelerated by    {:.3?}", tau.as_slice());
 
     // And back: what these torques do is that acceleration.
-    println!("check             {:.3?}", Arm.forward_dynamics(&q, &rest, &tau).as_slice());
+    let found = Arm.forward_dynamics(&q, &rest, &tau);
+    println!("check             {:.3?}", found.as_slice());
+    assert!((found - a).amax() < 1e-10, "the elbow is accelerated, and nothing else");
 }
