@@ -265,7 +265,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             if largest(&rates)?.1 <= enough {
                 return Ok(v);
             }
-            v += self.constraint_correction(t, q, &rates);
+            // Beside the speed, so that what counts as rounding is told from what does not.
+            let unit = reach(&v);
+            v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
         let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
         if near(size, &v) {

@@ -272,3 +272,114 @@ fn speeds_are_left_where_others_do_not_follow_from_them() {
         assert!((lambda - mu).amax() < 1e-9 * lambda.amax(), "{lambda} and {mu} with a bend of {bend}");
     }
 }
+
+/// A parallelogram of bars of 0.1 kg whose coupler a spring turns against the crank.
+#[mechanism(gravity = -9.81 * y)]
+struct Sprung<T> {
+    stiffness: T,
+    #[body(mass = 0.1, com = 0.5 * x, inertia = rod(0.1, 1, x))]
+    crank: Body,
+    #[body(mass = 0.1, com = 0.5 * x, inertia = rod(0.1, 1, x))]
+    coupler: Body,
+    #[body(mass = 0.1, com = 0.5 * x, inertia = rod(0.1, 1, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    first: Pin,
+    #[joint(crank.at(1 * x) -> coupler, about = z)]
+    second: Pin,
+    #[joint(ground.at(1 * x) -> rocker, about = z)]
+    third: Pin,
+    #[joint(rocker.at(1 * x) -> coupler.at(1 * x), about = z)]
+    closing: Pin,
+    #[acts(on = second, stiffness = stiffness, free_angle = 0)]
+    spring: Spring,
+}
+
+/// The parallelogram is a pendulum with the spring at its pin: `(1 + 2/3) m l² θ̈ = −2 m g l cos θ − k θ`.
+#[test]
+fn stiff_springs_act_in_singular_positions() {
+    for stiffness in [0.0, 1e3, 1e6] {
+        let m = Sprung { stiffness };
+        for exponent in 1..=16 {
+            let angle = 10_f64.powi(-exponent);
+            let want = (-0.2 * 9.81 * angle.cos() - stiffness * angle) * 6.0;
+            for rate in [0.01, 0.1, 0.3, 1.0, 6.0, 50.0] {
+                let a = m.forward_dynamics(
+                    &[angle, -angle, angle].into(),
+                    &[rate, -rate, rate].into(),
+                    &SVector::zeros(),
+                );
+                let off = (a - SVector::from([want, -want, want])).amax();
+                let most = 1e-8 + 1e-9 * rate * rate + 1e-13 * stiffness;
+                assert!(off < most, "{off} at {angle} rad, {rate} rad/s with {stiffness} N·m/rad");
+            }
+        }
+    }
+}
+
+/// What a run gains of the energy at most, in shares of what it has.
+fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time: f64, method: M) -> f64 {
+    let to = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
+    let m = Sprung { stiffness: to(stiffness) };
+    let on = |x: f64| SVector::from([to(x), to(-x), to(x)]);
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let start = energy(&on(angle), &on(rate));
+    let run = simulate(&m).from(on(angle), on(rate)).method(method).duration(to(time));
+    let mut most = T::zero();
+    for sample in run.sample_every(to(time / 100.0)) {
+        let Sample { q, v, .. } = sample.expect("it goes on");
+        most = most.max((energy(&q, &v) - start).abs());
+    }
+    linkwork::nalgebra::try_convert::<T, f64>(most / start.abs()).expect("a number")
+}
+
+/// Six swings of a stiff spring through the flat position, in either precision.
+#[test]
+fn stiff_springs_swing_through_singular_positions() {
+    for stiffness in [1e4, 1e6] {
+        let rate = (stiffness * 6.0_f64).sqrt();
+        let (h, time) = (0.05 / rate, 40.0 / rate);
+        let start = (0.05, 0.0);
+        macro_rules! all {
+            ($scalar:ty, $more:expr) => {
+                let run = || (stiffness, start, time, h as $scalar);
+                let (k, s, t, h) = run();
+                let found = [
+                    swing::<$scalar, _>(k, s, t, Rk4::step(h)),
+                    swing::<$scalar, _>(k, s, t, ImplicitMidpoint::step(h)),
+                    swing::<$scalar, _>(k, s, t, Rosenbrock::step(h)),
+                    swing::<$scalar, _>(k, s, t, SemiImplicitEuler::step(h)),
+                ];
+                // By their orders; Rosenbrock damps, and Euler's energy oscillates with h ω / 2.
+                for (found, most) in found.iter().zip([1e-6, 1e-6, 5e-2, 3e-2]) {
+                    assert!(*found < most + $more, "{found:?} of the energy with {k} N·m/rad");
+                }
+            };
+        }
+        all!(f64, 0.0);
+        all!(f32, 6e-3);
+    }
+}
+
+/// In single precision every method passes as it does in double precision.
+#[test]
+fn single_precision_passes_singular_positions() {
+    for start in [(1.0, 6.0), (1.0, 12.0), (0.7, 0.0)] {
+        for h in [1e-3, 1e-2] {
+            macro_rules! all {
+                ($($name:literal: $method:ident;)+) => {$(
+                    let single = swing::<f32, _>(0.0, start, 2.0, $method::step(h as f32));
+                    let double = swing::<f64, _>(0.0, start, 2.0, $method::step(h));
+                    let what = $name;
+                    assert!(single < 1.1 * double + 2e-4, "{what}: {single} and {double} with {h} s from {start:?}");
+                )+};
+            }
+            all! {
+                "Runge–Kutta": Rk4;
+                "midpoint": ImplicitMidpoint;
+                "Rosenbrock": Rosenbrock;
+                "Euler": SemiImplicitEuler;
+            }
+        }
+    }
+}

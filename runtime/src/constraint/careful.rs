@@ -8,6 +8,7 @@ use super::{Constrained, Solution};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
+use passing::size;
 
 /// What is known of the constraints of a mechanism before it runs.
 #[derive(Clone, Copy, Debug)]
@@ -52,22 +53,22 @@ where
     if regular {
         return least;
     }
-    // On constraints that are fulfilled up to a rounding ε, rows of size σ ask for accelerations that are off by ε v² / σ³.
-    let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
-    let (speed, root) = (size(v), epsilon::<T>().sqrt());
-    let clear = (constant::<T>(4.0) * root * speed * speed / size(&least.0)).cbrt();
-    if clear < zone() {
+    if let Some(clear) = System::<T, NV, NC>::clearance(v, &least.0) {
         let (taken, regular) = system.solve(structure, clear, Weak::Dropped);
-        if regular {
+        // What the constraints hold against is no measure of what they leave.
+        let ratio = epsilon::<T>().sqrt() * size(&least.0) / size(&taken.0);
+        let enough = System::<T, NV, NC>::clearance(v, &taken.0)
+            .map(|clear| clear.max(ratio))
+            .filter(|clear| *clear < zone());
+        if regular
+            && enough
+                .is_some_and(|enough| enough <= clear || system.solve(structure, enough, Weak::Dropped).1)
+        {
             return taken;
         }
     }
-    // Fast motion leads out of the zone by itself; slow motion by accelerations, which are well known then.
-    let start = match speed * speed > size(&least.0) * far() {
-        true => least.0,
-        false => system.solve(structure, epsilon::<T>().cbrt(), Weak::Dropped).0.0,
-    };
-    let passing = passing::acceleration(mechanism, structure, t, (q, v), tau, start);
+    let start = system.solve(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), Weak::Dropped).0.0;
+    let passing = passing::acceleration(mechanism, structure, t, (q, v), &system.force, &start);
     system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
 }
 
@@ -77,7 +78,8 @@ fn zone<T: Real>() -> T {
 }
 
 /// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a singular position
-/// is not chased unless it is more than rounding: the change of velocity that takes it away would be large there.
+/// is not chased unless it is more than what rounding of the place makes of it: the change of velocity that takes it away
+/// would be large there.
 #[cold]
 #[inline(never)]
 pub fn careful_response<
@@ -100,14 +102,25 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
-    let (root, third) = (epsilon::<T>().sqrt(), epsilon::<T>().cbrt());
+    let both = System { mass, jacobian, force: *force, bias: *bias };
+    let (found, regular) = both.solve(structure, zone(), Weak::Dropped);
+    if regular {
+        return found;
+    }
     let gap = bias.iter().fold(T::zero(), |most, b| most.max(b.abs()));
-    let weak = match (gap + gap > root, gap > third * third) {
-        (true, _) => Weak::Down(root),
-        (_, true) => Weak::Down(third),
-        _ => Weak::Dropped,
-    };
-    System { mass, jacobian, force: *force, bias: *bias }.solve(structure, zone(), weak).0
+    // With places known to ε, a row of size σ is known as the direction of a branch to ε / σ².
+    let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
+    let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
+    let least = if gap > root { root } else { root.max(known / gap) };
+    let weak = if least < zone() { Weak::Down(least) } else { Weak::Dropped };
+    let correction = System { force: [T::zero(); NV], ..both }.solve(structure, zone(), weak).0;
+    if force.iter().all(|f| *f == T::zero()) {
+        return correction;
+    }
+    // Pushes are answered by all rows that tell a direction.
+    let answer = System { bias: [T::zero(); NC], ..both };
+    let answer = answer.solve(structure, zone(), Weak::Down(known.sqrt())).0;
+    (answer.0 + correction.0, answer.1 + correction.1)
 }
 
 /// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as they differ from
@@ -179,6 +192,7 @@ enum Weak<T, const NV: usize> {
 }
 
 /// A system of accelerations and multipliers.
+#[derive(Clone, Copy)]
 struct System<T, const NV: usize, const NC: usize> {
     mass: SMatrix<T, NV, NV>,
     jacobian: SMatrix<T, NC, NV>,
@@ -197,12 +211,34 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
+        Self::under(mechanism, t, (q, v), (tau - mechanism.bias_forces(t, q, v)).data.0[0])
+    }
+
+    /// That of a mechanism in a state under forces which are all that acts.
+    fn under<M, const NQ: usize, const NU: usize, const NH: usize>(
+        mechanism: &M,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        force: [T; NV],
+    ) -> Self
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
         Self {
             mass: mechanism.mass_matrix(t, q),
             jacobian: mechanism.constraint_jacobian(t, q),
-            force: (tau - mechanism.bias_forces(t, q, v)).data.0[0],
+            force,
             bias: mechanism.constraint_bias(t, q, v).data.0[0],
         }
+    }
+
+    /// The size of rows that give accelerations like `a` to half of the digits, if it is less than that of all that are
+    /// taken: on constraints that are fulfilled up to a rounding ε, rows of size σ ask for accelerations that are off by
+    /// ε v² / σ³.
+    fn clearance(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
+        let speed = size(v);
+        let clear = (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / size(a)).cbrt();
+        (clear < zone()).then_some(clear)
     }
 
     /// The solution, and whether the constraints have the rank that they have elsewhere with rows of more than the size

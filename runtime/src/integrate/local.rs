@@ -71,6 +71,16 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.impulse(self.origin + t, q, v, h, p)
     }
 
+    fn response(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.system.response(self.origin + t, q, v, p)
+    }
+
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
         self.system.is_nearly_singular(self.origin + t, q, dv)
     }

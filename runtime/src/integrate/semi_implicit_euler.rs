@@ -57,7 +57,7 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let half = h * constant(0.5);
     let pushed = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
         let p = force(system, state) * h;
-        let v = state.v + system.impulse(state.t, &state.q, &state.v, T::zero(), &p);
+        let v = state.v + system.response(state.t, &state.q, &state.v, &p);
         settled(system, State { v, ..*state }, state.t).ok()
     };
     let later = pushed(system, start, half)?;

@@ -137,6 +137,18 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         p: &SVector<T, NV>,
     ) -> SVector<T, NV>;
 
+    /// The change of `v̇` by the generalized forces `p`, in singular positions of constraints too: by those of the motion that
+    /// passes through with the velocity `v`.
+    fn response(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.impulse(t, q, v, T::zero(), p)
+    }
+
     /// Whether constraints lose rank near `q`, beside how a step by `dv` changes them
     /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
@@ -290,6 +302,22 @@ where
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
         self.mechanism.impulse(t, q, v, h, p)
+    }
+
+    fn response(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        let mut under = |tau: &SVector<T, NV>| {
+            self.mechanism.try_forward_dynamics(t, q, v, tau).unwrap_or_else(|reason| {
+                self.undetermined = Some(reason);
+                SVector::repeat(constant(f64::NAN))
+            })
+        };
+        under(p) - under(&SVector::zeros())
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {

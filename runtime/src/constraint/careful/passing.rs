@@ -3,15 +3,33 @@
 use super::{Structure, System, Weak, far, zone};
 use crate::Real;
 use crate::constraint::Constrained;
-use crate::private::constant;
+use crate::private::{constant, epsilon};
 use nalgebra::SVector;
 
 /// The motion to third order about an instant: acceleration and jerk.
 type Course<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
-/// The acceleration of the motion that passes through a state, from those a little before and after, which are
-/// interpolated. The states there are predicted from the acceleration `least` and better ones that follow, and brought
-/// onto the constraints. `None` where the position is singular there as well, or nothing moves.
+/// A way along the branch that a state is on.
+struct Way<T, const NQ: usize, const NV: usize> {
+    t: T,
+    q: SVector<T, NQ>,
+    v: SVector<T, NV>,
+    /// The velocity of the way, and whether it is that of the state, which time goes on with.
+    heading: SVector<T, NV>,
+    moves: bool,
+}
+
+/// The largest magnitude of the entries.
+pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
+}
+
+/// The acceleration `A f + c` of the motion that passes through a state, interpolated from a little before and after.
+///
+/// How accelerations follow from forces, `A`, and what they are without, `c`, depend on where a branch is and how fast it is
+/// passed, and change little over the way; forces of stiff elements change as much as they like, and are therefore those
+/// at the state. The way leads along the velocity of the state or, at rest, along the acceleration `least`. `None` where
+/// the position is singular around as well, or nothing moves.
 pub(super) fn acceleration<
     M,
     T: Real,
@@ -24,57 +42,92 @@ pub(super) fn acceleration<
     mechanism: &M,
     structure: &Structure<NC>,
     t: T,
-    state: (&SVector<T, NQ>, &SVector<T, NV>),
-    tau: &SVector<T, NV>,
-    least: SVector<T, NV>,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    force: &[T; NV],
+    least: &SVector<T, NV>,
 ) -> Option<SVector<T, NV>>
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
-    let (speed, rate, half) = (size(state.1), size(&least), constant::<T>(0.5));
-    let far = far::<T>();
-    let step = (far + far) / (speed + (speed * speed + constant::<T>(2.0) * rate * far).sqrt());
-    let moves = step > T::zero() && step.is_finite();
-    if !moves {
+    let (speed, rate) = (size(v), size(least));
+    // Velocities have a direction beyond rounding. Where constraints move by themselves, slow ones tell little.
+    let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
+    let clear = speed > epsilon::<T>().cbrt();
+    let moves = clear && (!driven || speed * speed > rate * far::<T>() * constant(0.03));
+    let heading = if moves { *v } else { *least };
+    let pace = far::<T>() / size(&heading);
+    if !(pace > T::zero() && pace.is_finite()) {
         return None;
     }
-    let at = |h: T, course: &Course<T, NV>| {
-        let (q, v) = moved(mechanism, t + h, state, h, course)?;
-        let system = System::of(mechanism, t + h, (&q, &v), tau);
-        let ((a, _), regular) = system.solve(structure, zone::<T>() * half, Weak::Taken);
+    let way = Way { t, q: *q, v: *v, heading, moves };
+    let at = |(part, clear): (f64, T)| {
+        interpolated(mechanism, structure, &way, force, (pace * constant(part), clear))
+    };
+    // Of several coordinates others may be faster than those that lead out; farther on, or nearer, other things happen.
+    let (clear, least) = (far::<T>() * constant(0.4), zone::<T>() * constant(0.5));
+    let longer = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0].map(|part| (part, clear));
+    let shorter = [1.0, 0.5, 0.25].map(|part| (part, least));
+    longer.into_iter().chain(shorter).find_map(at)
+}
+
+/// The polynomial of degree five through six points of a way, `step` apart, all with rows of more than the size `clear`.
+fn interpolated<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    structure: &Structure<NC>,
+    way: &Way<T, NQ, NV>,
+    force: &[T; NV],
+    (step, clear): (T, T),
+) -> Option<SVector<T, NV>>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let half = constant::<T>(0.5);
+    let at = |h: T, course: &Course<T, NV>, force: &[T; NV]| {
+        let (t, q, v) = moved(mechanism, way, h, course)?;
+        let system = System::under(mechanism, t, (&q, &v), *force);
+        let ((a, _), regular) = system.solve(structure, clear, Weak::Taken);
         (regular && a.iter().all(|a| a.is_finite())).then_some(a)
     };
-    let mut course = (least, SVector::zeros());
-    for _ in 0..2 {
-        let (before, after) = (at(-step, &course)?, at(step, &course)?);
+    let mut course = (SVector::zeros(), SVector::zeros());
+    // Free of forces, the way bends as little as the branch lets it.
+    for _ in 0..if way.moves { 2 } else { 0 } {
+        let none = [T::zero(); NV];
+        let (before, after) = (at(-step, &course, &none)?, at(step, &course, &none)?);
         course = ((before + after) * half, (after - before) * (half / step));
     }
-    // The polynomial of degree five through six points.
-    let both = |k: f64| Some(at(step * constant(-k), &course)? + at(step * constant(k), &course)?);
+    let both =
+        |k: f64| Some(at(step * constant(-k), &course, force)? + at(step * constant(k), &course, force)?);
     let [near, middle, beyond] = [both(1.0)?, both(2.0)?, both(3.0)?];
     Some(near * constant::<T>(0.75) - middle * constant::<T>(0.3) + beyond * constant::<T>(0.05))
 }
 
-/// The state a time `h` later.
+/// Time and state `h` along a way, on the constraints.
 fn moved<M, T: Real, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     mechanism: &M,
-    t: T,
-    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    way: &Way<T, NQ, NV>,
     h: T,
     (a, jerk): &Course<T, NV>,
-) -> Option<(SVector<T, NQ>, SVector<T, NV>)>
+) -> Option<(T, SVector<T, NQ>, SVector<T, NV>)>
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (half, third) = (constant::<T>(0.5), constant::<T>(1.0 / 3.0));
-    let displacement = (v + (a + jerk * (h * third)) * (h * half)) * h;
-    let later = v + (a + jerk * (h * half)) * h;
-    let q = mechanism.project_configuration(t, &mechanism.integrate(q, &displacement)).ok()?;
+    let t = if way.moves { way.t + h } else { way.t };
+    let displacement = (way.heading + (a + jerk * (h * third)) * (h * half)) * h;
+    let later = way.v + (a + jerk * (h * half)) * h;
+    let q = mechanism.project_configuration(t, &mechanism.integrate(&way.q, &displacement)).ok()?;
     // What is left of the constraints decides here: once more, although it is rounding.
     let residuals = mechanism.constraint_residuals(t, &q);
     let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
     let q = mechanism.integrate(&q, &mechanism.constraint_correction(t, &q, &gap));
     let v = mechanism.project_velocity(t, &q, &later).ok()?;
-    Some((q, v))
+    Some((t, q, v))
 }
