@@ -13,6 +13,7 @@ use nalgebra::{SMatrix, SVector};
 mod assemble;
 mod careful;
 mod complete;
+mod layout;
 mod linearize;
 mod slipping;
 mod solve;
@@ -21,9 +22,11 @@ mod stabilized;
 
 #[doc(hidden)]
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
+#[doc(hidden)]
+pub use layout::{Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;
 #[doc(hidden)]
-pub use linearize::{Motion, columns, constrained_derivatives};
+pub use linearize::{Motion, constrained_derivatives};
 #[doc(hidden)]
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]

@@ -129,9 +129,9 @@ pub mod __private {
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled};
     pub use crate::constraint::{
-        Motion, Structure, careful_dynamics, careful_response, columns, constrained_derivatives,
-        independent_solution, least_solution, nearly_singular, pressing_solution, regular_solution,
-        slipping_response, slipping_solution,
+        Elimination, InputDerivatives, Motion, MotionDerivatives, Responses, Structure, careful_dynamics,
+        careful_response, constrained_derivatives, independent_solution, least_solution, nearly_singular,
+        pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
     pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};

@@ -2,6 +2,7 @@
 //! coordinates and speeds.
 
 use super::ConstraintError;
+use super::layout::MotionDerivatives;
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -27,28 +28,18 @@ pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, c
     pub speeds: [usize; NS],
 }
 
-/// A part of several matrices whose columns follow each other.
-pub fn columns<T: Real, const R: usize, const C: usize>(all: &[T], first: usize) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|i, j| all.get(first + j * R + i).copied().unwrap_or(T::zero()))
-}
-
-/// Derivatives of the accelerations by `q`, `v` and `τ`. `parts` are the derivatives, by `q` and `v`, of the forces that
-/// are missing in the equations of motion at given accelerations and multipliers, then of the constraints'
-/// accelerations; `solve` gives accelerations for forces and biases.
+/// Derivatives of the accelerations by `q`, `v` and `τ`; `solve` gives accelerations for forces and biases.
 pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
-    parts: &[T],
+    parts: &MotionDerivatives<T, NV, NC>,
     solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
 ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>) {
-    let biases = 2 * NV * NV;
-    let answer = |by: usize| {
-        let forces = columns::<T, NV, NV>(parts, by * NV * NV);
-        let bias = columns::<T, NC, NV>(parts, biases + by * NC * NV);
-        each_column(|j| solve(&forces.data.0[j].map(|f| -f), &bias.data.0[j]))
+    let answer = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
+        each_column(|j| solve(&forces[j].map(|f| -f), &bias[j]))
     };
     let by_force = each_column(|j| {
         solve(&core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }), &[T::zero(); NC])
     });
-    (answer(0), answer(1), by_force)
+    (answer(&parts.forces_by_q, &parts.bias_by_q), answer(&parts.forces_by_v, &parts.bias_by_v), by_force)
 }
 
 fn each_column<T: Real, const R: usize, const C: usize>(

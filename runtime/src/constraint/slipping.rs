@@ -1,6 +1,7 @@
 //! What generated code calls where contacts slip: the signs of their normal forces are found, with which friction acts.
 
-use super::solve::{determined, regular_solution, split};
+use super::layout::Elimination;
+use super::solve::{determined, regular_solution};
 use super::{ConstraintError, Solution};
 use crate::Real;
 use crate::private::constant;
@@ -10,31 +11,31 @@ use nalgebra::SVector;
 /// what [`regular_solution`] takes, for given signs: first all contacts press, then those whose force turns out to pull
 /// change their sign. One contact is decided with the second attempt.
 #[inline]
-pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
+pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &[usize; K],
     groups: &[usize; NC],
     names: &[&'static str; NC],
-    solve: impl Fn(&[T; K]) -> [T; N],
+    solve: impl Fn(&[T; K]) -> Elimination<T, NV, NC>,
 ) -> Result<Solution<T, NV, NC>, ConstraintError> {
     let jammed = |row: usize| ConstraintError::Jammed { constraint: names.get(row).copied().unwrap_or("") };
     let mut sides = [T::one(); K];
     for _ in 0..=2 * K {
         let found = solve(&sides);
         for row in 0..NC {
-            if !determined::<T, NV, NC, N>(groups, &found, row) {
+            if !determined(groups, &found, row) {
                 return Err(if rows.contains(&row) { jammed(row) } else { ConstraintError::Singular });
             }
         }
         let mut settled = true;
         for (side, row) in sides.iter_mut().zip(rows) {
-            let force = found.get(NV + row).copied().unwrap_or(T::zero());
+            let force = found.multipliers.get(*row).copied().unwrap_or(T::zero());
             if force * *side < T::zero() {
                 *side = -*side;
                 settled = false;
             }
         }
         if settled {
-            return Ok(split(&found));
+            return Ok(found.solution());
         }
     }
     Err(jammed(rows.first().copied().unwrap_or(0)))
@@ -42,23 +43,23 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const N: usi
 
 /// The same where all of them press, for lanes: in every lane, or none.
 #[inline]
-pub fn pressing_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+pub fn pressing_solution<T: Real, const NV: usize, const NC: usize>(
     rows: &[usize],
     groups: &[usize; NC],
-    found: &[T; N],
+    found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    let solution = regular_solution::<T, NV, NC, N>(groups, found)?;
+    let solution = regular_solution(groups, found)?;
     let presses = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
     rows.iter().all(presses).then_some(solution)
 }
 
 /// Accelerations by forces and biases, with the signs that the multipliers have: how the motion answers small changes.
 #[inline]
-pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const N: usize, const K: usize>(
+pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &'a [usize; K],
     groups: &'a [usize; NC],
     lambda: &'a SVector<T, NC>,
-    solve: impl Fn(&[T; NV], &[T; NC], &[T; K]) -> [T; N] + 'a,
+    solve: impl Fn(&[T; NV], &[T; NC], &[T; K]) -> Elimination<T, NV, NC> + 'a,
 ) -> impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV> + 'a {
     move |force, bias| {
         let sides = rows.map(|row| match lambda.get(row) {
@@ -66,7 +67,7 @@ pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const N:
             _ => T::one(),
         });
         let found = solve(force, bias, &sides);
-        let is_determined = (0..NC).all(|k| determined::<T, NV, NC, N>(groups, &found, k));
-        if is_determined { split::<T, NV, NC, N>(&found).0 } else { SVector::repeat(constant(f64::NAN)) }
+        let is_determined = (0..NC).all(|k| determined(groups, &found, k));
+        if is_determined { found.solution().0 } else { SVector::repeat(constant(f64::NAN)) }
     }
 }

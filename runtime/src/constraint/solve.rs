@@ -1,6 +1,7 @@
 //! Accelerations and multipliers from what straight-line elimination found, as long as it loses few digits.
 
 use super::Solution;
+use super::layout::{Elimination, Responses};
 use super::span::{dot, orthogonal};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -24,85 +25,86 @@ fn of_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl
 }
 
 /// Splits the result of an elimination into accelerations and multipliers; `None` if a pivot is too small beside what
-/// it was. `found` holds `NV` accelerations, and `NC` multipliers, pivots and former pivots.
+/// it was.
 #[inline]
-pub fn regular_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
-    found: &[T; N],
+    found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    (0..NC).all(|k| regular::<T, NV, NC, N>(groups, found, k)).then(|| split(found))
+    (0..NC).all(|k| regular(groups, found, k)).then(|| found.solution())
 }
 
-/// Accelerations and multipliers are the first of what was found.
-#[inline]
-pub(super) fn split<T: Real, const NV: usize, const NC: usize, const N: usize>(
-    found: &[T; N],
-) -> Solution<T, NV, NC> {
-    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-    (SVector::from_fn(|k, _| part(k)), SVector::from_fn(|k, _| part(NV + k)))
+impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
+    /// Accelerations and multipliers.
+    #[inline]
+    pub(super) fn solution(&self) -> Solution<T, NV, NC> {
+        (SVector::from(self.accelerations), SVector::from(self.multipliers))
+    }
+
+    /// The pivot of a constraint, and what it was before; zeros for one that is none.
+    #[inline]
+    fn pivot(&self, k: usize) -> (T, T) {
+        let of = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
+        (of(&self.pivots), of(&self.before))
+    }
 }
 
 /// Whether the pivot of a constraint can be trusted; not so what is not a number.
 #[inline]
-fn regular<T: Real, const NV: usize, const NC: usize, const N: usize>(
+fn regular<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
-    found: &[T; N],
+    found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-    let (pivot, before) = (part(NV + NC + k), |k: usize| part(NV + 2 * NC + k));
-    pivot > tolerance::<T>() * before(k) && pivot > noise::<T>() * of_group(groups, k, before)
+    let (pivot, before) = found.pivot(k);
+    pivot > tolerance::<T>() * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
 /// Whether the pivot of a contact that slips can be trusted: it must keep its sign, and nothing else decides.
 #[inline]
-pub(super) fn determined<T: Real, const NV: usize, const NC: usize, const N: usize>(
+pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
-    found: &[T; N],
+    found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-    let (pivot, before) = (part(NV + NC + k), |k: usize| part(NV + 2 * NC + k));
+    let (pivot, before) = found.pivot(k);
     let least = epsilon::<T>().sqrt();
-    pivot > least * before(k) && pivot > noise::<T>() * of_group(groups, k, before)
+    pivot > least * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
 /// What [`regular_solution`] does with an elimination whose pivots are entries of the Jacobian, at places chosen in
 /// advance. The pivots are squared, as are the lengths that their rows had. What rounding grows by is at most the product
 /// of what the pivots lack of a third of their rows.
 #[inline]
-pub fn independent_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
-    found: &[T; N],
+pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
+    found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-    let share = |k: usize| constant::<T>(9.0) * part(NV + NC + k) / part(NV + 2 * NC + k);
+    let share = |k: usize| {
+        let (pivot, before) = found.pivot(k);
+        constant::<T>(9.0) * pivot / before
+    };
     // A share that is not a number must not be passed over.
     let product = (0..NC).fold(T::one(), |product, k| {
         let share = share(k);
         product * if share > T::one() { T::one() } else { share }
     });
-    (product > tolerance::<T>() * constant(1e-2)).then(|| split(found))
+    (product > tolerance::<T>() * constant(1e-2)).then(|| found.solution())
 }
 
-/// The same for constraints of which some always follow from others, from what straight-line code has `found`: `NV`
-/// free accelerations, `NC` numbers that the constraints lack of zero under those, the rows of `J M⁻¹ Jᵀ`, and for each
-/// multiplier the `NV` accelerations that it gives. The multipliers are those of least norm; `None` unless `rank` of the
-/// constraints are clearly independent, and the others clearly follow from them.
+/// Accelerations and multipliers of constraints of which some always follow from others. The multipliers are those of least
+/// norm; `None` unless `rank` of the constraints are clearly independent, and the others clearly follow from them.
 #[inline]
-pub fn least_solution<T: Real, const NV: usize, const NC: usize, const N: usize>(
+pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     rank: usize,
-    found: &[T; N],
+    found: &Responses<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    let part = |k: usize| found.get(k).copied().unwrap_or(T::zero());
-    let gram = core::array::from_fn(|i| core::array::from_fn(|j| part(NV + NC + i * NC + j)));
-    let lambda = least_norm(groups, rank, gram, core::array::from_fn(|k| part(NV + k)))?;
-    let given = |i: usize| NV + NC + NC * NC + i;
-    let a = SVector::from_fn(|i, _| {
-        let all = lambda.iter().enumerate();
-        all.fold(part(i), |sum, (k, lambda)| sum + part(given(k * NV + i)) * *lambda)
-    });
-    Some((a, SVector::from(lambda)))
+    let lambda = least_norm(groups, rank, found.gram, found.lacking)?;
+    let mut a = found.free;
+    for (lambda, given) in lambda.iter().zip(&found.given) {
+        a.iter_mut().zip(given).for_each(|(a, given)| *a += *given * *lambda);
+    }
+    Some((SVector::from(a), SVector::from(lambda)))
 }
 
 /// The solution of least norm of `A x = b` for a positive semidefinite `A` of the given rank: with `A = L Lᵀ` for as many

@@ -1,7 +1,7 @@
 //! What constraints say of a state, and the eliminations that constrained dynamics is made of.
 
 use super::Argument::{Q, Tau, V};
-use super::{Argument, ConstraintFacts, Declaration, Facts, Id, Need, Row, Shape};
+use super::{Argument, ConstraintFacts, Declaration, Facts, Id, Need, Record, Row, Shape};
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
@@ -78,5 +78,8 @@ fn sides(f: &Facts) -> Vec<Argument> {
 /// from.
 fn solution(f: &Facts) -> Shape {
     let (nv, nc) = (f.nv, of(f).all);
-    Shape::Array(if of(f).overdetermined { (nv + nc) * (1 + nc) } else { nv + 3 * nc })
+    Shape::Record(match of(f).overdetermined {
+        true => Record::Responses(nv, nc),
+        false => Record::Elimination(nv, nc),
+    })
 }

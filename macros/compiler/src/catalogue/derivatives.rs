@@ -1,7 +1,7 @@
 //! The functions of the word `derivatives`.
 
 use super::Argument::{A, Q, Tau, U, V};
-use super::{Argument, Declaration, Facts, Id, Need, Row, Shape};
+use super::{Argument, Declaration, Facts, Id, Need, Record, Row, Shape};
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
 const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
@@ -111,14 +111,14 @@ pub const ROWS: &[Row] = &[
         let nc = constraints(f);
         Declaration {
             arguments: vec![Q, V, A, Argument::Given("lambda", 0, nc)],
-            shape: Shape::Array(3 * f.nv * f.nv + 3 * nc * f.nv),
+            shape: Shape::Record(Record::MotionDerivatives(f.nv, nc)),
             ..Declaration::default()
         }
     })
     .alone(),
     Row::derived(Id::InputDerivatives, "__input_derivatives", CONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, U],
-        shape: Shape::Array(f.nv + 2 * f.nv * f.nv + f.nv * f.nu),
+        shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()
     })
     .alone(),

@@ -70,6 +70,8 @@ pub enum Shape {
     CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
+    /// A struct of the runtime.
+    Record(Record),
     /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
     Symmetric(usize),
 }
@@ -103,6 +105,78 @@ impl Shape {
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
             Shape::Symmetric(_) => structure.entries.len(),
+            Shape::Record(record) => record.fields().iter().map(|field| field.length()).sum(),
+        }
+    }
+}
+
+/// What generated functions hand to the runtime: a struct of `runtime::constraint`, whose fields are the outputs in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// What elimination finds, of so many velocities and constraints.
+    Elimination(usize, usize),
+    /// What accelerations and multipliers follow from where constraints are redundant, of so many velocities and constraints.
+    Responses(usize, usize),
+    /// Derivatives at given accelerations and multipliers, of so many velocities and constraints.
+    MotionDerivatives(usize, usize),
+    /// Forces of the inputs and their derivatives, of so many velocities and inputs.
+    InputDerivatives(usize, usize),
+}
+
+/// A field of a record: an array, or a list of so many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordField {
+    /// Its name.
+    pub name: &'static str,
+    /// Length of an array.
+    pub rows: usize,
+    /// How many there are, of a list.
+    pub columns: Option<usize>,
+}
+
+impl RecordField {
+    /// How many numbers it holds.
+    pub fn length(&self) -> usize {
+        self.rows * self.columns.unwrap_or(1)
+    }
+}
+
+impl Record {
+    /// The struct's name, and its two sizes.
+    pub fn name(self) -> (&'static str, [usize; 2]) {
+        match self {
+            Record::Elimination(nv, nc) => ("Elimination", [nv, nc]),
+            Record::Responses(nv, nc) => ("Responses", [nv, nc]),
+            Record::MotionDerivatives(nv, nc) => ("MotionDerivatives", [nv, nc]),
+            Record::InputDerivatives(nv, nu) => ("InputDerivatives", [nv, nu]),
+        }
+    }
+
+    /// The fields in the order of the outputs.
+    pub fn fields(self) -> Vec<RecordField> {
+        let array = |name, rows| RecordField { name, rows, columns: None };
+        let list = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
+        match self {
+            Record::Elimination(nv, nc) => vec![
+                array("accelerations", nv),
+                array("multipliers", nc),
+                array("pivots", nc),
+                array("before", nc),
+            ],
+            Record::Responses(nv, nc) => {
+                vec![array("free", nv), array("lacking", nc), list("gram", nc, nc), list("given", nv, nc)]
+            }
+            Record::MotionDerivatives(nv, nc) => vec![
+                list("forces_by_q", nv, nv),
+                list("forces_by_v", nv, nv),
+                list("bias_by_q", nc, nv),
+                list("bias_by_v", nc, nv),
+                list("rates_by_q", nc, nv),
+                list("turning", nv, nv),
+            ],
+            Record::InputDerivatives(nv, nu) => {
+                vec![array("forces", nv), list("by_q", nv, nv), list("by_v", nv, nv), list("by_u", nv, nu)]
+            }
         }
     }
 }

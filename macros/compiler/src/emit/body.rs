@@ -6,7 +6,7 @@ use super::function::{Signature, given, index};
 use super::matrices;
 use super::scalar::ScalarSpelling;
 use super::stores;
-use crate::catalogue::{Argument, Shape};
+use crate::catalogue::{Argument, Record, Shape};
 use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
@@ -492,6 +492,7 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         Shape::Matrix(rows, columns) => {
             let _ = writeln!(out, "{}", outputs.matrix(0, rows, columns));
         }
+        Shape::Record(record) => out.push_str(&outputs.record(record)),
         Shape::Symmetric(_) => {}
         Shape::Inverse(_)
         | Shape::Pair(_)
@@ -523,6 +524,23 @@ impl Outputs<'_> {
         let column = |k: usize| self.list(first + k * rows..first + (k + 1) * rows);
         let columns: Vec<String> = (0..columns).map(column).collect();
         storage(&format!("[{}]", columns.join(", ")), "SMatrix")
+    }
+
+    /// A struct whose fields are the outputs in their order.
+    fn record(&self, record: Record) -> String {
+        let mut text = format!("::linkwork::__private::{} {{\n", record.name().0);
+        let mut first = 0;
+        for field in record.fields() {
+            let columns = |k: usize| self.list(first + k * field.rows..first + (k + 1) * field.rows);
+            let value = match field.columns {
+                None => columns(0),
+                Some(n) => format!("[{}]", (0..n).map(columns).collect::<Vec<_>>().join(", ")),
+            };
+            let _ = writeln!(text, "{}: {value},", field.name);
+            first += field.length();
+        }
+        text.push_str("}\n");
+        text
     }
 
     /// True for a constant zero.

@@ -182,7 +182,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
-        correction = solution(c, s, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
+        correction = solution(c, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
         groups = c.groups,
         determining = c.determining,
         rank = s.nv.saturating_sub(c.freedom[1]),
@@ -195,18 +195,13 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
 
 /// Accelerations and multipliers from what was `found` by an elimination, or the `careful` way where that loses digits.
 /// Corrections are always found by multipliers.
-fn solution(c: &Constraints, s: &Signature<'_>, independent: bool, careful: &str) -> String {
-    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let n = nv + 3 * nc;
+fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
     let quick = if c.overdetermined {
-        let n = (nv + nc) * (1 + nc);
-        format!(
-            "least_solution::<{scalar}, {nv}, {nc}, {n}>(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
-        )
+        "least_solution(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
     } else if independent {
-        format!("independent_solution::<{scalar}, {nv}, {nc}, {n}>(&found)")
+        "independent_solution(&found)"
     } else {
-        format!("regular_solution::<{scalar}, {nv}, {nc}, {n}>(&Self::__STRUCTURE.groups, &found)")
+        "regular_solution(&Self::__STRUCTURE.groups, &found)"
     };
     format!(
         "match ::linkwork::__private::{quick} {{
@@ -220,7 +215,7 @@ fn solution(c: &Constraints, s: &Signature<'_>, independent: bool, careful: &str
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
-    let solution = solution(c, s, c.independent, &careful);
+    let solution = solution(c, c.independent, &careful);
     format!(
         "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
         #[inline]\n#[must_use]
@@ -234,8 +229,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 /// The same of one with contacts that slip.
 fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let (n, slipping, k) = (nv + 3 * nc, &c.slipping, c.slipping.len());
+    let (scalar, slipping) = (s.scalar.name(), &c.slipping);
     format!(
         "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists. Those of contacts that slip are their normal forces, with friction in proportion to their magnitudes. NaN where [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
         #[inline]\n#[must_use]
@@ -249,7 +243,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
         /// `Jammed` where the normal force of a contact that slips does not follow from the motion (Painlevé's paradox: friction that presses harder than it yields); `Singular` where other constraints are redundant.
         #[inline]
         pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
-            ::linkwork::__private::slipping_solution::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
+            ::linkwork::__private::slipping_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
         }}"
     )
 }
@@ -265,13 +259,14 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             "|force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]| self.__constraint_solution({pass}q, force, bias)"
         )
     } else {
-        let (slipping, k, n) = (&c.slipping, c.slipping.len(), nv + 3 * nc);
+        let slipping = &c.slipping;
         format!(
-            "::linkwork::__private::slipping_response::<{scalar}, {nv}, {nc}, {n}, {k}>(&{slipping:?}, &Self::__STRUCTURE.groups, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
+            "::linkwork::__private::slipping_response(&{slipping:?}, &Self::__STRUCTURE.groups, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
         )
     };
-    let forces = format!("columns::<{scalar}, {nv}, 1>(&inputs, 0)");
-    let (rates, turning) = (2 * nv * nv + 2 * nc * nv, 2 * nv * nv + 3 * nc * nv);
+    let forces = "inputs.forces.into()";
+    // A matrix from the list of its columns.
+    let storage = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
     let _ = writeln!(
         out,
         "/// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics), constraints included.
@@ -281,7 +276,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         pub fn forward_dynamics_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({square}, {square}, {square}) {{
             let (a, lambda) = self.constrained_dynamics({pass}q, v, tau);
             let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
-            ::linkwork::__private::constrained_derivatives::<{scalar}, {nv}, {nc}>(&parts, {solve})
+            ::linkwork::__private::constrained_derivatives(&parts, {solve})
         }}
         /// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
         ///
@@ -290,19 +285,17 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         /// # Errors
         /// `Singular` where constraints lose rank{jams}.
         pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
-            use ::linkwork::__private::{{columns, constrained_derivatives}};
             let inputs = self.__input_derivatives({pass}q, v, u);
             let (a, lambda) = self.{motion};
-            let mut parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
-            for k in 0..{both} {{ parts[k] -= inputs[{nv} + k]; }}
-            let (by_q, by_v, by_force) = constrained_derivatives::<{scalar}, {nv}, {nc}>(&parts, {solve});
+            let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]).under(&inputs);
+            let (by_q, by_v, by_force) = ::linkwork::__private::constrained_derivatives(&parts, {solve});
             ::linkwork::__private::Motion {{
                 by_q,
                 by_v,
-                by_u: by_force * columns::<{scalar}, {nv}, {nu}>(&inputs, {from}),
+                by_u: by_force * ::linkwork::nalgebra::SMatrix::<{scalar}, {nv}, {nu}>::from_array_storage(::linkwork::nalgebra::ArrayStorage(inputs.by_u)),
                 jacobian: self.constraint_jacobian({pass}q),
-                rates_by_q: columns::<{scalar}, {nc}, {nv}>(&parts, {rates}),
-                turning: columns::<{scalar}, {nv}, {nv}>(&parts, {turning}),
+                rates_by_q: {storage}(parts.rates_by_q)),
+                turning: {storage}(parts.turning)),
                 holonomic: {nh},
                 preferred,
             }}.independent()
@@ -315,8 +308,6 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             format!("try_constrained_dynamics({pass}q, v, &{forces})?")
         },
         jams = if c.slipping.is_empty() { "" } else { ", `Jammed` where friction jams" },
-        both = 2 * nv * nv,
-        from = nv + 2 * nv * nv,
     );
 }
 

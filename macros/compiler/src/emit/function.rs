@@ -85,6 +85,10 @@ impl Signature<'_> {
             }
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
+            Shape::Record(record) => {
+                let (name, [m, n]) = record.name();
+                format!("::linkwork::__private::{name}<{s}, {m}, {n}>")
+            }
             Shape::Symmetric(_) => "()".to_string(),
             Shape::Pair(_)
             | Shape::Forward(_)

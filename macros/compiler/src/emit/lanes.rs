@@ -83,14 +83,14 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         }
         Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => parts(2),
         Shape::Forward(_) | Shape::CalledForward(_) => parts(3),
-        Shape::Accelerated(_) | Shape::Array(_) | Shape::Symmetric(_) => return None,
+        Shape::Accelerated(_) | Shape::Array(_) | Shape::Record(_) | Shape::Symmetric(_) => return None,
     };
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))
 }
 
 /// Forward dynamics with constraints. Where the elimination fails in some lane, all take the way of a single state.
 fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let (nv, nc) = (s.nv, i.constraints.names.len());
+    let nv = s.nv;
     let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau]);
     let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
     let one: Vec<String> = arguments
@@ -120,10 +120,9 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         0 => String::new(),
         k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.name()),
     };
-    let sizes = format!("::<{}, {nv}, {nc}, {}>", s.scalar.name(), nv + 3 * nc);
     let quick = match i.constraints.independent {
-        true => format!("independent_solution{sizes}(&found)"),
-        false => format!("pressing_solution{sizes}(&{slipping:?}, &Self::__STRUCTURE.groups, &found)"),
+        true => "independent_solution(&found)".to_string(),
+        false => format!("pressing_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &found)"),
     };
     let _ = writeln!(
         out,
