@@ -4,24 +4,25 @@
 //!
 //! `FILE` is a Rust file with a `#[mechanism(…)]` struct (the first, or the one named by `--struct NAME`), or a URDF
 //! file. Options: `--rust` (default: the generated code), `--counts` (operations of every function), `--time`
-//! (milliseconds of every stage); for a URDF file also `--base free`, `--inertia trust`, `--mimic independent`,
+//! (milliseconds of every stage and pass), `--after PASS` with `--function NAME` (the function's programs after a pass, those of
+//! all candidates among them; `--after all`: after each); for a URDF file also `--base free`, `--inertia trust`, `--mimic independent`,
 //! `--passive ignore`.
 //!
 //! `cargo run -p linkwork-compiler --example expand -- --every FILE…` writes the code of every mechanism in the Rust files
 //! as it is emitted, then once more with all that can be asked for by a word: what `.ci/compare-output` compares.
 
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::expr::{Expr, Graph};
-use linkwork_compiler::lower::{Counts, Op, Program, lower};
-use linkwork_compiler::mechanics::{
-    self, aba, crba, energy, forces, frames, ldl, momentum, regularity, rnea,
-};
-use linkwork_compiler::model::{Model, Quantity, build_model};
-use linkwork_compiler::{compile, derive, expand, read};
+use linkwork_compiler::expr::{Graph, Symbol};
+use linkwork_compiler::lower::{Counts, Op, Program, pipeline};
+use linkwork_compiler::model::{Quantity, build_model};
+use linkwork_compiler::passes::Passes;
+use linkwork_compiler::{compile, derive_with, expand, read};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 /// Repetitions of which the fastest is shown.
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Failure> {
     let (mut file, mut mode, mut name, mut options) = (None, "--rust", None, Vec::new());
+    let (mut pass, mut function) = (None, None);
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let Some(("--every", files)) = arguments.split_first().map(|(first, files)| (first.as_str(), files)) {
         return every(files);
@@ -58,6 +60,8 @@ fn run() -> Result<(), Failure> {
         match word.as_str() {
             "--rust" | "--counts" | "--time" => mode = word,
             "--struct" => name = Some(value()?.as_str()),
+            "--after" => pass = Some(value()?.as_str()),
+            "--function" => function = Some(value()?.as_str()),
             "--base" | "--inertia" | "--mimic" | "--passive" => options.push((&word[2..], value()?.as_str())),
             _ if !word.starts_with('-') && file.is_none() => file = Some(Path::new(word)),
             _ => return Err(format!("what is `{word}`?").into()),
@@ -68,6 +72,15 @@ fn run() -> Result<(), Failure> {
         Some("rs") => from_rust(file, name)?,
         _ => from_urdf(file, &options)?,
     };
+    if let Some(pass) = pass {
+        let known = [pipeline::DRAFT, pipeline::FINISH].concat();
+        let names: Vec<&str> =
+            [pipeline::SELECT].into_iter().chain(known.iter().map(|pass| pass.name)).collect();
+        if pass != "all" && !names.contains(&pass) {
+            return Err(format!("there is no pass `{pass}`: {}", names.join(", ")).into());
+        }
+        return after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
+    }
     match mode {
         "--counts" => counts(&input),
         "--time" => time(&input),
@@ -234,101 +247,119 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
     );
 }
 
-/// The milliseconds of every stage, each the least of several runs.
+/// The programs of one function after a pass, or after every pass.
+fn after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
+    let (wanted, of) = (pass.to_string(), function.to_string());
+    let print = move |function: &str, pass: &str, program: &Program, _: Duration| {
+        if function == of && (pass == wanted || wanted == "all") {
+            let c = program.counts;
+            println!(
+                "{function}, {pass}: {} instructions, {} operations",
+                program.instructions.len(),
+                c.total()
+            );
+            println!("{}", program.text(&symbol_name));
+        }
+    };
+    let cx = &mut Diagnostics::new();
+    let source = read(input.arguments.clone(), input.item.clone(), &input.folder, cx);
+    let source = checked(source, cx)?;
+    let graph = Graph::new();
+    let output = pipeline::observed(Box::new(print), || compile(&source, &graph, cx));
+    checked(output, cx).map(|_| ())
+}
+
+/// `q0`, `v1`, `p2` for a parameter, …
+fn symbol_name(symbol: Symbol) -> String {
+    match Quantity::of(symbol) {
+        Quantity::Time => "t".to_string(),
+        Quantity::Parameter(k) => format!("p{k}"),
+        Quantity::Configuration(k) => format!("q{k}"),
+        Quantity::Velocity(k) => format!("v{k}"),
+        Quantity::Acceleration(k) => format!("a{k}"),
+        Quantity::Force(k) => format!("tau{k}"),
+        Quantity::Input(k) => format!("u{k}"),
+        Quantity::Given(k) => format!("given{k}"),
+        other => format!("{other:?}"),
+    }
+}
+
+/// Milliseconds by name, each the least of several runs.
+#[derive(Default)]
 struct Stopwatch {
     stages: Vec<(String, Duration)>,
-    next: usize,
 }
 
 impl Stopwatch {
-    fn measure<T>(&mut self, stage: &str, f: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let result = f();
-        let elapsed = start.elapsed();
-        match self.stages.get_mut(self.next) {
+    /// Notes what one run took.
+    fn least(&mut self, stage: &str, elapsed: Duration) {
+        match self.stages.iter_mut().find(|(name, _)| name == stage) {
             Some((_, least)) => *least = elapsed.min(*least),
             None => self.stages.push((stage.to_string(), elapsed)),
         }
-        self.next += 1;
+    }
+
+    fn measure<T>(&mut self, stage: &str, f: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = f();
+        self.least(stage, start.elapsed());
         result
+    }
+
+    fn find(&self, stage: &str) -> Duration {
+        let found = self.stages.iter().find(|(name, _)| name == stage);
+        found.map_or(Duration::ZERO, |(_, time)| *time)
     }
 }
 
+/// What every stage takes, and within `derive` every pass of lowering, over all functions and all candidates for them.
 fn time(input: &Input) -> Result<(), Failure> {
-    let mut watch = Stopwatch { stages: Vec::new(), next: 0 };
+    let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
     for _ in 0..REPEATS {
-        watch.next = 0;
-        one_run(input, &mut watch)?;
+        one_run(input, &mut watch, &mut passes)?;
     }
-    let find = |stage: &str| {
-        let found = watch.stages.iter().find(|(name, _)| name == stage);
-        found.map_or(Duration::ZERO, |(_, time)| *time)
-    };
-    let emit = find("whole expansion").saturating_sub(find("read") + find("model") + find("derive, all"));
+    let lowered: Duration = passes.stages.iter().map(|(_, time)| *time).sum();
+    let known = ["read", "model", "derive"].map(|stage| watch.find(stage)).into_iter().sum();
+    let whole = watch.find("whole expansion");
+    let line = |stage: &str, time: Duration| println!("{stage:32}{:>10.2}", time.as_secs_f64() * 1e3);
     println!("{:32}{:>10}", "stage", "ms");
-    for (stage, time) in watch.stages.iter().chain([&("emit (the rest)".to_string(), emit)]) {
-        println!("{stage:32}{:>10.2}", time.as_secs_f64() * 1e3);
+    line("read", watch.find("read"));
+    line("model", watch.find("model"));
+    line("derive", watch.find("derive"));
+    line("  expressions (the rest)", watch.find("derive").saturating_sub(lowered));
+    for (pass, time) in &passes.stages {
+        line(&format!("  {pass}"), *time);
     }
+    line("emit (the rest)", whole.saturating_sub(known));
+    line("whole expansion", whole);
     Ok(())
 }
 
-fn one_run(input: &Input, watch: &mut Stopwatch) -> Result<(), Failure> {
+fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
     watch.measure("whole expansion", || input.expand());
     let source =
         watch.measure("read", || read(input.arguments.clone(), input.item.clone(), &input.folder, cx));
     let source = checked(source, cx)?;
-    let description = &source.mechanism.description;
     let graph = Graph::new();
-    let model = watch.measure("model", || build_model(description, &graph, cx));
+    let model = watch.measure("model", || build_model(&source.mechanism.description, &graph, cx));
     let model = checked(model, cx)?;
-    let output = watch.measure("derive, all", || derive(&model, cx));
+    let sums = Rc::new(RefCell::new(Vec::<(String, Duration)>::new()));
+    let noted = Rc::clone(&sums);
+    let note = move |_: &str, pass: &str, _: &Program, time: Duration| {
+        let mut sums = noted.borrow_mut();
+        match sums.iter_mut().find(|(name, _)| name == pass) {
+            Some((_, sum)) => *sum += time,
+            None => sums.push((pass.to_string(), time)),
+        }
+    };
+    let output = pipeline::observed(Box::new(note), || {
+        let derived = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
+        watch.measure("derive", derived)
+    });
     checked(output, cx)?;
-    // The same once more, function by function, in a graph of its own.
-    let graph = Graph::new();
-    let model = checked(build_model(description, &graph, cx), cx)?;
-    functions(&model, watch);
+    for (pass, time) in sums.borrow().iter() {
+        passes.least(pass, *time);
+    }
     Ok(())
 }
-
-/// Mechanics and lowering of each function.
-fn functions<'g>(model: &Model<'g>, watch: &mut Stopwatch) {
-    let joints = watch.measure("  joints", || mechanics::joints(model));
-    let mass = watch.measure("  composite bodies", || crba::mass_matrix(model, &joints));
-    watch.measure("  regularity", || regularity::singular_velocities(model, &joints, &mass));
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
-    let lowered = |watch: &mut Stopwatch, name: &str, f: &mut dyn FnMut() -> Vec<Expr<'g>>| {
-        let outputs = watch.measure(&format!("  {name}"), f);
-        watch.measure(&format!("  {name}: lower"), || lower(&outputs).fused());
-        outputs
-    };
-    lowered(watch, "mass matrix", &mut || mass.iter().flatten().copied().collect());
-    let bias = lowered(watch, "bias forces", &mut || rnea::inverse_dynamics(model, &joints, &v, None));
-    lowered(watch, "inverse dynamics", &mut || rnea::inverse_dynamics(model, &joints, &v, Some(&a)));
-    let force = |k| Quantity::Force(k).expr(model.graph);
-    let r: Vec<Expr<'g>> = bias.iter().enumerate().map(|(k, h)| force(k) - *h).collect();
-    lowered(watch, "articulated bodies", &mut || aba::accelerations(model, &joints, &r).unwrap_or_default());
-    lowered(watch, "factorisation", &mut || ldl::solve(mass.clone(), r.clone(), &joints));
-    lowered(watch, "generalized forces", &mut || forces::generalized_forces(model, &joints));
-    lowered(watch, "kinetic energy", &mut || vec![energy::kinetic_energy(model, &joints, &v)]);
-    lowered(watch, "potential energy", &mut || vec![energy::potential_energy(model, &joints)]);
-    lowered(watch, "momentum and its rate", &mut || {
-        let mut all = momentum::generalized_momentum(model, &joints, &v);
-        all.extend(momentum::momentum_rate(model, &joints, &v));
-        all.extend(frames::flat(&momentum::centroidal_momentum(model, &joints, &v)));
-        all
-    });
-    for (name, f) in [
-        ("placements", (|m, j, _| frames::link_placement(m, j).flat()) as Step),
-        ("twists", |m, j, v| frames::flat(&frames::link_twist(m, j, v))),
-        ("columns", |m, j, _| frames::jacobian_columns(m, j).iter().flat_map(frames::flat).collect()),
-    ] {
-        watch.measure(&format!("  links: {name}, lowered"), || {
-            for joint in &joints {
-                lower(&f(model, joint, &v)).fused();
-            }
-        });
-    }
-}
-
-type Step = for<'a, 'g> fn(&'a Model<'g>, &'a mechanics::Joint<'g>, &'a [Expr<'g>]) -> Vec<Expr<'g>>;

@@ -4,7 +4,7 @@ use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
 use crate::expr::print::Written;
 use crate::expr::{Expr, Symbol};
-use crate::lower::{Program, lower, lower_without, size};
+use crate::lower::{Program, lower, lower_without, pipeline, size};
 use crate::mechanics::{self, Joint, crba, frames};
 use crate::model::{Model, Quantity};
 use crate::passes::Passes;
@@ -189,11 +189,6 @@ enum Stage {
 
 impl Stage {
     fn program(self, outputs: &[Expr<'_>]) -> Program {
-        self.lowered(outputs).fused()
-    }
-
-    /// The program before its products are fused into sums.
-    fn lowered(self, outputs: &[Expr<'_>]) -> Program {
         lower_without(outputs, &|s| self.knows(s))
     }
 
@@ -207,11 +202,13 @@ impl Stage {
     fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
         let all = promising(lists);
         let mut programs: Vec<(usize, Program)> =
-            all.iter().map(|(k, list)| (*k, self.lowered(list))).collect();
+            all.iter().map(|(k, list)| (*k, self.program(list))).collect();
         let fewest = programs.iter().map(|(_, p)| p.counts.total()).min();
         programs.retain(|(_, p)| Some(p.counts.total()) == fewest);
-        let fused = programs.into_iter().map(|(k, program)| (k, program.fused()));
-        fused.min_by_key(|(_, program)| program.instructions.len()).unwrap_or_default()
+        if programs.len() > 1 {
+            programs.sort_by_cached_key(|(_, program)| program.fused_length());
+        }
+        programs.into_iter().next().unwrap_or_default()
     }
 
     /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
@@ -274,7 +271,8 @@ fn functions<'g>(
 /// The last steps of lowering, which look at whole programs.
 fn finish(functions: &mut [Function]) {
     for f in functions {
-        f.program = std::mem::take(&mut f.program).with_shared_sums().with_late_terms_last().scheduled();
+        pipeline::begin(&f.name);
+        f.program = std::mem::take(&mut f.program).through(pipeline::FINISH);
     }
 }
 
@@ -298,8 +296,9 @@ fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>)
     equations.map_or_else(Written::default, |e| mechanics::equations::written(model, &e))
 }
 
-fn done(outputs: &[Expr<'_>]) -> Program {
-    lower(outputs).fused()
+/// A step from link to link.
+fn part(outputs: &[Expr<'_>]) -> Program {
+    lower(outputs).through(pipeline::PART)
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
@@ -311,10 +310,10 @@ fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
         parent: joint.parent.map(|p| p.0),
         velocities: joint.dofs.iter().map(|d| d.index).collect(),
         driven: joint.drift.is_some(),
-        placement: done(&frames::link_placement(model, joint).flat()),
-        twist: done(&frames::flat(&frames::link_twist(model, joint, &v))),
-        acceleration: done(&frames::flat(&frames::link_acceleration(model, joint, &v, &a))),
-        columns: done(&columns),
+        placement: part(&frames::link_placement(model, joint).flat()),
+        twist: part(&frames::flat(&frames::link_twist(model, joint, &v))),
+        acceleration: part(&frames::flat(&frames::link_acceleration(model, joint, &v, &a))),
+        columns: part(&columns),
     }
 }
 
@@ -323,8 +322,8 @@ fn frame_steps<'g>(model: &Model<'g>, frame: &crate::model::NamedFrame<'g>) -> F
         name: frame.name.clone(),
         link: frame.link.map(|l| l.0),
         is_link: frame.pose.rotation.is_identity() && frame.pose.translation.is_zero(),
-        placement: done(&frames::frame_placement(model, frame).flat()),
-        twist: done(&frames::flat(&frames::frame_twist(model, frame))),
-        acceleration: done(&frames::flat(&frames::frame_acceleration(model, frame))),
+        placement: part(&frames::frame_placement(model, frame).flat()),
+        twist: part(&frames::flat(&frames::frame_twist(model, frame))),
+        acceleration: part(&frames::flat(&frames::frame_acceleration(model, frame))),
     }
 }

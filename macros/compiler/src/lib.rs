@@ -7,6 +7,7 @@ pub mod emit;
 pub mod expr;
 pub mod import;
 pub mod lower;
+mod machine;
 pub mod mechanics;
 pub mod model;
 pub mod passes;

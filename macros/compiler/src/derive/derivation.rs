@@ -8,7 +8,7 @@ use super::sensitivities::Sensitivities;
 use super::{Stage, constraints, outputs};
 use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
-use crate::lower::Program;
+use crate::lower::{Program, pipeline};
 use crate::mechanics::{Joint, energy, forces, power};
 use crate::model::{Chart, Model};
 use crate::passes::Passes;
@@ -68,6 +68,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// The functions that are declared, after those that are `done`: some consist of the same numbers as others.
     pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
         for declared in declared {
+            pipeline::begin(&declared.name);
             let (program, structure) = self.program(&declared, &done);
             done.push(Function::new(declared, program, structure));
         }

@@ -1,10 +1,13 @@
 //! The functions of the word `derivatives`.
 
 use super::output::Function;
-use super::{Stage, done, in_lanes};
+use super::{Stage, in_lanes};
 use crate::catalogue::{Parted, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::lower::{Operand, Program};
+use crate::lower::{Operand, Program, lower};
+use crate::machine::DERIVATIVES_COMPARED;
+use crate::machine::DERIVATIVES_WRITTEN_OUT;
+use crate::machine::INVERSE_WRITTEN_OUT;
 use crate::mechanics::derivatives::{
     self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, divided, invariance,
     symbolic,
@@ -14,28 +17,17 @@ use crate::model::{Chart, Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
 
-/// Up to how many velocities all forms of the model are tried, and every function is written out.
-const SMALL: usize = 10;
-
-/// Up to how many velocities this is so for the derivatives of forward dynamics of mechanisms that branch. What stands in
-/// a single function needs stack where it is not optimised.
-const MEDIUM: usize = 24;
-
-/// Up to how many velocities of a trunk, or of a mechanism that does not branch, the inverse of the mass matrix is written out.
-/// Beyond it is quicker in loops.
-const WRITTEN_OUT: usize = 12;
-
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
 
 /// The forms of the model that are tried.
 pub(super) fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
     let mut forms = passes::forms(model, passes);
-    if passes.frames && model.nv() <= SMALL {
+    if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
         forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
     }
     forms.retain(|form| !form.anchored);
-    if model.nv() > SMALL {
+    if model.nv() > DERIVATIVES_COMPARED {
         forms.truncate(1);
     }
     if passes.parallel {
@@ -83,7 +75,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     /// True if the linear system is made of them.
     pub(super) fn calls_linear(&self) -> bool {
-        self.parts.model.nv() > SMALL
+        self.parts.model.nv() > DERIVATIVES_COMPARED
     }
 
     pub(super) fn mass_matrix_inverse(&self) -> (Program, Structure) {
@@ -177,7 +169,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let groups = if lanes { limbs::find(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::of(self.model, &self.joints, &groups);
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
-        if self.model.nv() > SMALL {
+        if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
                 (Some(limbs), Some(marked)) => limbs.alone_and(marked),
                 _ => Trunk::branching(&self.joints, self.model.nv()),
@@ -208,7 +200,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             let a = lanes.limbs.symbols(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
                 let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
-                done(&force_columns(&forces))
+                lower(&force_columns(&forces))
             })
         });
         program.or_in_lanes(wide.chain(in_lanes))
@@ -246,7 +238,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                done(&outputs(forces, parts.clone()))
+                lower(&outputs(forces, parts.clone()))
             }))
         });
         program.or_in_lanes(in_lanes.into_iter().flatten())
@@ -270,7 +262,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             let a =
                 accelerated.then(|| lanes.limbs.scattered(&in_lanes::accelerations(&lanes.limbs, &inverse)));
             let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
-            Some(done(&outputs(a, parts)))
+            Some(lower(&outputs(a, parts)))
         }))
     }
 
@@ -284,7 +276,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
             let r = accelerated.then(|| lanes.limbs.scattered(&in_lanes::unbalanced(&lanes.limbs)));
-            Some(done(&outputs(r, in_lanes::inverse(&lanes.limbs, &parts))))
+            Some(lower(&outputs(r, in_lanes::inverse(&lanes.limbs, &parts))))
         }))
     }
 
@@ -293,8 +285,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         let in_lanes = self.limbs.as_ref().is_some_and(|lanes| lanes.trunk.is_some());
         self.is_large()
             && match &self.trunk {
-                Some(trunk) => !in_lanes || trunk.velocities.len() > WRITTEN_OUT,
-                None => self.model.nv() > WRITTEN_OUT,
+                Some(trunk) => !in_lanes || trunk.velocities.len() > INVERSE_WRITTEN_OUT,
+                None => self.model.nv() > INVERSE_WRITTEN_OUT,
             }
     }
 
@@ -313,7 +305,7 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// True if a single function of all is too large.
     fn is_large(&self) -> bool {
-        self.model.nv() > if self.trunk.is_some() { MEDIUM } else { SMALL }
+        self.model.nv() > if self.trunk.is_some() { DERIVATIVES_WRITTEN_OUT } else { DERIVATIVES_COMPARED }
     }
 
     fn linearization(&self, tau: &[Expr<'g>]) -> Program {

@@ -4,16 +4,13 @@
 use super::{Candidate, Stage, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
+use crate::machine::COMPARED_VELOCITIES;
 use crate::mechanics::{
     self, Joint, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
 };
 use crate::model::{Model, Quantity};
 use crate::passes::limbs::{self, Limbs};
 use crate::passes::{self, Form, Passes};
-
-/// Up to how many velocities functions are derived from frames of several kinds, and both algorithms of forward dynamics,
-/// and compared.
-const COMPARE: usize = 18;
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
 const SIMILAR: usize = 8;
@@ -34,7 +31,7 @@ impl<'g> Dynamics<'g> {
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
         let mut all = Kind::all(model, passes, stage);
         all.sort_by_key(|kind| kind.size);
-        if model.nv() > COMPARE {
+        if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
         }
         let most = all.first().map_or(0, |kind| kind.size + kind.size / SIMILAR);
@@ -50,7 +47,7 @@ impl<'g> Dynamics<'g> {
         let wide = mass_matrices_in_lanes(&kinds, stage, passes.wide(model.nv()));
         let side_by_side = in_lanes_of(stage, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
         let biases = kinds.iter().map(|forms| &forms.bias.program);
-        let bias = biases.min_by_key(|p| (p.counts.total(), p.instructions.len())).cloned();
+        let bias = biases.min_by_key(|p| (p.counts.total(), p.fused_length())).cloned();
         let biases_in_lanes = kinds.iter().filter_map(|forms| Some(forms.bias.in_lanes.as_ref()?.1.clone()));
         Dynamics {
             mass_matrix: stage.cheapest(masses.into_iter()).or_in_lanes(wide),
@@ -134,7 +131,7 @@ impl<'g> Dynamics<'g> {
     /// Articulated bodies or factorisation, whichever takes less time: the chains of the first are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> = self.kinds.iter().flat_map(Forms::articulated).collect();
-        let is_large = self.kinds.first().is_some_and(|forms| forms.nv() > COMPARE);
+        let is_large = self.kinds.first().is_some_and(|forms| forms.nv() > COMPARED_VELOCITIES);
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
             true => Vec::new(),
             false => self.kinds.iter().flat_map(Forms::factorised).collect(),
@@ -161,7 +158,7 @@ impl<'g> Kind<'g> {
     /// Those with frames of every kind.
     fn all(model: &Model<'g>, passes: Passes, stage: Stage) -> Vec<Kind<'g>> {
         let mut kinds = vec![passes::forms(model, passes)];
-        if passes.frames && model.nv() <= COMPARE {
+        if passes.frames && model.nv() <= COMPARED_VELOCITIES {
             kinds.push(passes::forms(model, Passes { frames: false, ..passes }));
         }
         if passes.parallel {

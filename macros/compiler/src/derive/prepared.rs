@@ -3,7 +3,7 @@
 
 use super::output::{Function, Prepared};
 use crate::expr::{Expr, Graph, Id};
-use crate::lower::{lower, place_hoisted};
+use crate::lower::{lower, pipeline, place_hoisted};
 use crate::model::Quantity;
 use std::collections::BTreeMap;
 
@@ -23,5 +23,5 @@ pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
     for f in &mut functions {
         place_hoisted(&mut f.program, &mut place);
     }
-    Prepared { numbers: lower(&numbers).fused(), functions }
+    Prepared { numbers: lower(&numbers).through(pipeline::PART), functions }
 }

@@ -3,13 +3,11 @@
 use super::Stage;
 use crate::expr::Expr;
 use crate::lower::Program;
+use crate::machine::DERIVATIVES_COMPARED;
 use crate::mechanics;
 use crate::mechanics::derivatives::parameters;
 use crate::model::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
-
-/// Up to how many velocities several forms of the model are tried.
-const SMALL: usize = 10;
 
 /// What both functions are derived from: the model as it is or one of its forms, whichever costs less.
 pub(super) struct Sensitivities<'g> {
@@ -20,7 +18,8 @@ pub(super) struct Sensitivities<'g> {
 
 impl<'g> Sensitivities<'g> {
     pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Sensitivities<'g> {
-        let mut forms = if model.nv() <= SMALL { passes::forms(model, passes) } else { Vec::new() };
+        let mut forms =
+            if model.nv() <= DERIVATIVES_COMPARED { passes::forms(model, passes) } else { Vec::new() };
         forms.retain(|form| !form.anchored);
         forms.push(Form { joints: mechanics::joints(model), model: model.clone(), anchored: false });
         if passes.parallel {

@@ -7,11 +7,8 @@ use super::item::{ALLOW, Head};
 use super::lanes;
 use crate::catalogue::Shape;
 use crate::derive::Function;
+use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
-
-/// Fewest operations of a function that chooses. The choice costs about two nanoseconds, and a function that is called
-/// cannot be inlined.
-const LARGE: usize = 60;
 
 /// Most operations of a function that has a body of its own for debug builds: both are read by the compiler, whichever it
 /// takes.
@@ -42,7 +39,7 @@ fn is_large(f: &Function) -> bool {
     match f.shape {
         // Calls the one that is given matrices, no more.
         Shape::CalledForward(_) => !given(f).is_empty(),
-        shape => shape.calls() || f.program.instructions.len() >= LARGE,
+        shape => shape.calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS,
     }
 }
 

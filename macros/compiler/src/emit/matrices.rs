@@ -4,6 +4,7 @@ use super::body::Outputs;
 use super::function::{Signature, given};
 use crate::catalogue::{Parted, Shape, Structure};
 use crate::derive::Function;
+use crate::machine::FILLED_ZEROS;
 
 const RUNTIME: &str = "::linkwork::__private";
 /// Before the columns of a matrix.
@@ -266,9 +267,6 @@ fn parts(rows: impl Fn(bool) -> String) -> String {
     format!("({}, {})", of(true), of(false))
 }
 
-/// How many zeros a column may have in the rows of its neighbours to be taken together with them.
-const FILLED: usize = 2;
-
 /// Neighbouring columns of a matrix.
 struct Run {
     /// From one up to another.
@@ -297,7 +295,7 @@ fn runs(
             let all: Vec<usize> =
                 (0..n).filter(|i| rows.binary_search(i).is_ok() || run.rows.contains(i)).collect();
             let filled = |j: usize| all.iter().filter(|i| is_zero(j, **i)).count();
-            if (run.columns.0..=j).all(|j| filled(j) <= FILLED) {
+            if (run.columns.0..=j).all(|j| filled(j) <= FILLED_ZEROS) {
                 *run = Run { columns: (run.columns.0, j + 1), rows: all };
                 continue;
             }

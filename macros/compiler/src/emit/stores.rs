@@ -6,15 +6,9 @@ use super::function::given;
 use crate::catalogue::{Parted, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
+use crate::machine::NEAR_STATEMENTS;
+use crate::machine::TURNED_STATEMENTS;
 use std::fmt;
-
-/// Up to how many statements results of alike limbs are stored at the end, column by column: then the lanes of several are
-/// turned round in registers and stored together.
-const TURNED: usize = 300;
-
-/// How many statements after one vector another may be known whose lanes are stored together with its own. More would make
-/// the first wait in memory, for few pairs: from 60 to 200 a humanoid's mass matrix gains 15 stores.
-const NEAR: usize = 60;
 
 /// An entry of a matrix.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,7 +32,7 @@ pub fn with_stores(
     outputs: &Outputs<'_>,
 ) -> (Vec<Statement>, Vec<Piece>) {
     let places = places(f, outputs);
-    let all = match !program.gathers.is_empty() && statements.len() <= TURNED {
+    let all = match !program.gathers.is_empty() && statements.len() <= TURNED_STATEMENTS {
         true => at_the_end(statements, &places, outputs),
         false => as_known(program, statements, &places, outputs),
     };
@@ -156,7 +150,7 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     let mut rest = lanes.into_iter().peekable();
     while let Some(one) = rest.next() {
         let below = Place { row: one.place.row + 1, ..one.place };
-        let is_next = |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR;
+        let is_next = |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
         if let Some(next) = rest.next_if(is_next) {
             pairs.push([one, next]);
         }

@@ -4,69 +4,36 @@
 //! would have to wait for it: then it stays as it is.
 
 use super::terms::{LONGEST, Sum, Term};
-use super::{Op, Operand, Program};
-
-/// Cycles of an addition or a multiplication, or of both fused.
-const LATENCY: u32 = 4;
+use super::times::Times;
+use super::{Operand, Program};
+use crate::machine::{ADD, MULTIPLY};
 
 impl Program {
     /// The same program with its sums in order.
     pub(super) fn chained(mut self) -> Program {
         // Rewritten additions stand where their sum is used, since they need all that it does.
         let mut late = vec![false; self.instructions.len()];
-        let mut ready: Vec<u32> = Vec::with_capacity(self.instructions.len());
+        let mut times = Times::default();
         for k in 0..self.instructions.len() {
-            ready.push(self.ready(k, &ready));
+            let before = times.of(&self, k);
+            times.known.push(before);
             let Some((sum, ops)) = self.sum_to_chain(k).and_then(|sum| sum.chain().map(|ops| (sum, ops)))
             else {
                 continue;
             };
-            let time = self.chain_ready(&sum, &ready);
-            if time > ready[k] {
+            let time = times.chain(&self, &sum.terms);
+            // An instruction less is worth that each term may take as much longer as an addition with a product does.
+            if time > before + (MULTIPLY - ADD) * sum.terms.len() as u32 {
                 continue;
             }
-            ready[k] = time;
+            times.known[k] = time;
             for (at, op) in sum.additions.iter().zip(ops) {
                 self.instructions[*at] = op;
                 late[*at] = *at != k;
             }
         }
-        if late.contains(&true) { self.sorted(&late) } else { self }
-    }
-
-    /// When the result of instruction `k` is there at the earliest, in cycles, if products fuse.
-    fn ready(&self, k: usize, ready: &[u32]) -> u32 {
-        let op = &self.instructions[k];
-        if let Some(terms) = op.terms() {
-            let [a, b] = terms.map(|t| self.term_ready(t.operand, ready));
-            return match terms.map(|t| self.fuses(t)) {
-                [true, true] => a.min(b).saturating_add(LATENCY).max(a.max(b)) + LATENCY,
-                _ => a.max(b) + LATENCY,
-            };
-        }
-        let mut start = 0;
-        op.operands(|o| start = start.max(value_ready(o, ready)));
-        start
-            + match op {
-                Op::Lane(..) | Op::Join(..) => 1,
-                Op::Div(..) | Op::Sum(..) => 3 * LATENCY,
-                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 10 * LATENCY,
-                _ => LATENCY,
-            }
-    }
-
-    /// When a term can be added: a product that fuses, as soon as its factors are there.
-    fn term_ready(&self, o: Operand, ready: &[u32]) -> u32 {
-        match self.lone_product(o) {
-            Some((a, b)) => value_ready(a, ready).max(value_ready(b, ready)),
-            None => value_ready(o, ready),
-        }
-    }
-
-    /// When the last of a chain's additions is done.
-    fn chain_ready(&self, sum: &Sum, ready: &[u32]) -> u32 {
-        let times = sum.terms.iter().map(|t| self.term_ready(t.operand, ready));
-        times.reduce(|sum, term| sum.max(term) + LATENCY).unwrap_or(0)
+        let program = if late.contains(&true) { self.sorted(&late) } else { self };
+        program.with_products_at_their_sums()
     }
 
     /// The sum that ends with instruction `k`, if another order of its terms saves an instruction.
@@ -154,17 +121,11 @@ impl Program {
     }
 }
 
-fn value_ready(o: Operand, ready: &[u32]) -> u32 {
-    match o {
-        Operand::Value(k) => ready.get(k).copied().unwrap_or(0),
-        _ => 0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use crate::expr::{Graph, Symbol};
     use crate::lower::lower;
+    use crate::lower::pipeline::PART;
 
     /// Tens of thousands of terms, of which two products come first or last, with the small stack of a test's thread.
     #[test]
@@ -175,7 +136,7 @@ mod tests {
         let rest = symbols[5..].iter().fold(symbols[4], |sum, s| sum + *s);
         let first = symbols[4..].iter().fold(products, |sum, s| sum + *s);
         for (sum, fused) in [(first, 2), (rest + products, 1)] {
-            let program = lower(&[sum]).fused();
+            let program = lower(&[sum]).through(PART);
             assert_eq!(program.instructions.len() + fused, program.counts.total());
             // As many of each of 0, 1, … 7, where 0 · 1 + 2 · 3 stands for the sum of the four.
             assert_eq!(program.run(&|s| f64::from(s.0 % 8)), [140_000.0]);

@@ -1,15 +1,30 @@
 //! Fused multiply-add: a product whose only use is a sum becomes one instruction with it.
 
-use super::{Op, Program};
+use super::{Op, Operand, Program};
 
 impl Program {
-    /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
-    /// and as product and sum elsewhere.
-    pub fn fused(self) -> Program {
-        self.chained().with_fused_products()
+    /// How many instructions are left when products have been fused into sums.
+    pub fn fused_length(&self) -> usize {
+        let fused = (0..self.instructions.len()).filter(|k| self.product_to_fuse(*k).is_some());
+        self.instructions.len() - fused.count()
     }
 
-    /// The same without another order of sums.
+    /// By instruction: it is a product that will fuse.
+    pub(super) fn products_to_fuse(&self) -> Vec<bool> {
+        let mut fuses = vec![false; self.instructions.len()];
+        for product in (0..self.instructions.len()).filter_map(|k| self.product_to_fuse(k)) {
+            fuses[product.number()] = true;
+        }
+        fuses
+    }
+
+    /// The program as it becomes with products fused into sums, for its cost.
+    pub(super) fn as_fused(&self) -> Program {
+        Program { in_lanes: None, ..self.clone() }.with_fused_products()
+    }
+
+    /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
+    /// and as product and sum elsewhere.
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
         for k in 0..self.instructions.len() {
@@ -23,25 +38,39 @@ impl Program {
     }
 
     fn fuse(&self, k: usize) -> Option<Op> {
+        let product = self.product_to_fuse(k)?;
+        let (x, y) = self.lone_product(product)?;
         match self.instructions[k] {
-            Op::Add(a, b) => {
-                // Of two products the later one is fused: the earlier is ready when it is needed.
-                let (first, second) = match (self.lone_product(a), self.lone_product(b)) {
-                    (Some(_), Some(_)) if a.number() > b.number() => (a, b),
-                    (Some(_), None) => (a, b),
-                    _ => (b, a),
-                };
-                let (x, y) = self.lone_product(first)?;
-                Some(Op::MulAdd(x, y, second))
-            }
-            Op::Sub(a, b) => {
-                if let Some((x, y)) = self.lone_product(b) {
-                    return Some(Op::NegMulAdd(x, y, a));
-                }
-                let (x, y) = self.lone_product(a)?;
-                Some(Op::MulSub(x, y, b))
-            }
+            Op::Add(a, b) => Some(Op::MulAdd(x, y, if product == a { b } else { a })),
+            Op::Sub(a, b) if product == b => Some(Op::NegMulAdd(x, y, a)),
+            Op::Sub(_, b) => Some(Op::MulSub(x, y, b)),
             _ => None,
+        }
+    }
+
+    /// The product that fuses into the sum of instruction `k`.
+    fn product_to_fuse(&self, k: usize) -> Option<Operand> {
+        let is_product = |o: Operand| self.lone_product(o).is_some();
+        let product = match self.instructions[k] {
+            // Of two products the later one is fused: the earlier is ready when it is needed.
+            Op::Add(a, b) if is_product(a) && (!is_product(b) || a.number() > b.number()) => a,
+            Op::Sub(a, b) if !is_product(b) => a,
+            Op::Add(_, b) | Op::Sub(_, b) => b,
+            _ => return None,
+        };
+        Some(product).filter(|product| is_product(*product))
+    }
+
+    /// The same program with each product that will fuse right before its sum, where it will be computed.
+    pub(super) fn with_products_at_their_sums(self) -> Program {
+        let n = self.instructions.len();
+        let waits = self.products_to_fuse();
+        let product = |k: usize| self.product_to_fuse(k).map(Operand::number);
+        let order: Vec<usize> =
+            (0..n).filter(|k| !waits[*k]).flat_map(|k| product(k).into_iter().chain([k])).collect();
+        match order.iter().enumerate().all(|(place, k)| place == *k) {
+            true => self,
+            false => self.reordered(&order),
         }
     }
 }

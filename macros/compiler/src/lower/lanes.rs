@@ -2,10 +2,9 @@
 
 use super::{Op, Operand, Program};
 use crate::expr::{Graph, Id, Node};
-
-/// About how many instructions the processor's first cache holds: those of a larger program have to be fetched each time,
-/// however many lanes they have.
-const CACHED: usize = 4000;
+use crate::machine::{
+    CACHED_INSTRUCTIONS, CALL_COST, FETCH_COST, GATHER_COST, LANE_COST, SUM_COST, cost_of_lanes,
+};
 
 /// Lanes of the values of a program that is being written.
 #[derive(Default)]
@@ -88,27 +87,29 @@ impl Lanes {
 impl Program {
     /// The same with the cheapest of some programs that compute it with lanes, if that is cheaper.
     pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
-        let best = candidates.into_iter().min_by_key(Program::cost);
-        self.in_lanes = best.filter(|best| best.cost() < self.cost()).map(Box::new);
+        let costs = candidates.into_iter().map(|program| (program.cost(), program));
+        let best = costs.min_by_key(|(cost, _)| *cost);
+        self.in_lanes = best.filter(|(cost, _)| *cost < self.cost()).map(|(_, program)| Box::new(program));
         self
     }
 
     /// What it costs, roughly, in tenths of an instruction of one lane.
     pub fn cost(&self) -> usize {
-        let gathers: usize = self.gathers.iter().map(|g| 8 * g.len()).sum();
-        let all = self.instructions.iter().zip(self.lanes());
+        let gathers: usize = self.gathers.iter().map(|g| GATHER_COST * g.len()).sum();
+        // A product that will fuse costs nothing beside its sum.
+        let fuses = self.products_to_fuse();
+        let all = self.instructions.iter().zip(self.lanes()).zip(&fuses);
         let instructions: usize = all
-            .map(|(op, lanes)| match op {
-                Op::Lane(..) => 5,
-                Op::Sum(n, _) => 10 * n,
-                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => 20 * lanes,
-                _ if lanes > 4 => 25,
-                _ if lanes > 2 => 15,
-                _ => 10,
+            .map(|((op, lanes), fuses)| match op {
+                _ if *fuses => 0,
+                Op::Lane(..) => LANE_COST,
+                Op::Sum(n, _) => SUM_COST * n,
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => CALL_COST * lanes,
+                _ => cost_of_lanes(lanes),
             })
             .sum();
-        let count = self.instructions.len();
-        let fetched = if count > CACHED { 15 * count } else { 0 };
+        let count = fuses.iter().filter(|fuses| !**fuses).count();
+        let fetched = if count > CACHED_INSTRUCTIONS { FETCH_COST * count } else { 0 };
         gathers + instructions.max(fetched)
     }
 

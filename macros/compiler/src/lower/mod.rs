@@ -4,17 +4,21 @@
 use crate::expr::eval::joined;
 use crate::expr::lanes::MOST;
 use crate::expr::{Expr, Extreme, Function, Graph, Id, Node, Symbol};
+use std::time::Instant;
 
 mod chain;
 mod factor;
 mod fuse;
 mod hoist;
 mod lanes;
-mod late;
+mod negations;
+pub mod pipeline;
+mod reassociate;
 mod schedule;
-mod signs;
-mod sums;
+mod share_subsums;
 mod terms;
+mod text;
+mod times;
 
 pub use hoist::{hoisted, place_hoisted};
 
@@ -150,14 +154,24 @@ impl Counts {
     }
 }
 
-/// Lowers the outputs.
+/// Drafts a program of the outputs: products and sums are apart until [`pipeline::FINISH`] or [`pipeline::PART`] fuses them.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
     lower_without(outputs, &|_| false)
 }
 
-/// Lowers the outputs, where what depends on symbols that are `known` before alone is not computed but named: see
+/// Drafts a program of the outputs, where what depends on symbols that are `known` before alone is not computed but named: see
 /// [`hoisted`].
 pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
+    let start = Instant::now();
+    let program = select(outputs, known);
+    pipeline::observe(pipeline::SELECT, &program, start.elapsed());
+    let mut program = program.through(pipeline::DRAFT);
+    program.counts = program.count();
+    program
+}
+
+/// Expressions as instructions, as they stand.
+fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let Some(first) = outputs.first() else {
         return Program::default();
     };
@@ -220,8 +234,6 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
         places[*id as usize] = 0;
     }
     program.sweep();
-    program = program.factored().with_cheap_signs();
-    program.counts = program.count();
     program
 }
 

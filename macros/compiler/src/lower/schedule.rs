@@ -3,21 +3,15 @@
 //! compute side by side only if both were within its sight. So at every step that instruction comes next which the most
 //! latency hangs on, among those whose operands would be there by then.
 
-use super::{Op, Operand, Program};
+use super::times::{issue, latency};
+use super::{Operand, Program};
+use crate::machine::{CYCLE, MOST_PARALLELISM};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How many operations are begun in a cycle, and in how many parts cycles are counted.
-pub(super) const CYCLE: u32 = 3;
-/// Most instructions for each cycle of the longest chain: where there are more, the processor never lacks something to
-/// do, and another order only keeps more values waiting.
-const BROADEST: f64 = 5.0;
-
 impl Program {
-    /// The same program, and what it has in lanes, in an order that keeps the processor busy.
-    #[must_use]
-    pub fn scheduled(mut self) -> Program {
-        self.in_lanes = self.in_lanes.map(|program| Box::new(program.scheduled()));
+    /// The same program in an order that keeps the processor busy.
+    pub(super) fn scheduled(self) -> Program {
         match self.order() {
             Some(order) => self.reordered(&order),
             None => self,
@@ -27,8 +21,9 @@ impl Program {
     /// How long a call takes, roughly, in half cycles: instructions, and the cycles of the longest chain of them. Of the calls
     /// of a loop only parts are computed side by side.
     pub fn time(&self) -> usize {
-        let longest = self.rest(&self.users()).into_iter().max().unwrap_or(0) / CYCLE;
-        self.instructions.len() + longest as usize
+        let fused = self.as_fused();
+        let longest = fused.rest(&fused.users()).into_iter().max().unwrap_or(0) / CYCLE;
+        fused.instructions.len() + longest as usize
     }
 
     /// By instruction: those that need its value, as often as they name it.
@@ -62,7 +57,7 @@ impl Program {
         users.iter().flatten().for_each(|k| missing[*k] += 1);
         let rest = self.rest(&users);
         let cycles = f64::from(*rest.iter().max()?) / f64::from(CYCLE);
-        if n as f64 > BROADEST * cycles {
+        if n as f64 > MOST_PARALLELISM * cycles {
             return None;
         }
         let mut ready = vec![0; n];
@@ -93,40 +88,10 @@ impl Program {
     }
 }
 
-/// How long the result of an operation takes, in thirds of a cycle: usual figures of processors with fused operations.
-/// Sines and cosines are evaluated before all else.
-pub(super) fn latency(op: &Op) -> u32 {
-    CYCLE
-        * match op {
-            Op::Call(..) => 0,
-            Op::Neg(_) => 1,
-            Op::Lane(..) | Op::Join(..) => 2,
-            Op::Add(..) | Op::Sub(..) => 3,
-            Op::Extreme(..) => 4,
-            Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => 4,
-            Op::Sum(lanes, _) => 5 * halvings(*lanes),
-            Op::Div(..) => 13,
-            Op::Atan2(..) | Op::Pow(..) => 50,
-        }
-}
-
-/// How long an operation keeps others waiting, in thirds of a cycle.
-fn issue(op: &Op) -> u32 {
-    match op {
-        Op::Call(..) => 0,
-        Op::Sum(lanes, _) => 2 * halvings(*lanes),
-        _ => 1,
-    }
-}
-
-/// How often the upper half of so many lanes is added to the lower half.
-fn halvings(lanes: usize) -> u32 {
-    lanes.next_power_of_two().trailing_zeros()
-}
-
 #[cfg(test)]
 mod tests {
     use crate::expr::{Expr, Graph, Symbol};
+    use crate::lower::pipeline::PART;
     use crate::lower::{Op, Operand, lower};
 
     /// A long chain, and after it what a longer one begins with.
@@ -140,7 +105,7 @@ mod tests {
     #[test]
     fn values_stay() {
         let g = Graph::new();
-        let before = lower(&chains(&g)).fused();
+        let before = lower(&chains(&g)).through(PART);
         let after = before.clone().scheduled();
         let symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
         assert_eq!(before.run(&symbol), after.run(&symbol));
@@ -168,7 +133,7 @@ mod tests {
         let place = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
         };
-        let program = lower(&chains(&g)).fused();
+        let program = lower(&chains(&g)).through(PART);
         assert!(place(&program) > 8, "the quotient comes after the other chain");
         assert!(place(&program.scheduled()) < 6, "the quotient begins the longest chain");
     }

@@ -78,7 +78,7 @@ fn check(model: &Model<'_>) {
     outputs.extend(model.constraints.iter().map(|_| model.graph.zero()));
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     outputs.push(kinetic - energy::potential_energy(model, &joints));
-    let program = lower(&outputs).fused();
+    let program = lower(&outputs);
     let by_lagrange = lagrange::derive(model, &joints);
     let rows = by_lagrange.mass_matrix.iter().zip(&by_lagrange.bias);
     let rows = rows.map(|(row, h)| row.iter().zip(&a).fold(*h, |sum, (m, a)| sum + *m * *a));

@@ -64,26 +64,26 @@ struct Sums {
 }
 
 impl Program {
-    /// The same program, its products fused into sums as before, with the terms that its sums have in common summed once.
-    pub fn with_shared_sums(mut self) -> Program {
-        self.in_lanes = self.in_lanes.map(|program| Box::new(program.with_shared_sums()));
-        if self.instructions.len() > MOST_INSTRUCTIONS {
-            return self;
-        }
+    /// The same program with the terms that its sums have in common summed once.
+    pub(super) fn with_shared_sums(mut self) -> Program {
+        let mut length = self.fused_length();
         for _ in 0..=ROUNDS {
-            let Some(program) = self.sharing_sums() else { break };
-            self = Program { in_lanes: self.in_lanes, ..program };
+            if length > MOST_INSTRUCTIONS {
+                break;
+            }
+            let Some((shorter, program)) = self.sharing_sums(length) else { break };
+            (length, self) = (shorter, program);
         }
         self
     }
 
     /// The program with sums shared in a way that takes fewer instructions: of a small program the best one, of others the
-    /// first. `None` if there is no such way.
-    fn sharing_sums(&self) -> Option<Program> {
-        let plain = self.unfused();
-        let all = Sums::of(&plain);
-        let is_small = plain.instructions.len() <= SMALL;
-        let mut best: Option<Program> = None;
+    /// first, with its length once products are fused. `None` if none is shorter than `length`.
+    fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
+        let all = Sums::of(self);
+        let is_small = self.instructions.len() <= SMALL;
+        let mut cost = (length, self.counts.total());
+        let mut best: Option<(usize, Program)> = None;
         let mut fewest = all.operations();
         let mut tried: Vec<Vec<Terms>> = Vec::new();
         for (short, products) in SHORT {
@@ -99,51 +99,23 @@ impl Program {
                 continue;
             }
             fewest = operations;
-            // Sums are as cheap with the opposite sign.
-            let mut program = plain.with_sums(&sums).with_cheap_signs();
+            // Sums are as cheap with the opposite sign, and begin with a product again.
+            let mut program = self.with_sums(&sums).with_cheap_signs().chained();
             program.counts = program.count();
-            if program.counts.total() > best.as_ref().unwrap_or(self).counts.total() {
+            let operations = program.counts.total();
+            if operations > cost.1 {
                 continue;
             }
-            let program = program.fused();
-            let cost = |p: &Program| (p.instructions.len(), p.counts.total());
-            if cost(&program) < cost(best.as_ref().unwrap_or(self)) {
-                best = Some(program);
+            let length = program.fused_length();
+            if (length, operations) < cost {
+                cost = (length, operations);
+                best = Some((length, program));
                 if !is_small {
                     break;
                 }
             }
         }
         best
-    }
-
-    /// The same program with products and sums apart.
-    pub(super) fn unfused(&self) -> Program {
-        let mut program = Program {
-            outputs: Vec::new(),
-            tuples: self.tuples.clone(),
-            gathers: self.gathers.clone(),
-            ..Program::default()
-        };
-        let mut values = Vec::with_capacity(self.instructions.len());
-        for op in &self.instructions {
-            let op = op.mapped(|o| o.among(&values));
-            let mut product = |a, b| {
-                program.instructions.push(Op::Mul(a, b));
-                Operand::Value(program.instructions.len() - 1)
-            };
-            let op = match op {
-                Op::MulAdd(a, b, c) => Op::Add(product(a, b), c),
-                Op::MulSub(a, b, c) => Op::Sub(product(a, b), c),
-                Op::NegMulAdd(a, b, c) => Op::Sub(c, product(a, b)),
-                op => op,
-            };
-            program.instructions.push(op);
-            values.push(Operand::Value(program.instructions.len() - 1));
-        }
-        program.outputs = self.outputs.iter().map(|o| o.among(&values)).collect();
-        program.sweep();
-        program
     }
 
     /// The same program with other sums.

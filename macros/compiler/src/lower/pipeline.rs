@@ -1,0 +1,112 @@
+//! The passes that a program goes through, in their order, as lists. An observer sees the program after each of them.
+
+use super::Program;
+use std::cell::RefCell;
+use std::time::{Duration, Instant};
+
+/// A pass over a program and over its variant in lanes.
+#[derive(Clone, Copy)]
+pub struct Pass {
+    /// The name under which an observer sees it.
+    pub name: &'static str,
+    /// What it does.
+    pub about: &'static str,
+    run: fn(Program) -> Program,
+}
+
+/// Expressions have become instructions; no pass, but the first that an observer sees.
+pub const SELECT: &str = "select";
+
+const FACTOR: Pass = Pass {
+    name: "factor",
+    about: "common factors of the terms of a sum are taken out",
+    run: Program::factored,
+};
+const NEGATIONS: Pass = Pass {
+    name: "negations",
+    about: "the negatives of some values are computed, so that few negations are left",
+    run: Program::with_cheap_signs,
+};
+const CHAIN: Pass = Pass {
+    name: "chain",
+    about: "sums begin with a product, so that more products fuse",
+    run: Program::chained,
+};
+const SHARE_SUBSUMS: Pass = Pass {
+    name: "share-subsums",
+    about: "terms that several sums have in common are summed once",
+    run: Program::with_shared_sums,
+};
+const REASSOCIATE: Pass = Pass {
+    name: "reassociate",
+    about: "in sums on the longest chain, what is known late is added last",
+    run: Program::with_late_terms_last,
+};
+const FUSE: Pass = Pass {
+    name: "fuse",
+    about: "a product whose only use is a sum becomes one instruction with it",
+    run: Program::with_fused_products,
+};
+const SCHEDULE: Pass = Pass {
+    name: "schedule",
+    about: "instructions are put in an order that keeps the processor busy",
+    run: Program::scheduled,
+};
+
+/// What every candidate for a function goes through, before its operations are counted.
+pub const DRAFT: &[Pass] = &[FACTOR, NEGATIONS, CHAIN];
+/// What the chosen program of a function goes through after that.
+pub const FINISH: &[Pass] = &[SHARE_SUBSUMS, REASSOCIATE, FUSE, SCHEDULE];
+/// What a short part goes through: a step from link to link, or the numbers of a prepared mechanism.
+pub const PART: &[Pass] = &[FUSE];
+
+impl Program {
+    /// The program after these passes, and so its variant in lanes.
+    #[must_use]
+    pub fn through(mut self, passes: &[Pass]) -> Program {
+        let in_lanes = self.in_lanes.take().map(|program| Box::new(program.through(passes)));
+        for pass in passes {
+            let start = Instant::now();
+            self = (pass.run)(self);
+            observe(pass.name, &self, start.elapsed());
+        }
+        Program { in_lanes, ..self }
+    }
+}
+
+/// What is told after every pass: the function that is being compiled, the pass, the program, and how long it took.
+type Observer = Box<dyn FnMut(&str, &str, &Program, Duration)>;
+
+thread_local! {
+    static OBSERVER: RefCell<Option<Observer>> = const { RefCell::new(None) };
+    static FUNCTION: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Calls `f` while an observer is told of every pass on this thread.
+pub fn observed<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
+    OBSERVER.with(|cell| cell.replace(Some(observer)));
+    let result = f();
+    OBSERVER.with(|cell| cell.replace(None));
+    result
+}
+
+/// Says which function the next passes are for.
+pub fn begin(function: &str) {
+    if OBSERVER.with(|cell| cell.borrow().is_some()) {
+        FUNCTION.with(|name| name.replace(function.to_string()));
+    }
+}
+
+/// Tells the observer, if there is one.
+pub(super) fn observe(pass: &str, program: &Program, time: Duration) {
+    OBSERVER.with(|cell| {
+        if let Ok(mut observer) = cell.try_borrow_mut()
+            && let Some(observer) = observer.as_mut()
+        {
+            FUNCTION.with(|function| observer(&function.borrow(), pass, program, time));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

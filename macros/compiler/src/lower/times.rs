@@ -1,0 +1,80 @@
+//! When the values of a program are known at the earliest, if the processor waits for nothing but operands and products fuse.
+
+use super::terms::Term;
+use super::{Op, Operand, Program};
+use crate::machine::{ADD, CALL, DIVIDE, HALVE, MOVE_LANE, MULTIPLY, NEGATE, SINE};
+
+/// Times in parts of a cycle, of the instructions that have been looked at.
+#[derive(Default)]
+pub(super) struct Times {
+    pub known: Vec<u32>,
+}
+
+impl Times {
+    fn value(&self, o: Operand) -> u32 {
+        match o {
+            Operand::Value(k) => self.known.get(k).copied().unwrap_or(0),
+            _ => 0,
+        }
+    }
+
+    /// When the value of instruction `k` is known.
+    pub fn of(&self, program: &Program, k: usize) -> u32 {
+        let op = &program.instructions[k];
+        if let Some([a, b]) = op.terms() {
+            return self.chain(program, &[a, b]);
+        }
+        let mut start = 0;
+        op.operands(|o| start = start.max(self.value(o)));
+        start + if matches!(op, Op::Call(..)) { SINE } else { latency(op) }
+    }
+
+    /// When a term can be added, and whether it is a product that fuses: that can be as soon as its factors are known.
+    pub fn term(&self, program: &Program, term: Term) -> (u32, bool) {
+        match program.lone_product(term.operand) {
+            Some((a, b)) => (self.value(a).max(self.value(b)), true),
+            None => (self.value(term.operand), false),
+        }
+    }
+
+    /// When terms have been added one after another.
+    pub fn chain(&self, program: &Program, terms: &[Term]) -> u32 {
+        let mut times = terms.iter().map(|term| self.term(program, *term));
+        let (Some(first), Some(second)) = (times.next(), times.next()) else { return 0 };
+        let start = match (first, second) {
+            // Of two products the earlier is one.
+            ((a, true), (b, true)) => (a.min(b) + MULTIPLY).max(a.max(b)) + MULTIPLY,
+            ((a, false), (b, false)) => a.max(b) + ADD,
+            ((a, _), (b, _)) => a.max(b) + MULTIPLY,
+        };
+        times.fold(start, |sum, (time, fuses)| sum.max(time) + if fuses { MULTIPLY } else { ADD })
+    }
+}
+
+/// How long the result of an operation takes. Sines and cosines are evaluated before all else.
+pub(super) fn latency(op: &Op) -> u32 {
+    match op {
+        Op::Call(..) => 0,
+        Op::Neg(_) => NEGATE,
+        Op::Lane(..) | Op::Join(..) => MOVE_LANE,
+        Op::Add(..) | Op::Sub(..) => ADD,
+        Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) | Op::Extreme(..) => MULTIPLY,
+        Op::Sum(lanes, _) => HALVE * halvings(*lanes),
+        Op::Div(..) => DIVIDE,
+        Op::Atan2(..) | Op::Pow(..) => CALL,
+    }
+}
+
+/// How long an operation keeps others waiting.
+pub(super) fn issue(op: &Op) -> u32 {
+    match op {
+        Op::Call(..) => 0,
+        Op::Sum(lanes, _) => 2 * halvings(*lanes),
+        _ => 1,
+    }
+}
+
+/// How often the upper half of so many lanes is added to the lower half.
+fn halvings(lanes: usize) -> u32 {
+    lanes.next_power_of_two().trailing_zeros()
+}
