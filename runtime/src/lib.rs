@@ -89,6 +89,7 @@ mod arithmetic;
 pub mod batch;
 pub mod constraint;
 pub mod elements;
+mod forward;
 mod frame;
 #[cfg(any(doc, doctest))]
 pub mod guide;

@@ -1,6 +1,7 @@
 //! The trait that generic code (integrators, controllers, plotters) is written against.
 
 use crate::constraint::{ConstraintError, Projected};
+use crate::forward::each_function;
 use nalgebra::{RealField, SMatrix, SVector};
 
 /// The numbers that generated code can run on: every `Copy` real field of nalgebra, so `f64`, `f32`, dual
@@ -44,6 +45,9 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
 
     /// Contacts slip with friction ([`Slipping`](crate::elements::Slipping)): forces depend on multipliers.
     const SLIPPING: bool = false;
+
+    /// Constraints are kept by feedback ([`Rheonomic::FEEDBACK`](crate::Rheonomic::FEEDBACK)).
+    const FEEDBACK: bool = false;
 
     /// The state nearest to a given one that fulfils the constraints, if there are any.
     ///
@@ -181,6 +185,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 /// A reference to a mechanism is one: a controller may borrow its plant.
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for &M
 where
     M: Mechanism<NQ, NV, NU> + ?Sized,
@@ -192,143 +197,10 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
 
-    #[inline]
-    fn project(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
-        (**self).project(q, v)
-    }
-
-    #[inline]
-    fn impulse(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        h: Self::Scalar,
-        p: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).impulse(q, v, h, p)
-    }
-
-    #[inline]
-    fn is_nearly_singular(&self, q: &SVector<Self::Scalar, NQ>, dv: &SVector<Self::Scalar, NV>) -> bool {
-        (**self).is_nearly_singular(q, dv)
-    }
-
-    #[inline]
-    fn neutral(&self) -> SVector<Self::Scalar, NQ> {
-        (**self).neutral()
-    }
-
-    #[inline]
-    fn integrate(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NQ> {
-        (**self).integrate(q, dv)
-    }
-
-    #[inline]
-    fn difference(
-        &self,
-        from: &SVector<Self::Scalar, NQ>,
-        to: &SVector<Self::Scalar, NQ>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).difference(from, to)
-    }
-
-    #[inline]
-    fn tangent_rate(
-        &self,
-        dv: &SVector<Self::Scalar, NV>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).tangent_rate(dv, v)
-    }
-
-    #[inline]
-    fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV> {
-        (**self).mass_matrix(q)
-    }
-
-    #[inline]
-    fn bias_forces(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).bias_forces(q, v)
-    }
-
-    #[inline]
-    fn inverse_dynamics(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        a: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).inverse_dynamics(q, v, a)
-    }
-
-    #[inline]
-    fn forward_dynamics(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).forward_dynamics(q, v, tau)
-    }
-
-    #[inline]
-    fn try_forward_dynamics(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
-        (**self).try_forward_dynamics(q, v, tau)
-    }
-
-    #[inline]
-    fn generalized_forces(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        u: &SVector<Self::Scalar, NU>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).generalized_forces(q, v, u)
-    }
-
-    #[inline]
-    fn kinetic_energy(&self, q: &SVector<Self::Scalar, NQ>, v: &SVector<Self::Scalar, NV>) -> Self::Scalar {
-        (**self).kinetic_energy(q, v)
-    }
-
-    #[inline]
-    fn potential_energy(&self, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar {
-        (**self).potential_energy(q)
-    }
-
-    #[inline]
-    fn generalized_momentum(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).generalized_momentum(q, v)
-    }
-
-    #[inline]
-    fn momentum_rate(
-        &self,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (**self).momentum_rate(q, v)
-    }
+    each_function!(space, plain Mechanism, self => *self);
+    each_function!(dynamics, plain Mechanism, self => *self);
+    each_function!(accelerations, plain Mechanism, self => *self);
+    each_function!(methods, plain Mechanism, self => *self);
 }

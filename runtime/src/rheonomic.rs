@@ -2,6 +2,7 @@
 //! this trait, which every [`Mechanism`] has too.
 
 use crate::constraint::{ConstraintError, Projected};
+use crate::forward::each_function;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -193,65 +194,7 @@ pub fn at<M, T>(mechanism: &M, t: T) -> At<'_, M, T> {
     At { mechanism, t }
 }
 
-/// Writes one of the two traits in terms of the other: names, arguments, results.
-macro_rules! functions {
-    ($($name:ident($($argument:ident: $of:ident),*) -> $result:ty;)+; $how:ident) => {
-        $(functions! { @$how $name($($argument: $of),*) -> $result })+
-    };
-    (@drop $name:ident($($argument:ident: $of:ident),*) -> $result:ty) => {
-        #[inline(always)]
-        fn $name(&self, _t: Self::Scalar $(, $argument: &SVector<Self::Scalar, $of>)*) -> $result {
-            Mechanism::$name(self $(, $argument)*)
-        }
-    };
-    (@bind $name:ident($($argument:ident: $of:ident),*) -> $result:ty) => {
-        #[inline(always)]
-        fn $name(&self $(, $argument: &SVector<Self::Scalar, $of>)*) -> $result {
-            self.mechanism.$name(self.t $(, $argument)*)
-        }
-    };
-    (@pass $name:ident($($argument:ident: $of:ident),*) -> $result:ty) => {
-        #[inline(always)]
-        fn $name(&self $(, $argument: &SVector<Self::Scalar, $of>)*) -> $result {
-            Mechanism::$name(self $(, $argument)*)
-        }
-    };
-    (@inner $name:ident($($argument:ident: $of:ident),*) -> $result:ty) => {
-        #[inline(always)]
-        fn $name(&self $(, $argument: &SVector<Self::Scalar, $of>)*) -> $result {
-            self.mechanism.$name($($argument),*)
-        }
-    };
-}
-
-macro_rules! timeless {
-    ($how:ident) => {
-        functions! {
-            neutral() -> SVector<Self::Scalar, NQ>;
-            integrate(q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
-            difference(from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
-            tangent_rate(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;; $how
-        }
-    };
-}
-
-macro_rules! timed {
-    ($how:ident) => {
-        functions! {
-            mass_matrix(q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
-            bias_forces(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-            inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
-            forward_dynamics(q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
-            try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<SVector<Self::Scalar, NV>, ConstraintError>;
-            generalized_forces(q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
-            kinetic_energy(q: NQ, v: NV) -> Self::Scalar;
-            potential_energy(q: NQ) -> Self::Scalar;
-            generalized_momentum(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-            momentum_rate(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;; $how
-        }
-    };
-}
-
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU> for M
 where
     M: Mechanism<NQ, NV, NU>,
@@ -262,42 +205,15 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
-    timeless!(pass);
-    timed!(drop);
+    const FEEDBACK: bool = M::FEEDBACK;
 
-    #[inline(always)]
-    fn impulse(
-        &self,
-        _t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        h: Self::Scalar,
-        p: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        Mechanism::impulse(self, q, v, h, p)
-    }
-
-    #[inline(always)]
-    fn is_nearly_singular(
-        &self,
-        _t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
-    ) -> bool {
-        Mechanism::is_nearly_singular(self, q, dv)
-    }
-
-    #[inline(always)]
-    fn project(
-        &self,
-        _t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
-        Mechanism::project(self, q, v)
-    }
+    each_function!(space, plain Mechanism, self => self);
+    each_function!(dynamics, drop Mechanism, self => self);
+    each_function!(accelerations, drop Mechanism, self => self);
+    each_function!(methods, drop Mechanism, self => self);
 }
 
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for At<'_, M, T>
 where
     T: Real,
@@ -309,25 +225,10 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
-    timeless!(inner);
-    timed!(bind);
+    const FEEDBACK: bool = M::FEEDBACK;
 
-    #[inline(always)]
-    fn impulse(&self, q: &SVector<T, NQ>, v: &SVector<T, NV>, h: T, p: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.impulse(self.t, q, v, h, p)
-    }
-
-    #[inline(always)]
-    fn is_nearly_singular(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
-        self.mechanism.is_nearly_singular(self.t, q, dv)
-    }
-
-    #[inline(always)]
-    fn project(
-        &self,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-    ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
-        self.mechanism.project(self.t, q, v)
-    }
+    each_function!(space, plain Rheonomic, self => self.mechanism);
+    each_function!(dynamics, at Rheonomic, self => self.mechanism, self.t);
+    each_function!(accelerations, at Rheonomic, self => self.mechanism, self.t);
+    each_function!(methods, at Rheonomic, self => self.mechanism, self.t);
 }

@@ -6,6 +6,7 @@ mod embedded;
 mod formulations;
 mod impacts;
 mod invariants;
+mod lanes;
 mod long_runs;
 mod overdetermined;
 mod planar;

@@ -38,6 +38,7 @@ macro_rules! lanewise {
     )+};
 }
 
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU>
     for Lanewise<'_, M, L>
 where
@@ -75,6 +76,27 @@ where
             Err(_) => (SVector::repeat(nothing), SVector::repeat(nothing)),
         };
         Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
+    }
+
+    /// True if it is so in a lane: then all of them go on by accelerations.
+    fn is_nearly_singular(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> bool {
+        M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
+    }
+
+    /// Lanes in which the forces determine no acceleration are no numbers, as those of `forward_dynamics` are.
+    fn try_forward_dynamics(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        Ok(self.forward_dynamics(t, q, v, tau))
     }
 
     /// Lane by lane where there are constraints.

@@ -1,6 +1,7 @@
 //! Constraints kept by feedback instead of projection.
 
-use super::{Constrained, ConstraintError};
+use super::{Constrained, ConstraintError, Projected};
+use crate::forward::each_function;
 use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -47,9 +48,6 @@ where
     Stabilized { mechanism, rate }
 }
 
-type V<M, const N: usize, const NQ: usize, const NV: usize, const NU: usize> =
-    SVector<<M as Rheonomic<NQ, NV, NU>>::Scalar, N>;
-
 impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
     /// The acceleration that lets violations decay.
     fn correction<const NQ: usize, const NV: usize, const NU: usize>(
@@ -68,6 +66,7 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     }
 }
 
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
     Rheonomic<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
 where
@@ -79,98 +78,57 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const FEEDBACK: bool = true;
 
-    fn neutral(&self) -> V<M, NQ, NQ, NV, NU> {
-        self.mechanism.neutral()
-    }
-
-    fn integrate(&self, q: &V<M, NQ, NQ, NV, NU>, dv: &V<M, NV, NQ, NV, NU>) -> V<M, NQ, NQ, NV, NU> {
-        self.mechanism.integrate(q, dv)
-    }
-
-    fn difference(&self, from: &V<M, NQ, NQ, NV, NU>, to: &V<M, NQ, NQ, NV, NU>) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.difference(from, to)
-    }
-
-    fn tangent_rate(&self, dv: &V<M, NV, NQ, NV, NU>, v: &V<M, NV, NQ, NV, NU>) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.tangent_rate(dv, v)
-    }
-
-    fn mass_matrix(&self, t: M::Scalar, q: &V<M, NQ, NQ, NV, NU>) -> SMatrix<M::Scalar, NV, NV> {
-        self.mechanism.mass_matrix(t, q)
-    }
-
-    fn bias_forces(
-        &self,
-        t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.bias_forces(t, q, v)
-    }
-
-    fn inverse_dynamics(
-        &self,
-        t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-        a: &V<M, NV, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.inverse_dynamics(t, q, v, a)
-    }
+    each_function!(space, plain Rheonomic, self => self.mechanism);
+    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
 
     fn forward_dynamics(
         &self,
         t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-        tau: &V<M, NV, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        tau: &SVector<M::Scalar, NV>,
+    ) -> SVector<M::Scalar, NV> {
         self.mechanism.forward_dynamics(t, q, v, tau) + self.correction(t, q, v)
     }
 
     fn try_forward_dynamics(
         &self,
         t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-        tau: &V<M, NV, NQ, NV, NU>,
-    ) -> Result<V<M, NV, NQ, NV, NU>, ConstraintError> {
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        tau: &SVector<M::Scalar, NV>,
+    ) -> Result<SVector<M::Scalar, NV>, ConstraintError> {
         Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction(t, q, v))
     }
 
-    fn generalized_forces(
+    /// States need not fulfil the constraints: they stay as they are.
+    fn project(
+        &self,
+        _t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+    ) -> Result<Projected<M::Scalar, NQ, NV>, ConstraintError> {
+        Ok((*q, *v))
+    }
+
+    /// Where violations decay, constraints are looked at for their rates alone.
+    fn impulse(
         &self,
         t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-        u: &V<M, NU, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.generalized_forces(t, q, v, u)
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        _h: M::Scalar,
+        p: &SVector<M::Scalar, NV>,
+    ) -> SVector<M::Scalar, NV> {
+        self.mechanism.impulse(t, q, v, constant(0.0), p)
     }
 
-    fn kinetic_energy(&self, t: M::Scalar, q: &V<M, NQ, NQ, NV, NU>, v: &V<M, NV, NQ, NV, NU>) -> M::Scalar {
-        self.mechanism.kinetic_energy(t, q, v)
-    }
-
-    fn potential_energy(&self, t: M::Scalar, q: &V<M, NQ, NQ, NV, NU>) -> M::Scalar {
-        self.mechanism.potential_energy(t, q)
-    }
-
-    fn generalized_momentum(
+    fn is_nearly_singular(
         &self,
         t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.generalized_momentum(t, q, v)
-    }
-
-    fn momentum_rate(
-        &self,
-        t: M::Scalar,
-        q: &V<M, NQ, NQ, NV, NU>,
-        v: &V<M, NV, NQ, NV, NU>,
-    ) -> V<M, NV, NQ, NV, NU> {
-        self.mechanism.momentum_rate(t, q, v)
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NV>,
+    ) -> bool {
+        self.mechanism.is_nearly_singular(t, q, dv)
     }
 }

@@ -1,0 +1,85 @@
+//! The functions of the traits of mechanisms in one table, from which everything that passes them on is made: references, a
+//! mechanism at an instant, a mechanism without time as one with it, stabilised mechanisms, lanes.
+//!
+//! A function that is added to the traits is added here. Whatever passes functions on is under the lint
+//! `clippy::missing_trait_methods`, so that one that is forgotten does not quietly become its default.
+
+/// Rows `name(argument: kind, …) -> result` in four groups, handed to a macro that writes a function for each: `space` depends on
+/// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators call.
+/// A kind is the length of a vector, or `scalar`.
+macro_rules! each_function {
+    (space, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            neutral() -> SVector<Self::Scalar, NQ>;
+            integrate(q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
+            difference(from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
+            tangent_rate(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        }
+    };
+    (dynamics, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            mass_matrix(q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
+            bias_forces(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+            inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
+            generalized_forces(q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
+            kinetic_energy(q: NQ, v: NV) -> Self::Scalar;
+            potential_energy(q: NQ) -> Self::Scalar;
+            generalized_momentum(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+            momentum_rate(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+        }
+    };
+    (accelerations, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            forward_dynamics(q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
+            try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<SVector<Self::Scalar, NV>, $crate::ConstraintError>;
+        }
+    };
+    (methods, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
+            impulse(q: NQ, v: NV, h: scalar, p: NV) -> SVector<Self::Scalar, NV>;
+            is_nearly_singular(q: NQ, dv: NV) -> bool;
+        }
+    };
+}
+
+/// Writes functions that call those of a trait on an object: `plain` without time, `at` at a time that is given, `drop` with a time
+/// that does not matter, `pass` with one that is passed on.
+macro_rules! write_functions {
+    (plain $trait:ident, $self:ident => $object:expr;
+     $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
+        #[inline(always)]
+        fn $name(&$self $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+            $trait::$name($object $(, $argument)*)
+        }
+    )+};
+    (at $trait:ident, $self:ident => $object:expr, $t:expr;
+     $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
+        #[inline(always)]
+        fn $name(&$self $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+            $trait::$name($object, $t $(, $argument)*)
+        }
+    )+};
+    (drop $trait:ident, $self:ident => $object:expr;
+     $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
+        #[inline(always)]
+        fn $name(&$self, _t: Self::Scalar $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+            $trait::$name($object $(, $argument)*)
+        }
+    )+};
+    (pass $trait:ident, $self:ident => $object:expr;
+     $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
+        #[inline(always)]
+        fn $name(&$self, t: Self::Scalar $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+            $trait::$name($object, t $(, $argument)*)
+        }
+    )+};
+}
+
+/// The type of an argument.
+macro_rules! kind {
+    (scalar) => { Self::Scalar };
+    ($n:ident) => { &SVector<Self::Scalar, $n> };
+}
+
+pub(crate) use {each_function, kind, write_functions as write};
