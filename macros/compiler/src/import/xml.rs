@@ -6,6 +6,7 @@ use crate::diag::Place;
 use roxmltree::{Document, Error, Node, ParsingOptions};
 use std::borrow::Cow;
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 /// Elements inside one another. URDF needs six.
 const DEEPEST: usize = 64;
@@ -35,7 +36,7 @@ pub(super) fn without_late_declaration(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{}{blank}  {rest}", &text[..start]))
 }
 
-/// Prefixes without a declaration that are declared for the file.
+/// Prefixes that the root does not declare and that are declared for the file.
 const MOST_PREFIXES: usize = 16;
 
 /// Parses the file; `None` if it is not XML or is a template. `declared` holds its text where that lacks declarations.
@@ -47,7 +48,7 @@ pub(super) fn parse<'t>(
     declared: &'t OnceCell<String>,
     cx: &mut Cx<'_>,
 ) -> Option<Document<'t>> {
-    let Scan { root, unclosed } = match scan(text) {
+    let Scan { root, unclosed, prefixes } = match scan(text) {
         Ok(found) => found,
         Err((offset, message)) => {
             cx.error(&cx.place(offset), message, |d| d);
@@ -59,11 +60,17 @@ pub(super) fn parse<'t>(
         Err(error) => error,
     };
     let at = behind_name(text, root);
-    let (declarations, error) = declare_prefixes(text, at, error);
+    let declarations = match &error {
+        Error::UnknownNamespace(..) if root < text.len() => declarations(&text[root..], &prefixes),
+        _ => String::new(),
+    };
     cx.add(at, &declarations);
-    let Some(error) = error else {
-        let whole = declared.get_or_init(|| with(text, at, &declarations));
-        return parse_plain(whole).ok().filter(|document| refuse_template(document, cx));
+    let error = match &declarations {
+        none if none.is_empty() => error,
+        some => match parse_plain(declared.get_or_init(|| with(text, at, some))) {
+            Ok(document) => return refuse_template(&document, cx).then_some(document),
+            Err(error) => error,
+        },
     };
     let unclosed = unclosed.map(|start| if start > at { start + declarations.len() } else { start });
     report(&error, text, unclosed, cx);
@@ -82,23 +89,27 @@ fn with(text: &str, at: usize, more: &str) -> String {
     [before, more, after].concat()
 }
 
-/// Declarations of the prefixes for which parsing fails, and the error that is left with them.
-fn declare_prefixes(text: &str, at: usize, mut error: Error) -> (String, Option<Error>) {
-    let mut declarations = String::new();
-    // The root's own prefix would make all that is in it foreign.
-    let is_root = |prefix: &str| text[..at].contains(&format!("<{prefix}:"));
-    for _ in 0..MOST_PREFIXES {
-        let Error::UnknownNamespace(prefix, _) = &error else { break };
-        if ["xacro", "xml", "xmlns"].contains(&prefix.as_str()) || is_root(prefix) {
-            break;
-        }
-        declarations += &format!(" xmlns:{prefix}=\"undeclared:{prefix}\"");
-        match parse_plain(&with(text, at, &declarations)) {
-            Ok(_) => return (declarations, None),
-            Err(next) => error = next,
-        }
-    }
-    (declarations, Some(error))
+/// Declarations of prefixes for the text of the root element, those that it declares itself left out: all at once, because
+/// each attempt to parse takes as long as the file.
+fn declarations(root: &str, prefixes: &[&str]) -> String {
+    let tag = &root[..scan_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
+    let own: Vec<&str> =
+        tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(not_in_a_name).next()).collect();
+    let is_wanted = |prefix: &&&str| {
+        // The root's own prefix would make all that is in it foreign.
+        let is_root = tag
+            .strip_prefix('<')
+            .and_then(|name| name.strip_prefix(**prefix))
+            .is_some_and(|rest| rest.starts_with(':'));
+        !is_root && !["xacro", "xml", "xmlns"].contains(*prefix) && !own.contains(*prefix)
+    };
+    let wanted = prefixes.iter().filter(is_wanted).take(MOST_PREFIXES);
+    wanted.map(|prefix| format!(" xmlns:{prefix}=\"undeclared:{prefix}\"")).collect()
+}
+
+/// True for characters that stand in no prefix.
+fn not_in_a_name(c: char) -> bool {
+    c.is_ascii() && !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-' | '.')
 }
 
 fn parse_plain(text: &str) -> Result<Document<'_>, Error> {
@@ -106,24 +117,32 @@ fn parse_plain(text: &str) -> Result<Document<'_>, Error> {
 }
 
 /// What a look at the marks of a file tells.
-struct Scan {
+struct Scan<'t> {
     /// Where the first element begins.
     root: usize,
     /// Where the innermost element begins that is never closed.
     unclosed: Option<usize>,
+    /// The prefixes of names, in the order in which they come first.
+    prefixes: Vec<&'t str>,
 }
 
 /// Checks the limits without building a tree.
 ///
 /// It follows the parser's own reading of the text up to the first mistake of the text; behind that it may
 /// err, because the parser stops there.
-fn scan(text: &str) -> Result<Scan, (usize, String)> {
+fn scan(text: &str) -> Result<Scan<'_>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
     let mut open = Vec::new();
     let (mut at, mut root) = (0, None);
+    let (mut prefixes, mut known) = (Vec::new(), BTreeSet::new());
+    let mut note = |prefix| {
+        if known.insert(prefix) {
+            prefixes.push(prefix);
+        }
+    };
     while let Some(start) = text[at..].find('<').map(|k| at + k) {
         let rest = &text[start..];
         at = start
@@ -143,10 +162,10 @@ fn scan(text: &str) -> Result<Scan, (usize, String)> {
                 end_behind(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
-                scan_tag(rest, start, &mut open)?
+                scan_tag(rest, start, &mut open, &mut note)?
             };
     }
-    Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop() })
+    Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop(), prefixes })
 }
 
 /// Length of a piece of markup that ends with `end`.
@@ -154,14 +173,25 @@ fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
     rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
-/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty.
-fn scan_tag(rest: &str, start: usize, open: &mut Vec<usize>) -> Result<usize, (usize, String)> {
+/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty, and prefixes of names are
+/// noted.
+fn scan_tag<'t>(
+    rest: &'t str,
+    start: usize,
+    open: &mut Vec<usize>,
+    note: &mut dyn FnMut(&'t str),
+) -> Result<usize, (usize, String)> {
     let bytes = rest.as_bytes();
-    let (mut k, mut attributes) = (1, 0);
+    let (mut k, mut attributes, mut name) = (1, 0, 1);
     while k < bytes.len() && bytes[k] != b'>' && bytes[k] != b'<' {
         if matches!(bytes[k], b'"' | b'\'') {
             attributes += 1;
             k = bytes[k + 1..].iter().position(|b| *b == bytes[k]).map_or(bytes.len(), |n| k + 1 + n);
+        } else if bytes[k] == b':' && k > name && !matches!(bytes[name], b'0'..=b'9' | b'-' | b'.') {
+            note(&rest[name..k]);
+        }
+        if bytes.get(k).is_none_or(|b| not_in_a_name(char::from(*b))) {
+            name = k + 1;
         }
         k += 1;
     }

@@ -53,6 +53,11 @@ fn prefixes_need_no_declaration() {
     ] {
         check(&robot(inside), expected);
     }
+    // Some are declared where others use them without.
+    check(
+        "<robot xmlns:s ='s'><p:x xmlns:p='u'/><p:y s:a='1'/><q:z xmlns:r='r' r:a='1' t:a='1'/><link name='a'/></robot>",
+        "body a\nWeld root_joint: ground -> a",
+    );
     // On the line of the root, where the declarations were put, and before them.
     check(
         "<robot><d:x/><link name='a'/><link name='b' name='c'/></robot>",
