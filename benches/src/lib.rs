@@ -3,6 +3,8 @@
 
 pub mod assembly;
 pub mod chains;
+pub mod checked;
+pub mod elements;
 pub mod generic;
 pub mod operations;
 pub mod pairs;

@@ -1,13 +1,17 @@
-//! What the compiler costs: time, memory and output of expanding mechanisms, next to the goals.
+//! What the compiler costs, and what rustc costs on its output: time, memory and size, next to the goals.
 //!
 //! `cargo run -p linkwork-benches --bin expansion`, in the dev profile: that is how cargo builds procedural macros.
-//! Each mechanism is expanded in a process of its own, so that its memory can be told from the others'. What rustc does
-//! with the text that comes out (reading it takes some 15 ms per megabyte) is not part of the figures.
+//! Each mechanism is expanded in a process of its own, so that its memory can be told from the others'. The last columns
+//! are of rustc reading what came out as cargo's dev profile does, up to the metadata of a library: processor time, and
+//! the most memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
 use linkwork_benches::chains::{Source, chain};
+use linkwork_benches::checked::{Library, check};
+use linkwork_benches::elements::{placed_chain, sprung_arm};
 use linkwork_benches::operations::Operations;
 use linkwork_compiler::expand;
-use proc_macro2::{LexError, TokenStream};
+use proc_macro2::TokenStream;
+use std::error::Error;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
@@ -40,6 +44,9 @@ const ROBOTS: [(&str, &str, &str); 4] = [
     ("simple_humanoid", ", base = free", "1500 ms, 300 MB"),
 ];
 const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+const SPRINGS: [usize; 4] = [10, 100, 300, 1000];
+const PLACED: [usize; 4] = [4, 8, 16, 32];
+const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Name, goal and text of every mechanism.
 fn mechanisms() -> Vec<(String, &'static str, Source)> {
@@ -57,33 +64,49 @@ fn mechanisms() -> Vec<(String, &'static str, Source)> {
     for (symbolic, what) in [(false, "numbers"), (true, "parameters")] {
         list.extend(LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain("Chain", n, symbolic))));
     }
+    list.extend(SPRINGS.map(|n| (format!("arm with {n} springs"), "", sprung_arm(n))));
+    list.extend(PLACED.map(|n| (format!("{n} particles, placed"), "", placed_chain(n))));
+    for n in DIFFERENTIATED {
+        let mut source = chain("Chain", n, false);
+        source.arguments += ", derivatives";
+        list.push((format!("chain of {n}, derivatives"), "", source));
+    }
     list
 }
 
+/// The word before the number of a mechanism and the place of the library, where a line is made in a process of its own.
+const LINE: &str = "line";
+
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1);
-    match arguments.next().map(|word| word.parse()) {
-        None => table(),
-        Some(Ok(k)) => {
-            let mechanisms = mechanisms();
-            let Some((name, goal, source)) = mechanisms.get::<usize>(k) else {
-                eprintln!("expansion: there are {} mechanisms", mechanisms.len());
-                return ExitCode::FAILURE;
-            };
-            match line(name, goal, source) {
-                Ok(line) => println!("{line}"),
-                Err(error) => eprintln!("{name}: {error}"),
-            }
-            ExitCode::SUCCESS
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let done = match words.as_slice() {
+        [LINE, k, rlib] => k.parse().map_err(Into::into).and_then(|k| print_line(k, rlib)),
+        [] => table(0, usize::MAX),
+        [first] => first.parse().map_err(Into::into).and_then(|k| table(k, k)),
+        [first, last, ..] => {
+            let range = first.parse().and_then(|first| Ok((first, last.parse()?)));
+            range.map_err(Into::into).and_then(|(first, last)| table(first, last))
         }
-        Some(Err(_)) => {
-            eprintln!("expansion: expected no argument, or the number of a mechanism");
-            ExitCode::FAILURE
-        }
+    };
+    if let Err(error) = done {
+        eprintln!("expansion: {error}");
+        return ExitCode::FAILURE;
     }
+    ExitCode::SUCCESS
 }
 
-fn table() -> ExitCode {
+/// Prints the line of a mechanism.
+fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
+    let mechanisms = mechanisms();
+    let (name, goal, source) = mechanisms.get(k).ok_or("there is no such mechanism")?;
+    println!("{}", line(name, goal, source, &Library { rlib: rlib.into() })?);
+    Ok(())
+}
+
+/// Prints the lines of the mechanisms of these numbers.
+fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
+    let library = Library::built()?;
     let profile = if cfg!(debug_assertions) {
         "dev: as cargo builds procedural macros"
     } else {
@@ -91,31 +114,28 @@ fn table() -> ExitCode {
     };
     println!("profile: {profile}; operations: mul + add + div\n");
     println!(
-        "| mechanism | dof | expansion, ms | of that derivation | memory, MB | output, KB | nodes | mass matrix | inverse | forward | goal |"
+        "| mechanism | dof | expansion, ms | of that derivation | memory, MB | output, KB | nodes | mass matrix | inverse | forward | rustc, s | rustc, MB | goal |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |");
-    let Ok(program) = std::env::current_exe() else {
-        return ExitCode::FAILURE;
-    };
-    for k in 0..mechanisms().len() {
-        let Ok(status) = Command::new(&program).arg(k.to_string()).status() else {
-            return ExitCode::FAILURE;
-        };
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |");
+    let program = std::env::current_exe()?;
+    for k in first..=last.min(mechanisms().len() - 1) {
+        let status = Command::new(&program).args([LINE, &k.to_string()]).arg(&library.rlib).status()?;
         if !status.success() {
-            return ExitCode::FAILURE;
+            return Err(format!("mechanism {k} has no line").into());
         }
     }
-    ExitCode::SUCCESS
+    Ok(())
 }
 
 /// A line of the table.
-fn line(name: &str, goal: &str, source: &Source) -> Result<String, LexError> {
+fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arguments: TokenStream = source.arguments.parse()?;
     let item: TokenStream = source.item.parse()?;
     let emitted = expand(arguments.clone(), item.clone(), folder);
     let memory = peak_memory().map_or("–".to_string(), |kb| format!("{:.0}", kb / 1e3));
-    let size = emitted.text.len() + emitted.tokens.to_string().len();
+    let output = format!("{}\n{}", emitted.tokens, emitted.text);
+    let rustc = check(library, &output)?;
 
     let (mut whole, mut derivation) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();
@@ -130,15 +150,17 @@ fn line(name: &str, goal: &str, source: &Source) -> Result<String, LexError> {
     let derived = Operations::of(&source.arguments, &source.item);
     let operations = |name: &str| derived.function(name).operations;
     Ok(format!(
-        "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {goal} |",
+        "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",
         derived.velocities,
         ms(whole),
         ms(derivation),
-        size as f64 / 1e3,
+        output.len() as f64 / 1e3,
         derived.nodes,
         operations("mass_matrix"),
         operations("inverse_dynamics"),
-        operations("forward_dynamics")
+        operations("forward_dynamics"),
+        rustc.time.as_secs_f64(),
+        rustc.memory / 1e6
     ))
 }
 

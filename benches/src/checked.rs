@@ -1,0 +1,96 @@
+//! What rustc takes to read generated code.
+
+use std::error::Error;
+use std::fs::{read_to_string, write};
+use std::path::PathBuf;
+use std::process::{Child, Command};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// How often rustc is looked at while it runs.
+const PERIOD: Duration = Duration::from_millis(3);
+
+/// Ticks of the clock in which Linux counts processor time, by second.
+const TICKS: f64 = 100.0;
+
+/// The runtime that generated code calls, compiled.
+pub struct Library {
+    /// The file that rustc links; what it depends on stands in the folder `deps` beside it.
+    pub rlib: PathBuf,
+}
+
+/// What a run of rustc took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cost {
+    /// Processor time.
+    pub time: Duration,
+    /// The largest resident size, bytes.
+    pub memory: f64,
+}
+
+impl Library {
+    /// Builds the runtime in the dev profile.
+    pub fn built() -> Result<Library, Box<dyn Error>> {
+        let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+        let build =
+            ["build", "--quiet", "--locked", "-p", "linkwork", "--message-format=json-render-diagnostics"];
+        let output = Command::new(cargo).args(build).current_dir(env!("CARGO_MANIFEST_DIR")).output()?;
+        let messages = String::from_utf8(output.stdout)?;
+        let artifact =
+            messages.lines().rfind(|line| line.contains("/liblinkwork-") && line.contains(".rlib\""));
+        let file = artifact.and_then(|line| line.split('"').find(|word| word.ends_with(".rlib")));
+        Ok(Library { rlib: file.ok_or("cargo told of no library")?.into() })
+    }
+}
+
+/// Has rustc read a library of this text, as the dev profile does, up to its metadata.
+pub fn check(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
+    let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
+    std::fs::create_dir_all(&folder)?;
+    let file = folder.join("expanded.rs");
+    write(&file, text)?;
+    let dependencies = library.rlib.with_file_name("deps");
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let mut child = Command::new(rustc)
+        .args([
+            "--edition=2024",
+            "--crate-type=lib",
+            "--emit=metadata",
+            "-Cdebuginfo=2",
+            "-Cdebug-assertions=on",
+            "--cap-lints=allow",
+        ])
+        .arg("--extern")
+        .arg(format!("linkwork={}", library.rlib.display()))
+        .arg("-L")
+        .arg(dependencies)
+        .args([&"--out-dir".into(), &folder, &file])
+        .spawn()?;
+    let cost = watched(&mut child);
+    std::fs::remove_dir_all(&folder)?;
+    cost
+}
+
+/// Waits for a process, and tells what it took as far as the system says.
+fn watched(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
+    let mut cost = Cost::default();
+    loop {
+        cost = seen(child.id()).unwrap_or(cost);
+        if let Some(status) = child.try_wait()? {
+            return if status.success() { Ok(cost) } else { Err("rustc refuses the output".into()) };
+        }
+        sleep(PERIOD);
+    }
+}
+
+/// What a process took so far.
+fn seen(process: u32) -> Option<Cost> {
+    let status = read_to_string(format!("/proc/{process}/status")).ok()?;
+    let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: f64 = memory.split_whitespace().next()?.parse().ok()?;
+    // After the name in parentheses: the 12th and the 13th word are the ticks in user and in system mode.
+    let stat = read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let words = stat.rsplit(')').next()?.split_whitespace().skip(11).take(2);
+    let ticks: f64 = words.filter_map(|word| word.parse::<f64>().ok()).sum();
+    Some(Cost { time: Duration::from_secs_f64(ticks / TICKS), memory: kilobytes * 1e3 })
+}
