@@ -128,7 +128,7 @@ pub mod prelude {
 pub mod __private {
     pub use crate::absent;
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
-    pub use crate::arithmetic::{Arithmetic, Compiled};
+    pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::constraint::{
         Elimination, InputDerivatives, Motion, MotionDerivatives, Responses, Structure, careful_dynamics,
         careful_response, constrained_derivatives, independent_solution, least_solution, nearly_singular,

@@ -2,7 +2,7 @@
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
 use super::angles::{Angle, Angles, Calls, WIDTH};
-use super::function::{Signature, given, index};
+use super::function::{Signature, filled, given, index};
 use super::matrices;
 use super::scalar::ScalarSpelling;
 use super::stores;
@@ -11,6 +11,7 @@ use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
 use crate::model::Quantity;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Most bindings of a block.
@@ -64,14 +65,14 @@ struct Writer<'a> {
     /// How many statements end with the angles, and the arguments that these need.
     head: usize,
     early: Vec<Argument>,
+    /// Operations of `Ops` that are named before all statements, each for so many lanes; none if they are not to be named.
+    named: Option<BTreeSet<(&'static str, usize)>>,
 }
 
 /// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
-    if let Shape::CalledForward(n) = f.shape
-        && given(f).is_empty()
-    {
-        out.push_str(&matrices::called(f, n, s));
+    if let Some(count) = filled(f) {
+        out.push_str(&matrices::called(f, count, s));
         return;
     }
     // Several states fill the lanes by themselves.
@@ -88,6 +89,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         pieces: vec![None; program.instructions.len()],
         head: 0,
         early: Vec::new(),
+        named: is_parameter.then(BTreeSet::new),
     };
     w.write_instructions();
     let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output(*o)).collect();
@@ -99,6 +101,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     if !helpers.is_empty() && (!is_empty || s.scalar.is_in_lanes()) {
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }
+    w.write_named(out);
     // What the angles do not need is read when they are done: it would wait in memory, not in registers.
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
@@ -256,7 +259,11 @@ impl Writer<'_> {
         if own == lanes {
             return piece;
         }
-        Piece { text: format!("Ops::splat::<_, {lanes}>({})", piece.text), needs: piece.needs, level: 3 }
+        let text = match self.name("splat", lanes) {
+            Some(splat) => format!("{splat}({})", piece.text),
+            None => format!("Ops::splat::<_, {lanes}>({})", piece.text),
+        };
+        Piece { text, needs: piece.needs, level: 3 }
     }
 
     fn operand(&mut self, o: Operand) -> Piece {
@@ -331,9 +338,9 @@ impl Writer<'_> {
             Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
             Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
             Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
-            Op::MulAdd(a, b, c) => self.call("mul_add", &[a, b, c], lanes),
-            Op::MulSub(a, b, c) => self.call("mul_sub", &[a, b, c], lanes),
-            Op::NegMulAdd(a, b, c) => self.call("neg_mul_add", &[a, b, c], lanes),
+            Op::MulAdd(a, b, c) => self.fused("mul_add", [a, b, c], lanes),
+            Op::MulSub(a, b, c) => self.fused("mul_sub", [a, b, c], lanes),
+            Op::NegMulAdd(a, b, c) => self.fused("neg_mul_add", [a, b, c], lanes),
             Op::Call(f, a) => self.call(f.name(), &[a], lanes),
             Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
             Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
@@ -381,7 +388,42 @@ impl Writer<'_> {
         Piece { text, needs: [c.needs, product.needs].concat(), level: 1 }
     }
 
+    /// A call of an operation that large bodies name.
+    fn fused(&mut self, function: &'static str, arguments: [Operand; 3], lanes: usize) -> Piece {
+        let name = self.name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
+        self.call_by(&name, &arguments, lanes)
+    }
+
+    /// The name of an operation on so many lanes, if it gets one.
+    fn name(&mut self, function: &'static str, lanes: usize) -> Option<String> {
+        self.named.as_mut()?.insert((function, lanes));
+        Some(if lanes == 1 { function.to_string() } else { format!("{function}{lanes}") })
+    }
+
+    /// The operations that are called over and over, each as a value: rustc finds out once, not at every call, what they
+    /// are generic over and whether that has what they ask for.
+    fn write_named(&self, out: &mut String) {
+        let one = self.scalar.one();
+        for (function, lanes) in self.named.iter().flatten() {
+            let (name, width) = match (lanes, self.scalar.is_in_lanes()) {
+                (1, false) => (function.to_string(), None),
+                (1, true) => (function.to_string(), Some("LANES".to_string())),
+                _ => (format!("{function}{lanes}"), Some(lanes.to_string())),
+            };
+            let types = match width {
+                Some(width) if *function == "splat" => format!("{one}, {width}"),
+                Some(width) => format!("::linkwork::__private::Vector<Ops, {one}, {width}>"),
+                None => one.to_string(),
+            };
+            let _ = writeln!(out, "let {name} = Ops::{function}::<{types}>;");
+        }
+    }
+
     fn call(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
+        self.call_by(&format!("Ops::{function}"), arguments, lanes)
+    }
+
+    fn call_by(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
         let mut needs = Vec::new();
         let mut list = Vec::new();
         for argument in arguments {
@@ -389,7 +431,7 @@ impl Writer<'_> {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece { text: format!("Ops::{function}({})", list.join(", ")), needs, level: 3 }
+        Piece { text: format!("{function}({})", list.join(", ")), needs, level: 3 }
     }
 }
 
@@ -400,6 +442,7 @@ fn wrap(piece: &Piece, level: u8) -> String {
 /// The numbers of arguments, and those of them that are lanes.
 fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
     let in_lanes = s.scalar.is_in_lanes();
+    let used = w.program.symbols();
     for argument in arguments {
         let (n, given) = match argument {
             Argument::T => {
@@ -417,8 +460,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             continue;
         }
         let name = argument.name();
-        let list: Vec<String> = (0..n).map(|k| format!("{name}{k}")).collect();
-        let list = list.join(", ");
+        let Some(list) = pattern(*argument, n, &used) else { continue };
         let _ = match (given, in_lanes) {
             (true, false) => writeln!(out, "let [{list}] = *{name};"),
             (true, true) => writeln!(out, "let [{list}] = *Ops::each({name});"),
@@ -431,6 +473,22 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             }
         }
     }
+}
+
+/// The elements of an argument's array that a program uses, by name, between those that it does not: rustc takes long over
+/// variables that nothing reads. `None` if it uses none.
+fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
+    let mut list = vec!["_".to_string(); n];
+    let mut end = 0;
+    for k in used.iter().filter_map(|s| index(argument, Quantity::of(*s))).filter(|k| *k < n) {
+        list[k] = format!("{}{k}", argument.name());
+        end = end.max(k + 1);
+    }
+    if end < n {
+        list.truncate(end);
+        list.push("..".to_string());
+    }
+    (end > 0).then(|| list.join(", "))
 }
 
 fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {

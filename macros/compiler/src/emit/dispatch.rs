@@ -2,10 +2,9 @@
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
 use super::body::{Build, write_body};
-use super::function::{Signature, given, write_function, write_head};
+use super::function::{Signature, filled, write_function, write_head};
 use super::item::{ALLOW, Head};
 use super::lanes;
-use crate::catalogue::Shape;
 use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
@@ -36,11 +35,8 @@ struct Body {
 
 /// True for a function that chooses. What calls others multiplies their matrices.
 fn is_large(f: &Function) -> bool {
-    match f.shape {
-        // Calls the one that is given matrices, no more.
-        Shape::CalledForward(_) => !given(f).is_empty(),
-        shape => shape.calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS,
-    }
+    // One that calls the one that is given matrices does no more.
+    filled(f).is_none() && (f.shape.calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
 }
 
 impl Bodies {

@@ -5,6 +5,7 @@ use super::matrices;
 use super::scalar::ScalarSpelling;
 use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
+use crate::machine::FILLING_INSTRUCTIONS;
 use crate::model::Quantity;
 use std::fmt::Write;
 
@@ -28,6 +29,18 @@ pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
 pub fn given(f: &Function) -> Vec<&'static str> {
     let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
     f.arguments.iter().filter_map(given).collect()
+}
+
+/// How many matrices the variant for given ones fills, if a function is written as a call of that. A long function would else
+/// be two for rustc to read, and both do the same.
+pub fn filled(f: &Function) -> Option<usize> {
+    let has_variant = f.name == "inverse_dynamics_derivatives";
+    match f.shape {
+        _ if !given(f).is_empty() => None,
+        Shape::CalledForward(_) => Some(3),
+        Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
+        _ => None,
+    }
 }
 
 /// Dimensions and names that signatures need.

@@ -317,17 +317,20 @@ fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> boo
     format!("&{filled:?}, &[{}]", texts.join(", "))
 }
 
-/// The derivatives by a call of the function that puts them into given matrices: nothing large is moved.
-pub fn called(f: &Function, n: usize, s: &Signature<'_>) -> String {
+/// The derivatives by a call of the function that puts so many of them into given matrices: nothing large is moved.
+pub fn called(f: &Function, count: usize, s: &Signature<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
-    let zeros = format!("<{}>::zeros()", s.shape(Shape::Square(n)));
+    let zeros = vec![format!("<{}>::zeros()", s.shape(Shape::Square(s.nv))); count];
+    let given: Vec<String> = (0..count).map(|k| format!("&mut all.{k}")).collect();
     format!(
-        "let mut all = ({zeros}, {zeros}, {zeros});
-        self.{}_into{}({}, &mut all.0, &mut all.1, &mut all.2);
+        "let mut all = ({});
+        self.{}_into{}({}, {});
         all\n",
+        zeros.join(", "),
         f.name,
         s.suffix(),
-        arguments.join(", ")
+        arguments.join(", "),
+        given.join(", ")
     )
 }
 

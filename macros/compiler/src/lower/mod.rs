@@ -4,6 +4,7 @@
 use crate::expr::eval::joined;
 use crate::expr::lanes::MOST;
 use crate::expr::{Expr, Extreme, Function, Graph, Id, Node, Symbol};
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 mod chain;
@@ -377,6 +378,20 @@ impl Program {
             }
         }
         counts
+    }
+
+    /// The inputs that it uses.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
+        let mut note = |o: Operand| match o {
+            Operand::Symbol(s) => drop(symbols.insert(s)),
+            Operand::Const(_) | Operand::Value(_) | Operand::Tuple(_) | Operand::Gather(_) => {}
+        };
+        for op in &self.instructions {
+            op.operands(&mut note);
+        }
+        self.outputs.iter().for_each(|o| note(*o));
+        symbols
     }
 
     /// True if every constant is a finite number.

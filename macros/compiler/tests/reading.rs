@@ -1,0 +1,58 @@
+//! What makes generated code quick to read for rustc.
+
+use linkwork_compiler::expand;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The generated code of a chain of so many pins, with its derivatives.
+fn chain(pins: usize) -> String {
+    let mut item = "struct S {\n".to_string();
+    let mut parent = "ground".to_string();
+    for k in 0..pins {
+        let axis = ["z", "y", "x"][k % 3];
+        let _ = writeln!(
+            item,
+            "#[body(mass = 2, com = 0.2 * z, inertia = diagonal(0.03, 0.04, 0.02))] link{k}: Body,
+            #[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,"
+        );
+        parent = format!("link{k}.at(0.4 * z)");
+    }
+    item += "}";
+    let arguments = "gravity = -9.81 * z, derivatives".parse().unwrap();
+    let emitted = expand(arguments, item.parse().unwrap(), Path::new(""));
+    format!("{}{}", emitted.tokens, emitted.text)
+}
+
+/// The names that a text consists of.
+fn names(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|name| !name.is_empty())
+}
+
+/// rustc looks through all definitions of a crate for every variable that nothing reads.
+#[test]
+fn no_input_is_bound_that_nothing_reads() {
+    let code = chain(6);
+    let mut bound = 0;
+    for function in code.split("fn ") {
+        for line in function.lines().filter(|line| line.starts_with("let [")) {
+            let pattern = line.split('=').next().unwrap();
+            for name in names(pattern).filter(|name| !matches!(*name, "let" | "_") && !name.starts_with("dv"))
+            {
+                assert!(names(function).filter(|other| *other == name).count() > 1, "{name} in\n{function}");
+                bound += 1;
+            }
+        }
+    }
+    assert!(bound > 50, "{bound}");
+}
+
+/// Derivatives into given matrices and derivatives that are returned are the same statements.
+#[test]
+fn a_long_function_is_written_once() {
+    let head = "fn inverse_dynamics_derivatives(";
+    let body =
+        |code: &str| code.split(head).nth(1).and_then(|rest| rest.split("fn ").next()).map(str::to_string);
+    let (short, long) = (body(&chain(3)).unwrap(), body(&chain(18)).unwrap());
+    assert!(long.contains("self.inverse_dynamics_derivatives_into("), "{long}");
+    assert!(!short.contains("self.inverse_dynamics_derivatives_into("), "{short}");
+}
