@@ -1,5 +1,6 @@
 //! Mechanisms with constraints.
 
+mod branches;
 mod contacts;
 mod counts;
 mod embedded;

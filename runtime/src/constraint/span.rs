@@ -150,14 +150,20 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             let group = each.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
         };
+        let beside = |k: usize, i: usize| {
+            let group = rows.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
+            group.fold(T::zero(), |most, (row, _)| most.max(at(row, i).abs()))
+        };
         let columns: [Column<T, NV>; NC] = core::array::from_fn(|k| {
             let (entry, half) = (of_group(k, &rows), of_group(k, &halves));
             let bound = metric.root.map(|root| entry.min(half / root));
             let mut row = rows.get(k).copied().unwrap_or([T::zero(); NV]);
             let mut sizes = bound;
-            for ((x, size), bound) in row.iter_mut().zip(&mut sizes).zip(&bound) {
-                if x.abs() <= *bound * rounding() {
-                    // Zeros are exact.
+            for (i, ((x, size), bound)) in row.iter_mut().zip(&mut sizes).zip(&bound).enumerate() {
+                // Zeros are exact, unless what stands beside them is next to nothing, too.
+                let most = beside(k, i);
+                let alike = most <= *bound * rounding() || most > *bound * epsilon::<T>().sqrt();
+                if alike && x.abs() <= *bound * rounding() {
                     (*x, *size) = (T::zero(), T::zero());
                 }
             }

@@ -54,23 +54,83 @@ where
     let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
     let moves = clear && (!driven || speed * speed > rate * far::<T>() * constant(0.03));
-    let heading = if moves { *v } else { *least };
-    let pace = far::<T>() / size(&heading);
-    if !(pace > T::zero() && pace.is_finite()) {
-        return None;
-    }
-    let way = Way { t, q: *q, v: *v, heading, moves };
-    let at = |(part, clear): (f64, T)| {
-        interpolated(mechanism, structure, &way, force, (pace * constant(part), clear))
+    let way = Way { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
+    let (clear, within) = (far::<T>() * constant(0.4), zone::<T>() * constant(0.5));
+    let passed = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
+        let pace = far::<T>() / size(&way.heading);
+        let goes = pace > T::zero() && pace.is_finite();
+        let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
+        steps.into_iter().find_map(|step| interpolated(mechanism, structure, &way.points(step, clear), force))
     };
-    // Of several coordinates others may be faster than those that lead out; farther on, or nearer, other things happen.
-    let (clear, least) = (far::<T>() * constant(0.4), zone::<T>() * constant(0.5));
-    let longer = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0].map(|part| (part, clear));
-    let shorter = [1.0, 0.5, 0.25].map(|part| (part, least));
-    longer.into_iter().chain(shorter).find_map(at)
+    // Farther on, or nearer, other things happen.
+    passed(&way, &[1.0, 2.0], clear)
+        .or_else(|| passed(&aside(mechanism, structure, &way)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+        .or_else(|| passed(&way, &[4.0, 16.0], clear))
+        .or_else(|| passed(&way, &[1.0, 0.5, 0.25], within))
 }
 
-/// The polynomial of degree five through six points of a way, `step` apart, all with rows of more than the size `clear`.
+/// Another way along the branch, for states whose velocity leads out slowly beside that of other coordinates: into a direction
+/// with all of them, which a little before and after is known well enough.
+fn aside<M, T: Real, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    mechanism: &M,
+    structure: &Structure<NC>,
+    way: &Way<T, NQ, NV>,
+) -> Option<Way<T, NQ, NV>>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let own = far::<T>() / size(&way.heading);
+    let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
+    // Pushes as large as inertia move heavy bodies, and equal ones light bodies.
+    let pushes = [(mechanism.mass_matrix(way.t, &way.q) * any).data.0[0], any.data.0[0]];
+    let still = Way { v: SVector::zeros(), moves: false, ..*way };
+    let heading = [0.1, 0.3, 1.0].into_iter().find_map(|part| {
+        let points = still.points(own * constant(part), epsilon::<T>().cbrt());
+        let course = (SVector::zeros(), SVector::zeros());
+        let at = |h: T, force: &[T; NV]| points.at(mechanism, structure, h, &course, force);
+        let along = |force: &[T; NV]| {
+            let both = at(-points.step, force)? + at(points.step, force)?;
+            Some(both / size(&both))
+        };
+        Some(along(&pushes[0])? + along(&pushes[1])? * constant::<T>(0.8))
+    })?;
+    Some(Way { heading, moves: false, ..*way })
+}
+
+/// Points of a way, a `step` apart, with rows of more than the size `clear`.
+struct Points<'a, T, const NQ: usize, const NV: usize> {
+    way: &'a Way<T, NQ, NV>,
+    step: T,
+    clear: T,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
+    fn points(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
+        Points { way: self, step, clear }
+    }
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
+    /// The acceleration under a force, `h` along the way.
+    fn at<M, const NU: usize, const NH: usize, const NC: usize>(
+        &self,
+        mechanism: &M,
+        structure: &Structure<NC>,
+        h: T,
+        course: &Course<T, NV>,
+        force: &[T; NV],
+    ) -> Option<SVector<T, NV>>
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
+        let (t, q, v) = moved(mechanism, self.way, h, course)?;
+        let system = System::under(mechanism, t, (&q, &v), *force);
+        let ((a, _), regular) = system.solve(structure, self.clear, Weak::Taken);
+        (regular && a.iter().all(|a| a.is_finite())).then_some(a)
+    }
+}
+
+/// The polynomial of degree five through six points of a way.
 fn interpolated<
     M,
     T: Real,
@@ -82,23 +142,18 @@ fn interpolated<
 >(
     mechanism: &M,
     structure: &Structure<NC>,
-    way: &Way<T, NQ, NV>,
+    points: &Points<'_, T, NQ, NV>,
     force: &[T; NV],
-    (step, clear): (T, T),
 ) -> Option<SVector<T, NV>>
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    let half = constant::<T>(0.5);
-    let at = |h: T, course: &Course<T, NV>, force: &[T; NV]| {
-        let (t, q, v) = moved(mechanism, way, h, course)?;
-        let system = System::under(mechanism, t, (&q, &v), *force);
-        let ((a, _), regular) = system.solve(structure, clear, Weak::Taken);
-        (regular && a.iter().all(|a| a.is_finite())).then_some(a)
-    };
+    let (step, half) = (points.step, constant::<T>(0.5));
+    let at =
+        |h: T, course: &Course<T, NV>, force: &[T; NV]| points.at(mechanism, structure, h, course, force);
     let mut course = (SVector::zeros(), SVector::zeros());
     // Free of forces, the way bends as little as the branch lets it.
-    for _ in 0..if way.moves { 2 } else { 0 } {
+    for _ in 0..if points.way.moves { 2 } else { 0 } {
         let none = [T::zero(); NV];
         let (before, after) = (at(-step, &course, &none)?, at(step, &course, &none)?);
         course = ((before + after) * half, (after - before) * (half / step));
