@@ -90,7 +90,7 @@ use std::path::PathBuf;
 /// | `crate = path::to::linkwork` | where generated code finds this crate, if `Cargo.toml` gives it another name (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
 ///
 /// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the configuration
-/// space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of constraints, outputs and
+/// space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of constraints, `assemble`, outputs and
 /// `generalized_forces` are generated, the dynamics and the trait `Mechanism` are not. Files that describe shapes and joints
 /// alone are read so; what such a file says of masses is skipped.
 ///

@@ -21,6 +21,7 @@ mod span;
 mod stabilized;
 
 #[doc(hidden)]
+pub use assemble::{Loops, assemble};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 #[doc(hidden)]
 pub use layout::{Elimination, InputDerivatives, MotionDerivatives, Responses};
@@ -216,7 +217,13 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         q: &SVector<Self::Scalar, NQ>,
         held: &[usize],
     ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
-        assemble::assemble(self, t, q, held)
+        let loops = Loops {
+            names: Self::CONSTRAINTS,
+            residuals: |q: &_| self.constraint_residuals(t, q),
+            jacobian: |q: &_| self.constraint_jacobian(t, q),
+            integrate: |q: &_, dv: &_| self.integrate(q, dv),
+        };
+        assemble(&loops, q, held)
     }
 
     /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy. For what has

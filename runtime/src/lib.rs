@@ -130,9 +130,9 @@ pub mod __private {
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::constraint::{
-        Elimination, InputDerivatives, Motion, MotionDerivatives, Responses, Structure, careful_dynamics,
-        careful_response, constrained_derivatives, independent_solution, least_solution, nearly_singular,
-        pressing_solution, regular_solution, slipping_response, slipping_solution,
+        Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses, Structure, assemble,
+        careful_dynamics, careful_response, constrained_derivatives, independent_solution, least_solution,
+        nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
     pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};

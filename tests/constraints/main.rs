@@ -9,6 +9,7 @@ mod impacts;
 mod invariants;
 mod lanes;
 mod long_runs;
+mod massless;
 mod overdetermined;
 mod planar;
 mod reactions;

@@ -30,6 +30,8 @@ mod options;
 mod rounds;
 #[path = "mistakes/several.rs"]
 mod several;
+#[path = "mistakes/slips.rs"]
+mod slips;
 
 /// What is written, the first line of what is said, and a part of the help.
 type Row = (&'static str, &'static str, &'static str);

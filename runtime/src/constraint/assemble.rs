@@ -1,6 +1,7 @@
 //! Assembly: from a guess to a configuration that fulfils the constraints.
 
-use super::{Constrained, ConstraintError, complete, largest, near, off};
+use super::{ConstraintError, complete, largest, near, off};
+use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
@@ -12,25 +13,35 @@ const AGAIN: usize = 24;
 const NEAR: f64 = 0.05;
 const FAR: f64 = 3.0;
 
+/// What constraints say of configurations, whether there is inertia or not.
+pub struct Loops<R, J, I, const NC: usize> {
+    /// Name of every constraint.
+    pub names: [&'static str; NC],
+    /// What is left of those on configurations.
+    pub residuals: R,
+    /// Derivatives of all of them.
+    pub jacobian: J,
+    /// The configuration after a displacement.
+    pub integrate: I,
+}
+
 /// By steps from the guess; where these end in a gap that no small step closes, from around it.
-pub(super) fn assemble<
-    M,
+pub fn assemble<
+    T: Real,
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+    J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
+    I: Fn(&SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NQ>,
     const NQ: usize,
     const NV: usize,
-    const NU: usize,
     const NH: usize,
     const NC: usize,
 >(
-    mechanism: &M,
-    t: M::Scalar,
-    q: &SVector<M::Scalar, NQ>,
+    loops: &Loops<R, J, I, NC>,
+    q: &SVector<T, NQ>,
     held: &[usize],
-) -> Result<SVector<M::Scalar, NQ>, ConstraintError>
-where
-    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
-{
+) -> Result<SVector<T, NQ>, ConstraintError> {
     complete::check::<NV>(held)?;
-    let first = descend(mechanism, t, q, held);
+    let first = descend(loops, q, held);
     if !matches!(first, Err(ConstraintError::Configuration { .. })) {
         return first;
     }
@@ -42,11 +53,11 @@ where
     };
     let mut distance = NEAR;
     for _ in 0..AGAIN {
-        let step = SVector::<M::Scalar, NV>::from_fn(|k, _| {
+        let step = SVector::<T, NV>::from_fn(|k, _| {
             let part = next();
             if held.contains(&k) { nalgebra::zero() } else { constant(distance * part) }
         });
-        let found = descend(mechanism, t, &mechanism.integrate(q, &step), held);
+        let found = descend(loops, &(loops.integrate)(q, &step), held);
         if found.is_ok() {
             return found;
         }
@@ -56,26 +67,31 @@ where
 }
 
 /// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held.
-fn descend<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
-    mechanism: &M,
-    t: M::Scalar,
-    q: &SVector<M::Scalar, NQ>,
+fn descend<
+    T: Real,
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+    J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
+    I: Fn(&SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NQ>,
+    const NQ: usize,
+    const NV: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    loops: &Loops<R, J, I, NC>,
+    q: &SVector<T, NQ>,
     held: &[usize],
-) -> Result<SVector<M::Scalar, NQ>, ConstraintError>
-where
-    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
-{
+) -> Result<SVector<T, NQ>, ConstraintError> {
     let mut q = *q;
-    let mut residuals = mechanism.constraint_residuals(t, &q);
+    let mut residuals = (loops.residuals)(&q);
     largest(&residuals)?;
-    let mut damping = constant::<M::Scalar>(1e-3);
+    let mut damping = constant::<T>(1e-3);
     for _ in 0..MOST_STEPS {
         let (_, size) = largest(&residuals)?;
-        if size <= constant::<M::Scalar>(4.0) * epsilon() {
+        if size <= constant::<T>(4.0) * epsilon() {
             break;
         }
-        let jacobian = mechanism.constraint_jacobian(t, &q);
-        let rows = SMatrix::<M::Scalar, NH, NV>::from_fn(|i, j| {
+        let jacobian = (loops.jacobian)(&q);
+        let rows = SMatrix::<T, NH, NV>::from_fn(|i, j| {
             let fixed = held.contains(&j);
             jacobian.get((i, j)).copied().filter(|_| !fixed).unwrap_or(nalgebra::zero())
         });
@@ -87,8 +103,8 @@ where
             normal[(k, k)] = if influences { own + own * damping } else { nalgebra::one() };
         }
         let step = normal.cholesky().map(|c| -(rows.transpose() * c.solve(&residuals)));
-        let next = step.map(|step| mechanism.integrate(&q, &step));
-        let trial = next.map(|next| (next, mechanism.constraint_residuals(t, &next)));
+        let next = step.map(|step| (loops.integrate)(&q, &step));
+        let trial = next.map(|next| (next, (loops.residuals)(&next)));
         match trial.filter(|(_, r)| r.norm() < residuals.norm()) {
             Some((next, r)) => {
                 (q, residuals) = (next, r);
@@ -103,5 +119,5 @@ where
         }
     }
     let (worst, size) = largest(&residuals)?;
-    near(size, &q).then_some(q).ok_or_else(|| off(M::CONSTRAINTS, worst, size))
+    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
 }

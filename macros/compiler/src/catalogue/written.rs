@@ -9,7 +9,7 @@ pub const CONSTRAINED: &[Row] = &[
     Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
     Row::written("forward_dynamics_derivatives", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
     Row::written("linearize", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
-    Row::written("assemble", SOLVED),
+    Row::written("assemble", &[Need::Constraints]),
     Row::written("complete_velocity", SOLVED),
     Row::written("constrained_dynamics", SOLVED),
     Row::written("constraint_correction", SOLVED),

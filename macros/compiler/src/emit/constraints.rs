@@ -120,6 +120,31 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     );
 }
 
+/// What a mechanism without inertia has of [`write_methods`]: its loops can be closed.
+pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if c.names.is_empty() {
+        return;
+    }
+    let Words { q, v, t, pass, .. } = Words::new(c, s);
+    let _ = writeln!(
+        out,
+        "/// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+            let loops = ::linkwork::__private::Loops {{
+                names: Self::CONSTRAINTS,
+                residuals: |q: &{q}| self.constraint_residuals({pass}q),
+                jacobian: |q: &{q}| self.constraint_jacobian({pass}q),
+                integrate: |q: &{q}, dv: &{v}| self.integrate(q, dv),
+            }};
+            ::linkwork::__private::assemble(&loops, q, held)
+        }}"
+    );
+}
+
 /// The inherent functions.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {

@@ -92,6 +92,8 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
         reactions::write_methods(&mut methods, interface, &output.functions, &s);
+    } else {
+        constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, Some(&output.charts), &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
@@ -141,6 +143,8 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     constraints::write_constants(&mut methods, &interface.constraints);
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
+    } else {
+        constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, None, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);

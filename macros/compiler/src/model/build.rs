@@ -6,7 +6,7 @@ use super::gradients::Gradients;
 use super::joint::{self, Elementary, coordinate_names, full_name, own_coordinate};
 use super::kinematics::{accelerations, twists};
 use super::masses::MassProperties;
-use super::resolve::{Scope, Value};
+use super::resolve::{Axes, Scope, Value};
 use super::tree::{self, GROUND, Held, find_tree};
 use super::units::{self, Units};
 use super::world::{Level, PlacedKind, View, World};
@@ -585,7 +585,14 @@ fn read_gravity<'g>(
             .help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
         return None;
     }
-    scope.own_vector(e, cx)
+    // Its own axes are the ground's.
+    let mut terms = scope.vector(e, cx)?;
+    for (axes, _) in &mut terms {
+        if *axes == Axes::Of(GROUND.to_string()) {
+            *axes = Axes::Own;
+        }
+    }
+    scope.own_sum(terms, e, cx)
 }
 
 fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {

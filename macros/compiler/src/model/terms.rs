@@ -2,7 +2,7 @@
 //! gravity towards a point, energies, friction, forces with a value; and the outputs.
 
 use super::build::Builder;
-use super::kinematics::symbols_in;
+use super::kinematics::{symbols_in, velocity_gradient};
 use super::resolve::Value;
 use super::world::{Level, Placed, View};
 use super::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity};
@@ -252,6 +252,11 @@ impl<'g> Builder<'_, 'g> {
         for (_, e) in &d.dissipations {
             let view = View::new(Level::Motion, ground());
             let function = self.scope.with_view(view, |scope| scope.scalar(e, cx));
+            // Between bodies that are welded together it is zero, which is no mistake.
+            if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
+                cx.error(e.place.clone(), "this contains no velocity, and has no effect")
+                    .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
+            }
             self.model.dissipations.extend(function);
         }
         for output in &d.outputs {

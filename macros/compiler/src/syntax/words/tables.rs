@@ -233,7 +233,7 @@ pub const TORQUE: Words = &[
 pub const POINT: Words =
     &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
 /// Arguments of an output.
-pub const VECTOR: Words = &[("frame axes expressedin resolved resolvedin", "resolved_in")];
+pub const VECTOR: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
 /// Nothing is known.
 pub const NO_WORDS: Words = &[];
 
