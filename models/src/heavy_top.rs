@@ -82,4 +82,24 @@ mod tests {
         }
         Ok(())
     }
+
+    /// Nearly upright: with enough spin it stays so, with too little it falls.
+    #[test]
+    fn sleeps_if_it_spins_fast_enough() -> Result<(), Error> {
+        let critical = (4.0 * across() * TOP.mass * TOP.g * TOP.height).sqrt() / TOP.axial;
+        for (part, sleeps) in [(1.05, true), (0.95, false)] {
+            let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 1e-4);
+            let run = simulate(&TOP)
+                .from([tilt.i, tilt.j, tilt.k, tilt.w], [0.0, 0.0, part * critical])
+                .duration(5.0)
+                .sample_every(0.01);
+            let mut farthest = 0.0_f64;
+            for sample in run {
+                let axis = UnitQuaternion::from_quaternion(sample?.q.into()) * Vector3::z();
+                farthest = farthest.max(axis.x.hypot(axis.y));
+            }
+            assert_eq!(farthest < 1e-3, sleeps, "{farthest} at {part} of the critical spin");
+        }
+        Ok(())
+    }
 }

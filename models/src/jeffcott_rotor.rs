@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn steady_whirl_below_and_above_the_critical_speed() -> Result<(), Error> {
-        for spin in [30.0, 63.0, 200.0] {
+        for spin in [30.0, 63.0, 200.0, 2000.0] {
             let rotor = JeffcottRotor { spin, ..R };
             let ratio = spin * (R.mass / R.stiffness).sqrt();
             let zeta = R.damping / (2.0 * (R.stiffness * R.mass).sqrt());
@@ -81,6 +81,10 @@ mod tests {
             for sample in run.duration(0.3).sample_every(0.05) {
                 let Sample { t, q, .. } = sample?;
                 assert_near(q / radius, at(t) / radius, 1e-7);
+                // Far above the critical speed the centre of mass stays where it is.
+                let unbalance = R.eccentricity * SVector::from([(spin * t).cos(), (spin * t).sin()]);
+                let moves = (q + unbalance).norm() > 0.01 * R.eccentricity;
+                assert_eq!(moves, spin < 1000.0, "at {spin} rad/s");
             }
         }
         Ok(())
