@@ -1,7 +1,7 @@
 //! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar and spatial
 //! joints, loops closed by every joint, and states on and off the constraints. The equations themselves are the judge.
 
-use linkwork::__private::independent_solution;
+use linkwork::__private::{Elimination, independent_solution};
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::mechanics::{self, constraints, crba, rnea};
@@ -92,20 +92,25 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     }
 }
 
-/// Whether the runtime takes accelerations that follow from chosen speeds, or turns to multipliers.
+/// Whether the runtime takes accelerations that follow from chosen speeds, or turns to multipliers: by the pivots, which stand
+/// behind accelerations and multipliers, and what those were before.
 fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
-    macro_rules! sizes {
-        ($($nv:literal: $($nc:literal)+;)+) => {
-            match (nv, nc) {
-                $($(($nv, $nc) => {
-                    let found: &[f64; $nv + 3 * $nc] = found.try_into().expect("accelerations, multipliers, pivots");
-                    independent_solution::<f64, $nv, $nc, { $nv + 3 * $nc }>(found).is_some()
-                })+)+
-                _ => panic!("{nv} velocities and {nc} constraints"),
-            }
-        };
+    fn by<const NC: usize>(found: &[f64]) -> bool {
+        let part = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
+        let (pivots, before) = (part(1), part(2));
+        let all = Elimination { accelerations: [], multipliers: part(0), pivots, before };
+        independent_solution::<f64, 0, NC>(&all).is_some()
     }
-    sizes! { 3: 1 2 3 4 5 6; 4: 1 2 3 4 5 6; 5: 1 2 3 4 5 6; 6: 1 2 3 4 5 6; }
+    let found = &found[nv..];
+    match nc {
+        1 => by::<1>(found),
+        2 => by::<2>(found),
+        3 => by::<3>(found),
+        4 => by::<4>(found),
+        5 => by::<5>(found),
+        6 => by::<6>(found),
+        _ => panic!("a joint has at most six constraints, found {nc}"),
+    }
 }
 
 /// As many as usual, or as the variable `LINKWORK_ORACLE` says.
