@@ -8,6 +8,8 @@ mod jet;
 mod kane;
 #[path = "accelerations/mechanisms.rs"]
 mod mechanisms;
+#[path = "../macros/compiler/tests/oracle/motion.rs"]
+mod motion;
 #[path = "../macros/compiler/tests/oracle/random.rs"]
 mod random;
 #[path = "../macros/compiler/tests/oracle/spec.rs"]

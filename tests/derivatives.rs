@@ -104,7 +104,7 @@ fn check_recursion(model: &Model<'_>, seed: u64) {
         assert_same("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
         assert_same("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
         let at = symbols(model, seed);
-        let program = lower(&found.by_q.concat()).fused();
+        let program = lower(&found.by_q.concat());
         assert_similar(
             "program of ∂τ/∂q",
             &program.run(&at),
@@ -358,7 +358,7 @@ fn operation_counts_in_lanes() {
     let of = |robot: &str| {
         let all = programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         all.map(|program| {
-            let program = program.in_lanes.expect("its limbs are alike");
+            let program = program.simd.expect("its limbs are alike");
             let fused = program
                 .instructions
                 .iter()

@@ -75,7 +75,7 @@ fn robots_in_lanes() {
     ] {
         let arguments = format!("urdf = \"../models/urdf/{name}.urdf\", base = free");
         let programs = programs(&arguments, "pub struct Robot;", &MAIN).into_iter();
-        let in_lanes: Vec<_> = programs.map(|p| p.in_lanes.expect("its limbs are alike")).collect();
+        let in_lanes: Vec<_> = programs.map(|p| p.simd.expect("its limbs are alike")).collect();
         let found: [_; 4] = std::array::from_fn(|k| (in_lanes[k].counts.total(), instructions(&in_lanes[k])));
         let expected: [_; 4] = std::array::from_fn(|k| (totals[k], fused[k]));
         assert_eq!(found, expected, "{name}: {MAIN:?}");

@@ -5,6 +5,7 @@ mod random_limbs;
 mod random_robot;
 mod random_tree;
 
+use linkwork_compiler::derive::in_lanes;
 use linkwork_compiler::derive::{Output, Prepared};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
@@ -15,7 +16,7 @@ use linkwork_compiler::model::{Model, Quantity};
 use linkwork_compiler::passes::limbs::{Limbs, find};
 use linkwork_compiler::passes::{Form, Passes, forms, in_common_axes, sizes};
 use linkwork_compiler::syntax::Requests;
-use linkwork_compiler::{compile_with, derive_with, in_lanes, read};
+use linkwork_compiler::{compile_with, derive_with, read};
 use proptest::prelude::*;
 use random_limbs::creatures;
 use random_robot::robots;
@@ -125,7 +126,7 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
         for (new, old) in new.functions.iter().zip(&old.functions) {
             let (a, b) = (new.program.run(&at), old.program.run(&at));
             assert_near(&format!("{name}: {}", new.name), seed, tolerance, &a, &b);
-            if let Some(lanes) = &new.program.in_lanes {
+            if let Some(lanes) = &new.program.simd {
                 assert_near(&format!("{name}: {} in lanes", new.name), seed, tolerance, &lanes.run(&at), &b);
             }
         }
@@ -233,7 +234,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         let found = in_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
         assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
         // The same after lowering.
-        let program = lower(&in_lanes::inverse_dynamics(&limbs, true)).fused();
+        let program = lower(&in_lanes::inverse_dynamics(&limbs, true));
         assert_near("program", seed, TOLERANCE, &program.run(&at), &tau);
     }
 }

@@ -206,7 +206,7 @@ fn counts(input: &Input) -> Result<(), Failure> {
     );
     for f in &output.functions {
         row(&f.name, [&f.program]);
-        if let Some(program) = &f.program.in_lanes {
+        if let Some(program) = &f.program.simd {
             row("  in lanes", [&**program]);
         }
     }

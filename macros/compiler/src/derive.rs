@@ -48,7 +48,7 @@ pub fn derive_with<'g>(
     if model.kinematic {
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
         let functions =
-            functions(model, Requests::default(), passes, &joints, &Extras::default(), Stage::Whole);
+            functions(model, Requests::default(), passes, &joints, &Extras::default(), Specialisation::None);
         return sound(model, steps(model, &joints, functions), cx);
     }
     let mass = crba::mass_matrix(model, &joints);
@@ -64,15 +64,16 @@ pub fn derive_with<'g>(
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| entries(&mass)),
     };
-    let all = |stage| functions(model, requests, passes, &joints, &extras, stage);
+    let all = |specialisation| functions(model, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
     if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
         cx.error(model.place.clone(), "the constraints of this mechanism depend on each other too much")
             .help("code without loops would be too long: hold the bodies by shorter chains of joints");
         return None;
     }
-    let functions = all(Stage::Whole);
-    let prepared = requests.prepare.then(|| prepared::prepared(model.graph, all(Stage::Prepared)));
+    let functions = all(Specialisation::None);
+    let prepared =
+        requests.prepare.then(|| prepared::prepared(model.graph, all(Specialisation::ByParameters)));
     let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
     constants.extend(extras.entries.map(|entries| Constant::entries(&entries)));
     if requests.sensitivities {
@@ -178,16 +179,16 @@ struct Candidate<'g> {
     outputs: Vec<Expr<'g>>,
 }
 
-/// How the expressions of a function become its program.
+/// What a function's program is specialised to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
-    /// The function computes everything.
-    Whole,
-    /// What depends on parameters alone is computed before.
-    Prepared,
+enum Specialisation {
+    /// Nothing: it computes everything.
+    None,
+    /// Given parameters: what depends on them alone is computed before.
+    ByParameters,
 }
 
-impl Stage {
+impl Specialisation {
     fn program(self, outputs: &[Expr<'_>]) -> Program {
         lower_without(outputs, &|s| self.knows(s))
     }
@@ -223,7 +224,7 @@ impl Stage {
 
     /// True for what is known before.
     fn knows(self, symbol: Symbol) -> bool {
-        self == Stage::Prepared && matches!(Quantity::of(symbol), Quantity::Parameter(_))
+        self == Specialisation::ByParameters && matches!(Quantity::of(symbol), Quantity::Parameter(_))
     }
 }
 
@@ -249,15 +250,15 @@ fn functions<'g>(
     passes: Passes,
     joints: &[Joint<'g>],
     extras: &Extras<'_, 'g>,
-    stage: Stage,
+    specialisation: Specialisation,
 ) -> Vec<Function> {
     let facts = extras.facts(model, requests);
-    let passes = Passes { free_parameters: stage == Stage::Prepared, ..passes };
-    let derivation = Derivation::new(model, joints, passes, stage, &facts);
+    let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
+    let derivation = Derivation::new(model, joints, passes, specialisation, &facts);
     let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
     let functions = derivation.derive(outputs::declared(model, &facts), functions);
     let forms = if facts.requests.derivatives { derivatives::forms(model, passes) } else { Vec::new() };
-    let derivatives = Derivatives::new(model, &forms, passes, stage);
+    let derivatives = Derivatives::new(model, &forms, passes, specialisation);
     // How the derivatives of a large mechanism are put together is known only now.
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);

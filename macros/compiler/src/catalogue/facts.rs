@@ -126,7 +126,7 @@ impl Facts {
         let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
             all: model.constraints.len(),
             holonomic: model.holonomic(),
-            slipping: model.constraints.iter().filter(|c| !c.drags.is_empty()).count(),
+            slipping: model.constraints.iter().filter(|c| !c.friction.is_empty()).count(),
             overdetermined: model.is_overdetermined(),
             determining: model.constraints.iter().any(|c| c.determines),
         });

@@ -16,7 +16,7 @@ mod written;
 pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, Facts, Need};
 pub use outputs::{JACOBIAN, REACTION, output, reaction};
-pub use shape::{Argument, Parted, Record, RecordField, Shape, Structure};
+pub use shape::{Argument, InverseForm, Record, RecordField, Shape, Structure};
 
 /// Names every function whose body follows from equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

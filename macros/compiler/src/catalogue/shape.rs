@@ -52,7 +52,7 @@ pub enum Shape {
     Matrix(usize, usize),
     /// Two square matrices.
     Pair(usize),
-    /// `M⁻¹`. The outputs are what [`Parted`] says.
+    /// `M⁻¹`. The outputs are what [`InverseForm`] says.
     Inverse(usize),
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
     /// themselves, and those of `Inverse`.
@@ -183,16 +183,16 @@ impl Record {
 
 /// How the outputs make the inverse of a mass matrix.
 #[derive(Clone, Debug, Default)]
-pub enum Parted {
+pub enum InverseForm {
     /// They are its columns.
     #[default]
-    Whole,
+    Explicit,
     /// After the columns comes for each velocity a row of factors, in the order of these velocities of the trunk, whose product
     /// with their columns is added.
-    Trunk(Vec<usize>),
+    LowRankUpdate(Vec<usize>),
     /// After columns, of which those of limbs are the inverses of their blocks, comes for each velocity a row with its entries of
     /// the mass matrix in the rows of the trunk.
-    Divided {
+    BlockArrow {
         /// Velocities of the trunk, in the order of the entries.
         trunk: Vec<usize>,
         /// Those of each limb, in their order.
@@ -200,12 +200,12 @@ pub enum Parted {
     },
 }
 
-impl Parted {
+impl InverseForm {
     /// How many numbers come for each velocity after the columns.
     fn width(&self) -> usize {
         match self {
-            Parted::Whole => 0,
-            Parted::Trunk(trunk) | Parted::Divided { trunk, .. } => trunk.len(),
+            InverseForm::Explicit => 0,
+            InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk.len(),
         }
     }
 }
@@ -214,7 +214,7 @@ impl Parted {
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
     /// In which parts the inverse of the mass matrix is.
-    pub inverse: Parted,
+    pub inverse: InverseForm,
     /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
     pub entries: Vec<(usize, usize)>,
     /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.

@@ -5,7 +5,7 @@ use super::dynamics::Dynamics;
 use super::output::Function;
 use super::regressor::Identification;
 use super::sensitivities::Sensitivities;
-use super::{Stage, constraints, outputs};
+use super::{Specialisation, constraints, outputs};
 use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
 use crate::lower::{Program, pipeline};
@@ -19,7 +19,7 @@ pub(super) struct Derivation<'a, 'g> {
     model: &'a Model<'g>,
     joints: &'a [Joint<'g>],
     passes: Passes,
-    stage: Stage,
+    specialisation: Specialisation,
     facts: &'a Facts,
     /// For the word `regressor`.
     identification: Option<&'a Identification<'a, 'g>>,
@@ -34,7 +34,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         model: &'a Model<'g>,
         joints: &'a [Joint<'g>],
         passes: Passes,
-        stage: Stage,
+        specialisation: Specialisation,
         facts: &'a Facts,
     ) -> Derivation<'a, 'g> {
         let (dynamics, sensitivities) = (OnceCell::new(), OnceCell::new());
@@ -43,7 +43,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             model,
             joints,
             passes,
-            stage,
+            specialisation,
             facts,
             identification,
             derivatives,
@@ -76,11 +76,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     fn dynamics(&self) -> &Dynamics<'g> {
-        self.dynamics.get_or_init(|| Dynamics::new(self.model, self.passes, self.stage))
+        self.dynamics.get_or_init(|| Dynamics::new(self.model, self.passes, self.specialisation))
     }
 
     fn sensitivities(&self) -> &Sensitivities<'g> {
-        self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.stage))
+        self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.specialisation))
     }
 
     /// A function of the word `derivatives`, which is given where one is declared.
@@ -98,7 +98,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
         let plain = |program: Program| (program, Structure::default());
-        let of = |outputs: &[Expr<'g>]| plain(self.stage.program(outputs));
+        let of = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
         let (model, joints) = (self.model, self.joints);
         let known = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {

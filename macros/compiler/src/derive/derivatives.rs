@@ -1,8 +1,8 @@
 //! The functions of the word `derivatives`.
 
 use super::output::Function;
-use super::{Stage, in_lanes};
-use crate::catalogue::{Parted, Structure};
+use super::{Specialisation, in_lanes};
+use crate::catalogue::{InverseForm, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::lower::{Operand, Program, lower};
 use crate::machine::DERIVATIVES_COMPARED;
@@ -50,19 +50,23 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         model: &Model<'g>,
         forms: &'a [Form<'g>],
         passes: Passes,
-        stage: Stage,
+        specialisation: Specialisation,
     ) -> Option<Derivatives<'a, 'g>> {
-        let mut parts: Vec<Parts<'_, '_>> = forms.iter().map(|form| Parts::new(form, stage)).collect();
+        let mut parts: Vec<Parts<'_, '_>> =
+            forms.iter().map(|form| Parts::new(form, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
             parts.extend(
-                forms.iter().map(|form| Parts { method: Method::Differentiation, ..Parts::new(form, stage) }),
+                forms.iter().map(|form| Parts {
+                    method: Method::Differentiation,
+                    ..Parts::new(form, specialisation)
+                }),
             );
         }
         let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
         parts.known = invariance::known(parts.model, &parts.joints);
         if derivatives::is_analytic(parts.model) {
             parts.wide = passes.wide(model.nv());
-            parts.take_apart(passes.lanes && stage == Stage::Whole);
+            parts.take_apart(passes.lanes && specialisation == Specialisation::None);
         }
         let tau = forces::generalized_forces(model, &mechanics::joints(model));
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
@@ -101,7 +105,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         let zeros = forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero).collect());
         let (inverse, known) = (parts.parted(), parts.known.indices());
         let program = match (self.calls(), &parts.trunk) {
-            (true, _) => parts.stage.program(&parts.known.all()),
+            (true, _) => parts.specialisation.program(&parts.known.all()),
             (false, Some(trunk)) => parts.forward_dynamics_in_parts(trunk),
             (false, None) => parts.forward_dynamics(),
         };
@@ -130,7 +134,7 @@ struct Parts<'a, 'g> {
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
     method: Method,
-    stage: Stage,
+    specialisation: Specialisation,
     /// Of a large mechanism: its trunk, if it branches.
     trunk: Option<Trunk>,
     /// The same with alike limbs as lanes.
@@ -149,14 +153,14 @@ struct InLanes<'g> {
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
-    fn new(form: &'a Form<'g>, stage: Stage) -> Parts<'a, 'g> {
+    fn new(form: &'a Form<'g>, specialisation: Specialisation) -> Parts<'a, 'g> {
         let mass = crba::mass_matrix(&form.model, &form.joints);
         Parts {
             model: &form.model,
             joints: form.joints.clone(),
             mass,
             method: Method::Recursion(1),
-            stage,
+            specialisation,
             trunk: None,
             limbs: None,
             wide: &[],
@@ -184,7 +188,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     fn cost(&self) -> usize {
-        self.stage.program(&self.force_columns(self.method)).counts.total()
+        self.specialisation.program(&self.force_columns(self.method)).counts.total()
     }
 
     fn force_columns(&self, method: Method) -> Vec<Expr<'g>> {
@@ -193,9 +197,11 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     fn inverse_dynamics(&self) -> Program {
-        let program = self.stage.program(&self.force_columns(self.method));
-        let wide =
-            self.wide.iter().map(|most| self.stage.program(&self.force_columns(Method::Recursion(*most))));
+        let program = self.specialisation.program(&self.force_columns(self.method));
+        let wide = self
+            .wide
+            .iter()
+            .map(|most| self.specialisation.program(&self.force_columns(Method::Recursion(*most))));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let a = lanes.limbs.symbols(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
@@ -212,7 +218,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program = |mass: &crba::Matrix<'g>, method: Method| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace(&mut found.forces);
-            self.stage.program(&all_columns(&found))
+            self.specialisation.program(&all_columns(&found))
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
@@ -231,7 +237,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             self.known.replace(&mut forces);
             [force_columns(&forces), columns(&inverse), factors.concat()].concat()
         };
-        let program = self.stage.program(&outputs(forces, [inverse.columns(), inverse.factors()]));
+        let program = self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()]));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
             let a = in_lanes::accelerations(&lanes.limbs, &inverse);
@@ -252,11 +258,11 @@ impl<'a, 'g> Parts<'a, 'g> {
         let Some(trunk) = &self.trunk else {
             let factor = Factor::of(&self.mass, &self.joints);
             let a = accelerated.then(|| factor.solve(self.unbalanced()));
-            return self.stage.program(&outputs(a, [factor.inverse(), Vec::new()]));
+            return self.specialisation.program(&outputs(a, [factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::of(&self.mass, trunk);
         let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
-        let program = self.stage.program(&outputs(a, [inverse.columns(), inverse.factors()]));
+        let program = self.specialisation.program(&outputs(a, [inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
             let a =
@@ -272,7 +278,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
         };
         let r = accelerated.then(|| self.unbalanced());
-        let program = self.stage.program(&outputs(r, divided(&self.mass, &self.trunk_or_all())));
+        let program = self.specialisation.program(&outputs(r, divided(&self.mass, &self.trunk_or_all())));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
             let r = accelerated.then(|| lanes.limbs.scattered(&in_lanes::unbalanced(&lanes.limbs)));
@@ -312,7 +318,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let linear = derivatives::linearized(self.model, &self.joints, &self.mass, tau, self.method);
         let mut outputs = all_columns(&linear);
         outputs.extend(columns(&commutators(self.model)));
-        self.stage.program(&outputs)
+        self.specialisation.program(&outputs)
     }
 
     /// The forces `tau` of the inputs with their derivatives.
@@ -321,7 +327,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
         outputs.extend(columns(&symbolic::by_input(self.model, tau)));
         outputs.extend(columns(&commutators(self.model)));
-        self.stage.program(&outputs)
+        self.specialisation.program(&outputs)
     }
 
     /// The same without what turns displacements.
@@ -329,7 +335,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let mut outputs = tau.to_vec();
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
         outputs.extend(columns(&symbolic::by_input(self.model, tau)));
-        self.stage.program(&outputs)
+        self.specialisation.program(&outputs)
     }
 
     /// At given accelerations and multipliers: derivatives of `M a + h − Jᵀ λ`, of `J a + b`, and of the rates; then what
@@ -345,12 +351,12 @@ impl<'a, 'g> Parts<'a, 'g> {
         outputs.extend(force_columns(&parts.accelerations));
         outputs.extend(columns(&parts.rates));
         outputs.extend(columns(&commutators(model)));
-        self.stage.program(&outputs)
+        self.specialisation.program(&outputs)
     }
 
     fn coriolis_matrix(&self) -> Program {
         let v = mechanics::velocities(self.model);
-        self.stage.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+        self.specialisation.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
     }
 
     /// `M⁻¹` with how its outputs make it; on request after the accelerations.
@@ -358,7 +364,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         let (program, inverse) = match self.is_divided() {
             true => {
                 let trunk = self.trunk_or_all();
-                let parted = Parted::Divided { trunk: trunk.velocities.clone(), limbs: trunk.limbs() };
+                let parted =
+                    InverseForm::BlockArrow { trunk: trunk.velocities.clone(), limbs: trunk.limbs() };
                 (self.divided(accelerated), parted)
             }
             false => (self.inverse(accelerated), self.parted()),
@@ -367,8 +374,10 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     /// How the inverse is made of straight lines alone.
-    fn parted(&self) -> Parted {
-        self.trunk.as_ref().map_or(Parted::Whole, |trunk| Parted::Trunk(trunk.velocities.clone()))
+    fn parted(&self) -> InverseForm {
+        self.trunk
+            .as_ref()
+            .map_or(InverseForm::Explicit, |trunk| InverseForm::LowRankUpdate(trunk.velocities.clone()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::{Candidate, Stage, in_lanes};
+use super::{Candidate, Specialisation, in_lanes};
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::machine::COMPARED_VELOCITIES;
@@ -19,7 +19,7 @@ const SIMILAR: usize = 8;
 pub(super) struct Dynamics<'g> {
     /// The model's forms with frames of each kind that may be good, the best first.
     kinds: Vec<Forms<'g>>,
-    stage: Stage,
+    specialisation: Specialisation,
     mass_matrix: Program,
     inverse_dynamics: Program,
     bias: Program,
@@ -28,8 +28,8 @@ pub(super) struct Dynamics<'g> {
 impl<'g> Dynamics<'g> {
     /// The forms that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
     /// axes.
-    pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Dynamics<'g> {
-        let mut all = Kind::all(model, passes, stage);
+    pub(super) fn new(model: &Model<'g>, passes: Passes, specialisation: Specialisation) -> Dynamics<'g> {
+        let mut all = Kind::all(model, passes, specialisation);
         all.sort_by_key(|kind| kind.size);
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
@@ -44,17 +44,18 @@ impl<'g> Dynamics<'g> {
             }
         }
         kinds.iter_mut().for_each(Forms::find_bias);
-        let wide = mass_matrices_in_lanes(&kinds, stage, passes.wide(model.nv()));
-        let side_by_side = in_lanes_of(stage, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
+        let wide = mass_matrices_in_lanes(&kinds, specialisation, passes.wide(model.nv()));
+        let side_by_side =
+            in_lanes_of(specialisation, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
         let biases = kinds.iter().map(|forms| &forms.bias.program);
         let bias = biases.min_by_key(|p| (p.counts.total(), p.fused_length())).cloned();
-        let biases_in_lanes = kinds.iter().filter_map(|forms| Some(forms.bias.in_lanes.as_ref()?.1.clone()));
+        let biases_in_lanes = kinds.iter().filter_map(|forms| Some(forms.bias.simd.as_ref()?.1.clone()));
         Dynamics {
-            mass_matrix: stage.cheapest(masses.into_iter()).or_in_lanes(wide),
-            inverse_dynamics: stage.cheapest(recursions.into_iter()).or_in_lanes(side_by_side),
+            mass_matrix: specialisation.cheapest(masses.into_iter()).or_in_lanes(wide),
+            inverse_dynamics: specialisation.cheapest(recursions.into_iter()).or_in_lanes(side_by_side),
             bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
             kinds,
-            stage,
+            specialisation,
         }
     }
 
@@ -138,9 +139,11 @@ impl<'g> Dynamics<'g> {
         };
         let is_larger = smallest(&factorised).is_none_or(|f| smallest(&articulated).is_some_and(|a| f > a));
         let others = articulated.into_iter().filter(|_| is_larger);
-        let both = [self.stage.cheapest(factorised.into_iter()), self.stage.cheapest(others)];
+        let both =
+            [self.specialisation.cheapest(factorised.into_iter()), self.specialisation.cheapest(others)];
         let found = both.into_iter().filter(|program| !program.outputs.is_empty()).min_by_key(Program::time);
-        let in_lanes = in_lanes_of(self.stage, self.kinds.iter().flat_map(Forms::articulated_in_lanes));
+        let in_lanes =
+            in_lanes_of(self.specialisation, self.kinds.iter().flat_map(Forms::articulated_in_lanes));
         found.unwrap_or_default().or_in_lanes(in_lanes)
     }
 }
@@ -156,7 +159,7 @@ struct Kind<'g> {
 
 impl<'g> Kind<'g> {
     /// Those with frames of every kind.
-    fn all(model: &Model<'g>, passes: Passes, stage: Stage) -> Vec<Kind<'g>> {
+    fn all(model: &Model<'g>, passes: Passes, specialisation: Specialisation) -> Vec<Kind<'g>> {
         let mut kinds = vec![passes::forms(model, passes)];
         if passes.frames && model.nv() <= COMPARED_VELOCITIES {
             kinds.push(passes::forms(model, Passes { frames: false, ..passes }));
@@ -166,7 +169,7 @@ impl<'g> Kind<'g> {
                 kinds.iter().map(|forms| passes::in_common_axes(forms)).collect();
             kinds.extend(common.into_iter().filter(|forms| !forms.is_empty()));
         }
-        kinds.into_iter().map(|forms| Kind::new(Forms::new(forms, passes, stage))).collect()
+        kinds.into_iter().map(|forms| Kind::new(Forms::new(forms, passes, specialisation))).collect()
     }
 
     fn new(forms: Forms<'g>) -> Kind<'g> {
@@ -183,19 +186,23 @@ fn smallest(all: &[Candidate<'_>]) -> Option<usize> {
 }
 
 /// Mass matrices in which alike limbs, or columns, are lanes.
-fn mass_matrices_in_lanes<'g>(kinds: &[Forms<'g>], stage: Stage, wide: &[usize]) -> Vec<Program> {
+fn mass_matrices_in_lanes<'g>(
+    kinds: &[Forms<'g>],
+    specialisation: Specialisation,
+    wide: &[usize],
+) -> Vec<Program> {
     let limbs = |most| {
         let of = move |forms: &Forms<'g>| {
             forms.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
         };
-        in_lanes_of(stage, kinds.iter().flat_map(of))
+        in_lanes_of(specialisation, kinds.iter().flat_map(of))
     };
     let columns = |most| {
         let of = move |forms: &Forms<'g>| {
             let all = forms.plain();
             all.map(|m| crba::mass_matrix_in_lanes(m, &forms.joints, most).concat()).collect::<Vec<_>>()
         };
-        in_lanes_of(stage, kinds.iter().flat_map(of))
+        in_lanes_of(specialisation, kinds.iter().flat_map(of))
     };
     [1].iter()
         .chain(wide)
@@ -205,8 +212,11 @@ fn mass_matrices_in_lanes<'g>(kinds: &[Forms<'g>], stage: Stage, wide: &[usize])
 }
 
 /// The programs of outputs in lanes that may be the cheapest.
-fn in_lanes_of<'g>(stage: Stage, lists: impl Iterator<Item = Vec<Expr<'g>>>) -> Vec<Program> {
-    let programs = stage.programs(lists.map(|list| stage.sized(list)));
+fn in_lanes_of<'g>(
+    specialisation: Specialisation,
+    lists: impl Iterator<Item = Vec<Expr<'g>>>,
+) -> Vec<Program> {
+    let programs = specialisation.programs(lists.map(|list| specialisation.sized(list)));
     programs.into_iter().map(|(_, program)| program).collect()
 }
 
@@ -214,7 +224,7 @@ fn in_lanes_of<'g>(stage: Stage, lists: impl Iterator<Item = Vec<Expr<'g>>>) -> 
 struct Forms<'g> {
     all: Vec<Form<'g>>,
     joints: Vec<Joint<'g>>,
-    stage: Stage,
+    specialisation: Specialisation,
     /// The forms with alike limbs as lanes, and whether they are anchored; none if there are no such limbs.
     limbs: Vec<(Limbs<'g>, bool)>,
     bias: Bias,
@@ -227,26 +237,28 @@ struct Bias {
     program: Program,
     form: usize,
     /// The same with alike limbs as lanes.
-    in_lanes: Option<(usize, Program)>,
+    simd: Option<(usize, Program)>,
 }
 
 impl<'g> Forms<'g> {
-    fn new(all: Vec<Form<'g>>, passes: Passes, stage: Stage) -> Forms<'g> {
+    fn new(all: Vec<Form<'g>>, passes: Passes, specialisation: Specialisation) -> Forms<'g> {
         let joints = all.first().map_or(Vec::new(), |form| form.joints.clone());
         let groups = match all.first() {
-            Some(form) if passes.lanes && stage == Stage::Whole => limbs::find(&form.model, &joints),
+            Some(form) if passes.lanes && specialisation == Specialisation::None => {
+                limbs::find(&form.model, &joints)
+            }
             _ => Vec::new(),
         };
         let in_lanes = |form: &Form<'g>| Some((Limbs::of(&form.model, &joints, &groups)?, form.anchored));
         let limbs = all.iter().filter_map(in_lanes).collect();
-        Forms { all, joints, stage, limbs, bias: Bias::default() }
+        Forms { all, joints, specialisation, limbs, bias: Bias::default() }
     }
 
     fn find_bias(&mut self) {
-        let (form, program) = self.stage.cheapest_of(self.recursions(false));
-        let in_lanes = self.recursions_in_lanes(false).map(|list| self.stage.sized(list));
-        let in_lanes = self.stage.programs(in_lanes).into_iter().min_by_key(|(_, program)| program.cost());
-        self.bias = Bias { program, form, in_lanes };
+        let (form, program) = self.specialisation.cheapest_of(self.recursions(false));
+        let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.sized(list));
+        let simd = self.specialisation.programs(simd).into_iter().min_by_key(|(_, program)| program.cost());
+        self.bias = Bias { program, form, simd };
     }
 
     fn nv(&self) -> usize {
@@ -268,18 +280,18 @@ impl<'g> Forms<'g> {
         &self,
         outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
     ) -> impl Iterator<Item = Candidate<'g>> {
-        self.plain().map(outputs).map(|list| self.stage.sized(list))
+        self.plain().map(outputs).map(|list| self.specialisation.sized(list))
     }
 
     /// The program of the form in which a function of any kind takes the fewest operations.
     fn cheapest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        self.stage.cheapest(self.candidates(outputs))
+        self.specialisation.cheapest(self.candidates(outputs))
     }
 
     /// The program of the form in which its outputs are the smallest, which is found quicker.
     fn smallest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
         let smallest = self.candidates(outputs).min_by_key(|list| list.size);
-        smallest.map_or_else(Program::default, |list| self.stage.program(&list.outputs))
+        smallest.map_or_else(Program::default, |list| self.specialisation.program(&list.outputs))
     }
 
     fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
@@ -291,7 +303,7 @@ impl<'g> Forms<'g> {
         self.all.iter().map(move |form| {
             let (v, a) = (mechanics::velocities(&form.model), mechanics::accelerations(&form.model));
             let a = accelerations.then_some(a.as_slice());
-            self.stage.sized(rnea::inverse_dynamics(&form.model, &self.joints, &v, a))
+            self.specialisation.sized(rnea::inverse_dynamics(&form.model, &self.joints, &v, a))
         })
     }
 
@@ -307,14 +319,14 @@ impl<'g> Forms<'g> {
         let tau = efforts(bias);
         let all = self.plain().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(self.stage.sized(list))
+            Some(self.specialisation.sized(list))
         });
         all.collect()
     }
 
     /// The same with alike limbs as lanes.
     fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
-        let bias = self.bias.in_lanes.as_ref().and_then(|(k, _)| self.limbs.get(*k));
+        let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
         self.plain_limbs().filter_map(|limbs| in_lanes::forward_dynamics(limbs, bias)).collect()
     }

@@ -17,7 +17,7 @@ pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<
     let v = limbs.symbols(Quantity::Velocity);
     let a = accelerations.then(|| limbs.symbols(Quantity::Acceleration));
     let tau = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, a.as_deref());
-    let whole: Vec<Expr<'g>> = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t + *h).collect();
+    let whole: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t + *h).collect();
     limbs.scattered(&whole)
 }
 
@@ -27,7 +27,7 @@ pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<E
     let v = limbs.symbols(Quantity::Velocity);
     let wrenches = rnea::wrenches(&bias.model, &bias.joints, &v, None);
     let tau = limbs.symbols(Quantity::Force);
-    let r: Vec<Expr<'g>> = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t - *h).collect();
+    let r: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h).collect();
     let a = aba::forward_dynamics(&limbs.model, &limbs.joints, wrenches, &r)?;
     Some(limbs.scattered(&a))
 }
@@ -58,7 +58,7 @@ pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
     let v = limbs.symbols(Quantity::Velocity);
     let tau = limbs.symbols(Quantity::Force);
     let bias = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, None);
-    let resisted = tau.iter().zip(limbs.resistance()).map(|(t, h)| *t - *h);
+    let resisted = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h);
     resisted.zip(bias).map(|(r, h)| r - h).collect()
 }
 

@@ -58,7 +58,7 @@ impl Function {
     /// True if its program, and the one in lanes, has as many outputs as the result takes.
     fn is_whole(&self) -> bool {
         let expected = self.shape.outputs(&self.structure);
-        let programs = [Some(&self.program), self.program.in_lanes.as_deref()];
+        let programs = [Some(&self.program), self.program.simd.as_deref()];
         programs.into_iter().flatten().all(|program| program.outputs.len() == expected)
     }
 }

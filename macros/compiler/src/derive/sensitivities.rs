@@ -1,6 +1,6 @@
 //! The functions of the word `sensitivities`: how the motion depends on the parameters.
 
-use super::Stage;
+use super::Specialisation;
 use crate::expr::Expr;
 use crate::lower::Program;
 use crate::machine::DERIVATIVES_COMPARED;
@@ -13,11 +13,15 @@ use crate::passes::{self, Form, Passes};
 pub(super) struct Sensitivities<'g> {
     form: Option<Form<'g>>,
     inverse: Program,
-    stage: Stage,
+    specialisation: Specialisation,
 }
 
 impl<'g> Sensitivities<'g> {
-    pub(super) fn new(model: &Model<'g>, passes: Passes, stage: Stage) -> Sensitivities<'g> {
+    pub(super) fn new(
+        model: &Model<'g>,
+        passes: Passes,
+        specialisation: Specialisation,
+    ) -> Sensitivities<'g> {
         let mut forms =
             if model.nv() <= DERIVATIVES_COMPARED { passes::forms(model, passes) } else { Vec::new() };
         forms.retain(|form| !form.anchored);
@@ -26,7 +30,7 @@ impl<'g> Sensitivities<'g> {
             forms.extend(passes::in_common_axes(&forms));
         }
         let inverse = |form: &Form<'_>| {
-            stage.program(&parameters::inverse_dynamics(&form.model, &form.joints).concat())
+            specialisation.program(&parameters::inverse_dynamics(&form.model, &form.joints).concat())
         };
         let all = forms.into_iter().map(|form| {
             let program = inverse(&form);
@@ -34,7 +38,7 @@ impl<'g> Sensitivities<'g> {
         });
         let best = all.min_by_key(|(_, program)| program.counts.total());
         let (form, inverse) = best.map_or((None, Program::default()), |(form, p)| (Some(form), p));
-        Sensitivities { form, inverse, stage }
+        Sensitivities { form, inverse, specialisation }
     }
 
     pub(super) fn inverse_dynamics(&self) -> Program {
@@ -43,7 +47,7 @@ impl<'g> Sensitivities<'g> {
 
     pub(super) fn forward_dynamics(&self) -> Program {
         let accelerations = self.form.as_ref().map_or_else(Vec::new, accelerations);
-        self.stage.program(&accelerations.concat())
+        self.specialisation.program(&accelerations.concat())
     }
 }
 

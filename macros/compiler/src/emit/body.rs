@@ -76,8 +76,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         return;
     }
     // Several states fill the lanes by themselves.
-    let in_lanes =
-        f.program.in_lanes.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
+    let in_lanes = f.program.simd.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);
     let mut w = Writer {
         build,

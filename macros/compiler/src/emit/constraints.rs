@@ -58,7 +58,7 @@ impl Constraints {
             redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
-            slipping: those(|c| !c.drags.is_empty()),
+            slipping: those(|c| !c.friction.is_empty()),
             determining: those(|c| c.determines),
             overdetermined: model.is_overdetermined(),
             independent: model.dependent.is_some(),

@@ -27,7 +27,7 @@ struct Body {
     names: String,
     result: String,
     /// It takes several states at once.
-    in_lanes: bool,
+    simd: bool,
     text: String,
     /// For debug builds.
     debug: Option<String>,
@@ -74,14 +74,7 @@ impl Bodies {
                 Some(text)
             }
         };
-        self.list.push(Body {
-            types,
-            names,
-            result: s.result(f),
-            in_lanes: s.scalar.is_in_lanes(),
-            text,
-            debug,
-        });
+        self.list.push(Body { types, names, result: s.result(f), simd: s.scalar.is_in_lanes(), text, debug });
     }
 
     /// Writes the bodies of the functions of a type of this name.
@@ -91,7 +84,7 @@ impl Bodies {
             let Body { types, names, result, text, debug, .. } = body;
             let own =
                 generics.trim().trim_start_matches('<').trim_end_matches('>').trim().trim_end_matches(',');
-            let lanes = if body.in_lanes { "const LANES: usize" } else { "" };
+            let lanes = if body.simd { "const LANES: usize" } else { "" };
             let comma = if own.is_empty() || lanes.is_empty() { "" } else { ", " };
             let _ = writeln!(
                 out,

@@ -81,7 +81,7 @@ pub fn operations(functions: &[Function]) -> String {
                 c.calls
             );
         }
-        if let Some(program) = &f.program.in_lanes {
+        if let Some(program) = &f.program.simd {
             let c = program.counts;
             let _ = writeln!(text, "| the same in lanes | {} | {} | {} | {} |", c.mul, c.add, c.div, c.calls);
         }
@@ -122,11 +122,8 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
 
 /// Which functions evaluate limbs or joints as the lanes of vectors, and which coordinates those limbs have.
 fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
-    let in_lanes: Vec<(&str, &Program)> = output
-        .functions
-        .iter()
-        .filter_map(|f| Some((f.name.as_str(), f.program.in_lanes.as_deref()?)))
-        .collect();
+    let in_lanes: Vec<(&str, &Program)> =
+        output.functions.iter().filter_map(|f| Some((f.name.as_str(), f.program.simd.as_deref()?))).collect();
     let Some((_, most)) = in_lanes.iter().max_by_key(|(_, program)| program.gathers.len()) else { return };
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(

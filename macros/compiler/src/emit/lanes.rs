@@ -31,7 +31,7 @@ pub fn write_methods(
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {
-        let exact = match f.program.in_lanes {
+        let exact = match f.program.simd {
             None => "bit for bit",
             Some(_) => "up to rounding: for a single state the lanes are limbs or joints",
         };

@@ -2,7 +2,7 @@
 
 use super::body::Outputs;
 use super::function::{Signature, given};
-use crate::catalogue::{Parted, Shape, Structure};
+use crate::catalogue::{InverseForm, Shape, Structure};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
 
@@ -46,7 +46,7 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
             )
         }
         (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
-            Parted::Divided { .. } => format!(
+            InverseForm::BlockArrow { .. } => format!(
                 "let mut solved = [{}];\n{}{STORAGE}(solved))\n",
                 outputs.list(0..n),
                 completed([inverse, "&mut solved"], f, n, n, s, outputs)
@@ -123,9 +123,11 @@ fn completed(
 ) -> String {
     let beside = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
-        Parted::Whole => String::new(),
-        Parted::Trunk(trunk) => beside(trunk.len()).completion(place, trunk, s),
-        Parted::Divided { trunk, limbs } => beside(trunk.len()).inversion([place, solved], trunk, limbs, s),
+        InverseForm::Explicit => String::new(),
+        InverseForm::LowRankUpdate(trunk) => beside(trunk.len()).completion(place, trunk, s),
+        InverseForm::BlockArrow { trunk, limbs } => {
+            beside(trunk.len()).inversion([place, solved], trunk, limbs, s)
+        }
     }
 }
 

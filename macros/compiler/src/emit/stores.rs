@@ -3,7 +3,7 @@
 
 use super::body::{Outputs, Piece, Statement};
 use super::function::given;
-use crate::catalogue::{Parted, Shape};
+use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
 use crate::machine::NEAR_STATEMENTS;
@@ -64,7 +64,7 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
     let square = |matrix: &'static str| (0..n * n).map(move |k| Place { matrix, column: k / n, row: k % n });
     let all = given.into_iter().flat_map(square).enumerate();
     let overwritten = match &f.structure.inverse {
-        Parted::Divided { trunk, .. } => trunk.as_slice(),
+        InverseForm::BlockArrow { trunk, .. } => trunk.as_slice(),
         _ => &[],
     };
     let kept = all.map(|(k, place)| {

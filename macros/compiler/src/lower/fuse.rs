@@ -20,7 +20,7 @@ impl Program {
 
     /// The program as it becomes with products fused into sums, for its cost.
     pub(super) fn as_fused(&self) -> Program {
-        Program { in_lanes: None, ..self.clone() }.with_fused_products()
+        Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
     /// The same program with products fused into sums. The generated code computes them fused where the hardware can,

@@ -29,7 +29,7 @@ pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> S
     for output in &mut program.outputs {
         *output = placed(*output);
     }
-    if let Some(program) = &mut program.in_lanes {
+    if let Some(program) = &mut program.simd {
         place_hoisted(program, place);
     }
 }

@@ -89,7 +89,7 @@ impl Program {
     pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
         let costs = candidates.into_iter().map(|program| (program.cost(), program));
         let best = costs.min_by_key(|(cost, _)| *cost);
-        self.in_lanes = best.filter(|(cost, _)| *cost < self.cost()).map(|(_, program)| Box::new(program));
+        self.simd = best.filter(|(cost, _)| *cost < self.cost()).map(|(_, program)| Box::new(program));
         self
     }
 

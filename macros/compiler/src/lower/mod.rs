@@ -132,7 +132,7 @@ pub struct Program {
     /// Inputs of lanes.
     pub gathers: Vec<Vec<Symbol>>,
     /// The same with alike limbs side by side as lanes, where that is cheaper.
-    pub in_lanes: Option<Box<Program>>,
+    pub simd: Option<Box<Program>>,
 }
 
 /// Operations of a program: one for every arithmetic instruction, a negation counted as an addition.
@@ -304,7 +304,7 @@ impl Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
         self.sweep();
         self.counts = self.count();
-        self.in_lanes = self.in_lanes.map(|program| Box::new(program.with_outputs(chosen)));
+        self.simd = self.simd.map(|program| Box::new(program.with_outputs(chosen)));
         self
     }
 

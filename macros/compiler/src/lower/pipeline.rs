@@ -4,7 +4,7 @@ use super::Program;
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
-/// A pass over a program and over its variant in lanes.
+/// A pass over a program and over its SIMD variant.
 #[derive(Clone, Copy)]
 pub struct Pass {
     /// The name under which an observer sees it.
@@ -61,16 +61,16 @@ pub const FINISH: &[Pass] = &[SHARE_SUBSUMS, REASSOCIATE, FUSE, SCHEDULE];
 pub const PART: &[Pass] = &[FUSE];
 
 impl Program {
-    /// The program after these passes, and so its variant in lanes.
+    /// The program after these passes, and so its SIMD variant.
     #[must_use]
     pub fn through(mut self, passes: &[Pass]) -> Program {
-        let in_lanes = self.in_lanes.take().map(|program| Box::new(program.through(passes)));
+        let simd = self.simd.take().map(|program| Box::new(program.through(passes)));
         for pass in passes {
             let start = Instant::now();
             self = (pass.run)(self);
             observe(pass.name, &self, start.elapsed());
         }
-        Program { in_lanes, ..self }
+        Program { simd, ..self }
     }
 }
 

@@ -2,7 +2,7 @@
 //! the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at rest without
 //! gravity, so the recursion has no velocity terms.
 
-use super::kinematics::{Dof, Joint, resistance};
+use super::kinematics::{Dof, Joint, passive_forces};
 use super::ldl::second_inverse;
 use super::{Spatial, is_plain_tree};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
@@ -23,7 +23,7 @@ pub fn forward_dynamics<'g>(
     wrenches: Vec<Spatial<'g>>,
     tau: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
-    let r: Vec<Expr<'g>> = tau.iter().zip(resistance(model, true)).map(|(t, h)| *t - h).collect();
+    let r: Vec<Expr<'g>> = tau.iter().zip(passive_forces(model, true)).map(|(t, h)| *t - h).collect();
     solve(model, joints, wrenches, &r)
 }
 
@@ -38,13 +38,13 @@ fn solve<'g>(
     }
     let mut inertias: Vec<Articulated<'g>> =
         model.links.iter().map(|l| Articulated::rigid(&l.inertia)).collect();
-    let mut handles: Vec<Vec<Handle<'g>>> = vec![Vec::new(); joints.len()];
+    let mut handles: Vec<Vec<Eliminated<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
         let (mut inertia, mut wrench) = (inertias[k], wrenches[k]);
         let mut inverse = None;
         for (place, dof) in joint.dofs.iter().enumerate().rev() {
             let next = place.checked_sub(1).map(|next| &joint.dofs[next]).filter(|_| inverse.is_none());
-            let handle = Handle::new(dof, &inertia, &wrench, r[dof.index], inverse);
+            let handle = Eliminated::new(dof, &inertia, &wrench, r[dof.index], inverse);
             inverse = next.and_then(|next| inertia.second_inverse(&dof.subspace, &next.subspace));
             // Nothing above the last degree of freedom needs what is left of the inertia of a root.
             inertia.eliminate(&handle);
@@ -59,7 +59,7 @@ fn solve<'g>(
     Some(outward(model, joints, &handles))
 }
 
-fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Handle<'g>>]) -> Vec<Expr<'g>> {
+fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Eliminated<'g>>]) -> Vec<Expr<'g>> {
     let mut result = vec![model.graph.zero(); model.nv()];
     let mut motions: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for (k, joint) in joints.iter().enumerate() {
@@ -79,7 +79,7 @@ fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Handle<'g
 /// handed on has `r` there by `s · (pA + U u / D) = r`, and the acceleration along it is `(u − U · a) / D` whatever that
 /// of the parent.
 #[derive(Clone)]
-struct Handle<'g> {
+struct Eliminated<'g> {
     axis: Option<Axis>,
     column: Spatial<'g>,
     scaled: Spatial<'g>,
@@ -120,7 +120,7 @@ fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> 
     s
 }
 
-impl<'g> Handle<'g> {
+impl<'g> Eliminated<'g> {
     /// The inverse of `D` is given if it is known already.
     fn new(
         dof: &Dof<'g>,
@@ -128,7 +128,7 @@ impl<'g> Handle<'g> {
         wrench: &Spatial<'g>,
         r: Expr<'g>,
         inverse: Option<Expr<'g>>,
-    ) -> Handle<'g> {
+    ) -> Eliminated<'g> {
         let axis = Axis::of(&dof.subspace);
         let mut column = inertia.times(&dof.subspace);
         let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
@@ -136,7 +136,7 @@ impl<'g> Handle<'g> {
             column = with_entry(column, axis.entry, r.zero());
         }
         let effort = (r - dof.subspace.dot(wrench)) * inverse;
-        Handle { axis, column, scaled: column.times(inverse), effort, r }
+        Eliminated { axis, column, scaled: column.times(inverse), effort, r }
     }
 
     /// The wrench that the joint hands on.
@@ -186,7 +186,7 @@ impl<'g> Articulated<'g> {
     }
 
     /// `IA − U Uᵀ / D`. Rows and columns of a coordinate axis that the joint leaves free are exactly zero then.
-    fn eliminate(&mut self, handle: &Handle<'g>) {
+    fn eliminate(&mut self, handle: &Eliminated<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
         let outer = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
         self.m = self.m - Sym3::from_upper(&outer(handle.scaled.linear, f));

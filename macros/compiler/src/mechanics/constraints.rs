@@ -95,7 +95,7 @@ pub fn responses<'g>(
 /// `Jᵀ λ`, with the friction that follows from normal forces: what constraints contribute to the forces.
 pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = vec![model.graph.zero(); model.nv()];
-    for ((row, drag), l) in jacobian(model).iter().zip(friction::drags(model)).zip(lambda) {
+    for ((row, drag), l) in jacobian(model).iter().zip(friction::jacobian_of_friction(model)).zip(lambda) {
         let size = l.call(Function::Abs);
         for ((force, entry), drag) in forces.iter_mut().zip(row).zip(drag) {
             *force += *entry * *l + drag * size;

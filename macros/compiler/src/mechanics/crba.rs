@@ -76,7 +76,7 @@ pub fn composites<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g
     let mut sums: Vec<Inertia<'g>> = model.links.iter().map(|l| l.inertia).collect();
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            sums[parent.0] = joint.lump(&sums[parent.0], &sums[k]);
+            sums[parent.0] = joint.composite(&sums[parent.0], &sums[k]);
         }
     }
     sums

@@ -21,7 +21,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
     let composites = composites(model, joints);
     let roots = joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none());
-    let sum = roots.fold(model.still, |sum, (joint, c)| joint.lump(&sum, c));
+    let sum = roots.fold(model.still, |sum, (joint, c)| joint.composite(&sum, c));
     (sum.mass, sum.moment)
 }
 

@@ -27,15 +27,15 @@ use crate::model::{Model, Quantity};
 /// The constraints whose multipliers are the normal forces of friction.
 pub fn slipping(model: &Model<'_>) -> Vec<usize> {
     let all = model.constraints.iter().enumerate();
-    all.filter(|(_, c)| !c.drags.is_empty()).map(|(k, _)| k).collect()
+    all.filter(|(_, c)| !c.friction.is_empty()).map(|(k, _)| k).collect()
 }
 
 /// `T`: a row for each constraint, a column for each velocity.
-pub fn drags<'g>(model: &Model<'g>) -> Matrix<'g> {
+pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
     let row = |c: &crate::model::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
-        let rates: Vec<Expr<'g>> = c.drags.iter().map(|d| d.rate).collect();
-        for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.drags) {
+        let rates: Vec<Expr<'g>> = c.friction.iter().map(|d| d.rate).collect();
+        for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.friction) {
             gradient.into_iter().for_each(|(k, d)| row[k] += d * drag.share);
         }
         row
@@ -53,7 +53,7 @@ pub fn solve<'g>(
 ) -> Vec<Expr<'g>> {
     let nv = mass.len();
     let rows = jacobian(model);
-    let (friction, last) = (drags(model), slipping(model));
+    let (friction, last) = (jacobian_of_friction(model), slipping(model));
     let mut k = system(mass, &rows);
     for (n, row) in last.iter().enumerate() {
         let side = Quantity::Given(nv + rows.len() + n).expr(model.graph);

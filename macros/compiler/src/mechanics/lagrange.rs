@@ -7,7 +7,7 @@
 //! `w × L + v × P`.
 
 use super::crba::Matrix;
-use super::kinematics::{Joint, configuration_rate, resistance};
+use super::kinematics::{Joint, configuration_rate, passive_forces};
 use super::{position, velocities};
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
@@ -101,8 +101,8 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
 
 /// Dashpots and friction; springs are in the potential energy.
 fn dissipation<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let all = resistance(model, true);
-    let springs = resistance(model, false);
+    let all = passive_forces(model, true);
+    let springs = passive_forces(model, false);
     all.into_iter().zip(springs).map(|(all, springs)| all - springs).collect()
 }
 

@@ -3,7 +3,7 @@
 use super::crba::{composites, momentum};
 use super::energy::center_of_mass;
 use super::frames::{Placement, flat};
-use super::kinematics::{Joint, resistance, twists};
+use super::kinematics::{Joint, passive_forces, twists};
 use super::rnea::wrenches;
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Vec3};
@@ -71,8 +71,8 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         }
     }
     inertances::add_to_momentum_rate(model, &mut rate);
-    for (rate, resistance) in rate.iter_mut().zip(resistance(model, true)) {
-        *rate -= resistance;
+    for (rate, passive_forces) in rate.iter_mut().zip(passive_forces(model, true)) {
+        *rate -= passive_forces;
     }
     rate
 }

@@ -2,7 +2,7 @@
 //! the acceleration of the points of a link given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
-use super::kinematics::{Joint, resistance};
+use super::kinematics::{Joint, passive_forces};
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::model::{Inertia, Model, Pose};
@@ -15,7 +15,7 @@ pub fn inverse_dynamics<'g>(
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Expr<'g>> {
     let mut wrenches = wrenches(model, joints, v, a);
-    let mut tau = resistance(model, true);
+    let mut tau = passive_forces(model, true);
     inertances::add_to_forces(model, a, &mut tau);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];

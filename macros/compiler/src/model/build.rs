@@ -1,6 +1,6 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
-use super::embed;
+use super::closed_form;
 use super::figures::Range;
 use super::gradients::Gradients;
 use super::joint::{self, Elementary, coordinate_names, full_name, own_coordinate};
@@ -64,7 +64,7 @@ pub struct Builder<'a, 'g> {
     /// By joint.
     coordinates: Vec<JointCoordinates>,
     /// Loops that are solved in closed form.
-    pub embedded: Vec<embed::Embedded>,
+    pub embedded: Vec<closed_form::Embedded>,
     /// Joints to be opened, and the names of the constraints that a mechanism with opened joints keeps.
     pub opening: Option<(&'a [usize], &'a [Constraint<'g>])>,
     /// Number of the group of constraints that is being added.
@@ -265,7 +265,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// another one come after, since their masters may be declared later.
     fn number_coordinates(&mut self, cx: &mut Diagnostics) {
         let closing = tree::closing(self.description);
-        self.embedded = embed::find(self.description, &closing, cx);
+        self.embedded = closed_form::find(self.description, &closing, cx);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
             let (q, v) = (self.model.nq(), self.model.nv());

@@ -156,7 +156,7 @@ impl<'g> Builder<'_, 'g> {
     /// Finds the velocities that follow from independent speeds, if those are asked for.
     fn choose_speeds(&mut self, rows: &Rows<'_>, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
-        if self.model.constraints.iter().any(|c| !c.drags.is_empty()) {
+        if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
             cx.error(place.clone(), "independent speeds leave no normal force for friction to follow")
                 .help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
             return;
@@ -341,7 +341,7 @@ impl<'g> Builder<'_, 'g> {
             transmits: vec![transmits],
             group: self.group,
             determines: false,
-            drags: Vec::new(),
+            friction: Vec::new(),
         });
     }
 
@@ -370,7 +370,7 @@ impl<'g> Builder<'_, 'g> {
             transmits: Vec::new(),
             group: self.group,
             determines: false,
-            drags: Vec::new(),
+            friction: Vec::new(),
         });
     }
 

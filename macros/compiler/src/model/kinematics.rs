@@ -123,7 +123,7 @@ impl<'g> Joint<'g> {
     }
 
     /// Mass properties of the parent with those of the link, or of all limbs side by side.
-    pub fn lump(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
+    pub fn composite(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
             return parent.plus_placed(link, &self.rotation, self.translation);
         }
@@ -355,7 +355,7 @@ pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Ve
 
 /// Sum of the generalized forces of springs, dashpots and the like, with the sign of `h`: what resists motion is
 /// positive. Without velocity, those of potential energies alone.
-pub fn resistance<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
+pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {

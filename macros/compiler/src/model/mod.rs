@@ -11,9 +11,9 @@ mod action;
 mod axis;
 mod build;
 mod carriers;
+mod closed_form;
 mod constraint;
 mod contact;
-mod embed;
 mod figures;
 pub mod gradients;
 mod inertia;
@@ -469,12 +469,12 @@ pub struct Constraint<'g> {
     /// It determines coordinates that may have no inertia.
     pub determines: bool,
     /// Friction in proportion to its multiplier, the normal force of a contact that slips.
-    pub drags: Vec<Drag<'g>>,
+    pub friction: Vec<FrictionTerm<'g>>,
 }
 
 /// Friction along a direction: its power is `share × rate` for each unit of normal force, pressing or pulling.
 #[derive(Clone, Copy, Debug)]
-pub struct Drag<'g> {
+pub struct FrictionTerm<'g> {
     /// The rate of slip, linear in the velocities.
     pub rate: Expr<'g>,
     /// Force along it by normal force, an expression of state and time.
@@ -550,7 +550,7 @@ impl<'g> Model<'g> {
     /// Whether some constraints follow from others wherever all are fulfilled, though no elimination could tell which: as
     /// in Bricard's linkage.
     pub fn is_overdetermined(&self) -> bool {
-        let plain = self.constraints.iter().all(|c| c.drags.is_empty() && !c.determines);
+        let plain = self.constraints.iter().all(|c| c.friction.is_empty() && !c.determines);
         plain && self.constraints.len() + self.freedom[1] > self.nv()
     }
 }

@@ -86,7 +86,7 @@ pub fn outline(d: &Description) -> Outline {
 fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     let closing = super::tree::closing(d);
-    let solved = super::embed::find(d, &closing, &mut Diagnostics::new());
+    let solved = super::closed_form::find(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();

@@ -320,7 +320,7 @@ impl<'g> Builder<'_, 'g> {
         all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));
         all.extend(m.inertances.iter().flat_map(|i| [i.rate, i.inertance]));
         all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
-        all.extend(m.constraints.iter().flat_map(|c| c.drags.iter().map(|d| d.share)));
+        all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
         all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
         for link in &m.links {
             all.extend(link.placement.rotation.matrix().0.iter().flatten());

@@ -52,7 +52,7 @@ fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>>
         Quantity::Force(k) => tau[k],
         other => panic!("{other:?}"),
     };
-    [Some(&f.program), f.program.in_lanes.as_deref()].into_iter().flatten().map(|p| p.run(&symbol)).collect()
+    [Some(&f.program), f.program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol)).collect()
 }
 
 fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], robot: &Robot) {

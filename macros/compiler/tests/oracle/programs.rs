@@ -95,7 +95,7 @@ impl Case<'_> {
             _ => f64::NAN,
         };
         let program = &function.program;
-        [Some(program), program.in_lanes.as_deref()].into_iter().flatten().map(|p| p.run(&at)).collect()
+        [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&at)).collect()
     }
 
     fn close(&self, what: &str, expected: &[f64], scale: f64) {

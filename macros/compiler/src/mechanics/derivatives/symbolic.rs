@@ -1,7 +1,7 @@
 //! Derivatives of any expressions of the state by differentiation along the tangent directions of the configurations.
 
 use super::super::crba::Matrix;
-use super::super::kinematics::{configuration_rate, resistance};
+use super::super::kinematics::{configuration_rate, passive_forces};
 use super::ForceDerivatives;
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Symbol};
@@ -14,7 +14,7 @@ pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g
 
 /// Derivatives of springs, dashpots, friction, potentials and loads.
 pub fn of_resistance<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
-    derivatives(model, &resistance(model, true))
+    derivatives(model, &passive_forces(model, true))
 }
 
 /// Adds the same.

@@ -4,7 +4,7 @@
 //! coordinates say where.
 
 mod cones;
-mod foot;
+mod contact_point;
 mod slipping;
 mod surface;
 
@@ -14,7 +14,7 @@ pub use surface::FORMS;
 use super::build::Builder;
 use super::constraint::{Moving, Relative, perpendicular};
 use super::kinematics::time_derivative;
-use super::{Drag, Measure};
+use super::{FrictionTerm, Measure};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::syntax::{self, ExprKind};
@@ -29,7 +29,7 @@ struct Contact<'g> {
     /// Normal and two tangents, with their names.
     axes: [(&'static str, Vec3<'g>); 3],
     /// Distances that are zero where the coordinates of a surface are those of the contact.
-    foot: Vec<(&'static str, Expr<'g>)>,
+    conditions: Vec<(&'static str, Expr<'g>)>,
 }
 
 /// Two surfaces with the motions of their bodies, relative to the link that carries both, in its axes.
@@ -71,20 +71,20 @@ impl<'g> Builder<'_, 'g> {
         constraint: &syntax::Constraint,
         contact: &Contact<'g>,
         slip: Vec3<'g>,
-        drags: Vec<Drag<'g>>,
+        friction: Vec<FrictionTerm<'g>>,
     ) {
         let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
         // The normal of such a surface turns with its coordinates: off the contact that moves the distance as well.
-        let rate = match contact.foot.is_empty() {
+        let rate = match contact.conditions.is_empty() {
             true => normal.dot(slip),
             false => time_derivative(self.model.space(), contact.gap),
         };
         let name = |word| (format!("{}.{word}", constraint.name.text), place);
         self.push_rate(name(word), Measure::Length, Some(contact.gap), rate);
         if let Some(row) = self.model.constraints.last_mut() {
-            row.drags = drags;
+            row.friction = friction;
         }
-        for (word, distance) in &contact.foot {
+        for (word, distance) in &contact.conditions {
             let rate = time_derivative(self.model.space(), *distance);
             self.push_rate(name(word), Measure::Length, Some(*distance), rate);
             if let Some(row) = self.model.constraints.last_mut() {
@@ -163,7 +163,7 @@ impl<'g> Builder<'_, 'g> {
         let turned_b = |v| self.of_second(pair, v).value;
         let c = pair.center.value - pair.base.value;
         match (&pair.a.form, &pair.b.form) {
-            (_, Form::Sheet(sheet)) => self.foot(pair, sheet),
+            (_, Form::Sheet(sheet)) => self.contact_point(pair, sheet),
             (a, Form::Plane(n)) => {
                 let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
                 let normal = turned_b(*n);
@@ -173,7 +173,7 @@ impl<'g> Builder<'_, 'g> {
                     gap,
                     point,
                     axes: [("normal", normal), (first, e1), (second, e2)],
-                    foot: Vec::new(),
+                    conditions: Vec::new(),
                 })
             }
             (Form::Sphere(radius), b) => sphere_contact(*radius, b, c, &turned_b),
@@ -247,7 +247,7 @@ fn sphere_contact<'g>(
     };
     let [first, second] = tangents;
     let axes = [("normal", normal), first, second];
-    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, foot: Vec::new() })
+    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
 }
 
 /// The point of a convex body that is farthest along `n`, from its centre.

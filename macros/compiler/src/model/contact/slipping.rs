@@ -6,7 +6,7 @@ use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::model::build::Builder;
 use crate::model::world::{Level, View};
-use crate::model::{Constraint, Drag, Pose};
+use crate::model::{Constraint, FrictionTerm, Pose};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
@@ -25,8 +25,9 @@ impl<'g> Builder<'_, 'g> {
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
         let size = rates.iter().fold(speed.square(), |sum, rate| sum + rate.square()).sqrt();
         let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
-        let drags = moving.map(|rate| Drag { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        self.hold(constraint, &contact, slip, drags);
+        let friction =
+            moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
+        self.hold(constraint, &contact, slip, friction);
     }
 
     /// Coefficient of friction and speed of the regularisation.
@@ -57,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
 
 /// Reports slipping contacts whose normal force does not follow from the motion: with their rows goes their friction.
 pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
-    for row in rows.iter().filter(|c| !c.drags.is_empty() && redundant.contains(&c.name)) {
+    for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
         cx.error(row.place.clone(), "the normal force of this contact does not follow from the motion").help(
             "other constraints hold these bodies at their distance already: without it there is no friction",
         );

@@ -12,7 +12,7 @@ pub use merge::Merge;
 use velocities::{Place, Velocity, configuration, paired};
 
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::model::kinematics::{Dof, Joint, Spatial, resistance};
+use crate::model::kinematics::{Dof, Joint, Spatial, passive_forces};
 use crate::model::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity};
 
 /// A mechanism with one limb for each group of alike ones.
@@ -25,7 +25,7 @@ pub struct Limbs<'g> {
     /// By velocity of the whole mechanism.
     places: Vec<Place>,
     /// Forces of springs, dashpots and the like, by velocity here.
-    resistance: Vec<Expr<'g>>,
+    passive_forces: Vec<Expr<'g>>,
 }
 
 impl<'g> Limbs<'g> {
@@ -43,7 +43,7 @@ impl<'g> Limbs<'g> {
             joints: Vec::new(),
             velocities,
             places,
-            resistance: Vec::new(),
+            passive_forces: Vec::new(),
         };
         limbs.model.links.clear();
         let mut numbers = vec![LinkId(0); joints.len()];
@@ -59,8 +59,8 @@ impl<'g> Limbs<'g> {
             let link = limbs.link(&links, parent, merge)?;
             limbs.model.links.push(link);
         }
-        let forces = resistance(model, true);
-        limbs.resistance = limbs.gathered(&forces, merge)?;
+        let forces = passive_forces(model, true);
+        limbs.passive_forces = limbs.gathered(&forces, merge)?;
         limbs.model.velocities.truncate(limbs.velocities.len());
         Some(limbs)
     }
@@ -138,8 +138,8 @@ impl<'g> Limbs<'g> {
     }
 
     /// Forces of springs, dashpots and the like.
-    pub fn resistance(&self) -> &[Expr<'g>] {
-        &self.resistance
+    pub fn passive_forces(&self) -> &[Expr<'g>] {
+        &self.passive_forces
     }
 
     /// One expression for each velocity of the whole mechanism, from those here.

@@ -65,7 +65,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Where a convex body touches, with the distances that put the coordinates of the surface there.
-    pub(super) fn foot(&self, pair: &Pair<'g>, sheet: &Sheet<'g>) -> Option<Contact<'g>> {
+    pub(super) fn contact_point(&self, pair: &Pair<'g>, sheet: &Sheet<'g>) -> Option<Contact<'g>> {
         let of_surface = |v| self.of_second(pair, v).value;
         let [u, w] = sheet.tangents.map(of_surface);
         let first = u.map(|x| x / u.norm());
@@ -78,7 +78,7 @@ impl<'g> Builder<'_, 'g> {
             gap: normal.dot(apart),
             point,
             axes: [("normal", normal), ("first", first), ("second", second)],
-            foot: vec![("foot_first", first.dot(apart)), ("foot_second", second.dot(apart))],
+            conditions: vec![("foot_first", first.dot(apart)), ("foot_second", second.dot(apart))],
         })
     }
 }
