@@ -8,8 +8,10 @@ mod jet;
 mod kane;
 #[path = "accelerations/mechanisms.rs"]
 mod mechanisms;
+#[allow(dead_code, reason = "the compiler's own test of the oracle needs the rest")]
 #[path = "../macros/compiler/tests/oracle/motion.rs"]
 mod motion;
+#[allow(dead_code, reason = "the compiler's own test of the oracle needs the rest")]
 #[path = "../macros/compiler/tests/oracle/random.rs"]
 mod random;
 #[path = "../macros/compiler/tests/oracle/spec.rs"]
