@@ -1,7 +1,7 @@
 //! What the compiler takes for granted about processors. Every number that was tuned by measuring stands here, with how it was
 //! found; nothing else in the compiler knows a processor.
-//! Latencies are usual figures of processors with fused operations (Fog, *Instruction tables*, 2022); limits were found by timing
-//! the robots of `benches` on x86-64 processors with 512-bit registers, with values around them.
+//! Latencies are usual figures of processors with fused operations; limits were tuned on the robots of `benches`, on x86-64
+//! processors with 512-bit registers.
 
 /// In how many parts a cycle is counted, and how many operations are begun in one.
 pub const CYCLE: u32 = 3;
@@ -30,8 +30,8 @@ pub const MOST_PARALLELISM: f64 = 5.0;
 /// fetched each time, however many lanes they have.
 pub const CACHED_INSTRUCTIONS: usize = 4000;
 
-/// What an instruction costs, in tenths of one of a single lane, by the number of lanes. Those of
-/// eight take two registers where there are none of 512 bits.
+/// What an instruction costs, in tenths of one of a single lane, by the number of lanes. Eight
+/// lanes take two registers where there are none of 512 bits.
 pub fn cost_of_lanes(lanes: usize) -> usize {
     match lanes {
         0..=2 => 10,
@@ -64,7 +64,7 @@ pub const COMPARED_VELOCITIES: usize = 18;
 
 /// Up to how many velocities every form of a model is tried for derivatives, and each of them is written out.
 pub const DERIVATIVES_COMPARED: usize = 10;
-/// Up to how many velocities this is so for the derivatives of forward dynamics of mechanisms that branch. What stands in a single
+/// Up to how many velocities the derivatives of forward dynamics of mechanisms that branch are written out. What stands in a single
 /// function needs stack where it is not optimised.
 pub const DERIVATIVES_WRITTEN_OUT: usize = 24;
 /// Up to how many velocities of a trunk, or of a mechanism that does not branch, the inverse of the mass matrix is written out.

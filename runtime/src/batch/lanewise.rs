@@ -78,7 +78,7 @@ where
         Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
     }
 
-    /// True if it is so in a lane: then all of them go on by accelerations.
+    /// True if the state of one lane is nearly singular: then all lanes go on by accelerations.
     fn is_nearly_singular(
         &self,
         t: Self::Scalar,

@@ -32,15 +32,15 @@ pub struct Responses<T, const NV: usize, const NC: usize> {
 /// Derivatives at given accelerations and multipliers. Matrices are lists of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
-    /// Of `M a + h − Jᵀ λ` by `q`.
+    /// Derivatives of `M a + h − Jᵀ λ` by `q`.
     pub forces_by_q: [[T; NV]; NV],
-    /// Of `M a + h − Jᵀ λ` by `v`.
+    /// Derivatives of `M a + h − Jᵀ λ` by `v`.
     pub forces_by_v: [[T; NV]; NV],
-    /// Of `J a + b` by `q`.
+    /// Derivatives of `J a + b` by `q`.
     pub bias_by_q: [[T; NC]; NV],
-    /// Of `J a + b` by `v`.
+    /// Derivatives of `J a + b` by `v`.
     pub bias_by_v: [[T; NC]; NV],
-    /// Of the constraints' rates by `q`.
+    /// Derivatives of the constraints' rates by `q`.
     pub rates_by_q: [[T; NC]; NV],
     /// What turns displacements that are measured in turning axes.
     pub turning: [[T; NV]; NV],
@@ -51,16 +51,16 @@ pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
 pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
     /// The forces `τ`.
     pub forces: [T; NV],
-    /// By `q`.
+    /// Derivatives of the forces by `q`.
     pub by_q: [[T; NV]; NV],
-    /// By `v`.
+    /// Derivatives of the forces by `v`.
     pub by_v: [[T; NV]; NV],
-    /// By `u`.
+    /// Derivatives of the forces by `u`.
     pub by_u: [[T; NV]; NU],
 }
 
 impl<T: Real, const NV: usize, const NC: usize> MotionDerivatives<T, NV, NC> {
-    /// With forces of inputs that depend on the state among those that act.
+    /// Derivatives with the forces of inputs among those that act: these may depend on the state.
     pub fn under<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
         let subtract = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
             for (entry, other) in from.iter_mut().flatten().zip(what.iter().flatten()) {

@@ -215,7 +215,7 @@ pub fn before_outputs(facts: &Facts) -> Vec<Declared> {
     declared(&TABLES[..BEFORE_OUTPUTS], facts)
 }
 
-/// Those that stand after its outputs.
+/// The functions of a mechanism whose bodies follow from equations: those that stand after its outputs.
 pub fn after_outputs(facts: &Facts) -> Vec<Declared> {
     declared(&TABLES[BEFORE_OUTPUTS..], facts)
 }

@@ -63,9 +63,9 @@ pub enum Shape {
     /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
     /// where the inverse is divided, and those of `Inverse`.
     Accelerated(usize),
-    /// The same as `Forward`, by calls of other functions; the outputs are the columns that are known.
+    /// Derivatives of forward dynamics by calls of other functions; the outputs are the columns that are known.
     CalledForward(usize),
-    /// The same as `Linear`, from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
+    /// A linear system from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
     /// derivatives by `q`, `v` and the inputs, and what turns displacements.
     CalledLinear(usize, usize),
     /// A plain array.
@@ -195,7 +195,7 @@ pub enum InverseForm {
     BlockArrow {
         /// Velocities of the trunk, in the order of the entries.
         trunk: Vec<usize>,
-        /// Those of each limb, in their order.
+        /// Velocities of each limb, in their order.
         limbs: Vec<Vec<usize>>,
     },
 }

@@ -52,7 +52,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         }
     }
 
-    /// The same with what the functions of some words need; what was derived already is kept.
+    /// Adds what the functions of the words `regressor` and `derivatives` need; what was derived already is kept.
     pub(super) fn with<'b>(
         self,
         facts: &'b Facts,

@@ -9,7 +9,7 @@ use super::{Operand, Program};
 use crate::machine::{ADD, MULTIPLY};
 
 impl Program {
-    /// The same program with its sums in order.
+    /// Puts the terms of sums in the order in which most products fuse.
     pub(super) fn chained(mut self) -> Program {
         // Rewritten additions stand where their sum is used, since they need all that it does.
         let mut late = vec![false; self.instructions.len()];

@@ -23,7 +23,7 @@ impl Program {
         Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
-    /// The same program with products fused into sums. The generated code computes them fused where the hardware can,
+    /// Fuses products into sums. The generated code computes them fused where the hardware can,
     /// and as product and sum elsewhere.
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
@@ -61,7 +61,7 @@ impl Program {
         Some(product).filter(|product| is_product(*product))
     }
 
-    /// The same program with each product that will fuse right before its sum, where it will be computed.
+    /// Puts each product that will fuse right before its sum, where it will be computed.
     pub(super) fn with_products_at_their_sums(self) -> Program {
         let n = self.instructions.len();
         let waits = self.products_to_fuse();

@@ -10,7 +10,7 @@ use super::{Operand, Program};
 use crate::machine::MULTIPLY;
 
 impl Program {
-    /// The same program with its sums in order.
+    /// Puts the terms of sums on the longest chain in the order in which they become known.
     pub(super) fn with_late_terms_last(mut self) -> Program {
         let sums = self.sums();
         let lanes = self.lanes();

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 impl Program {
-    /// The same program in an order that keeps the processor busy.
+    /// Puts the instructions in an order that keeps the processor busy.
     pub(super) fn scheduled(self) -> Program {
         match self.order() {
             Some(order) => self.reordered(&order),

@@ -64,7 +64,7 @@ struct Sums {
 }
 
 impl Program {
-    /// The same program with the terms that its sums have in common summed once.
+    /// Sums the terms once that several sums have in common.
     pub(super) fn with_shared_sums(mut self) -> Program {
         let mut length = self.fused_length();
         for _ in 0..=ROUNDS {
