@@ -367,7 +367,7 @@ fn operation_counts_in_lanes() {
         })
     };
     // Derivatives of inverse dynamics, and the inverse of the mass matrix.
-    let expected = [[(1303, 844), (814, 511)], [(6108, 4118), (6347, 3714)]];
+    let expected = [[(1303, 844), (794, 497)], [(6108, 4118), (6301, 3682)]];
     assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
 }
 

@@ -101,7 +101,7 @@ fn linkages_and_rolling_bodies() {
         ("slider_crank", 148),
         ("andrews_squeezer", 485),
         ("windows", 342),
-        ("bricard_linkage", 1335),
+        ("bricard_linkage", 1329),
         ("five_bar", 268),
         ("rolling_disk", 539),
         ("ball_in_bowl", 897),
