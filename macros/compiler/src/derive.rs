@@ -17,6 +17,7 @@ mod dynamics;
 pub mod in_lanes;
 mod output;
 mod outputs;
+mod passive;
 mod prepared;
 mod regressor;
 mod sensitivities;
@@ -159,7 +160,8 @@ impl<'g> Extras<'_, 'g> {
     fn facts(&self, model: &Model<'g>, requests: Requests) -> Facts {
         let [bodies, base] = self.identification.as_ref().map_or([0, 0], Identification::counts);
         let entries = self.entries.clone().unwrap_or_default();
-        Facts { bodies, base, entries, ..Facts::of(model, requests) }
+        let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
+        Facts { bodies, base, entries, passive, ..Facts::of(model, requests) }
     }
 }
 
@@ -252,6 +254,8 @@ fn functions<'g>(
     extras: &Extras<'_, 'g>,
     specialisation: Specialisation,
 ) -> Vec<Function> {
+    let given = passive::with_given_forces(model, requests.derivatives);
+    let model = given.as_ref().unwrap_or(model);
     let facts = extras.facts(model, requests);
     let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, passes, specialisation, &facts);

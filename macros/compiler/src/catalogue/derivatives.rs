@@ -1,7 +1,7 @@
 //! The functions of the word `derivatives`.
 
 use super::Argument::{A, Q, Tau, U, V};
-use super::{Argument, Declaration, Facts, Id, Need, Record, Row, Shape};
+use super::{Argument, Called, Declaration, Facts, Id, Need, Record, Row, Shape};
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
 const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
@@ -116,6 +116,16 @@ pub const ROWS: &[Row] = &[
         }
     })
     .alone(),
+    Row::derived(
+        Id::PassiveDerivatives,
+        Called::PassiveDerivatives.function(),
+        &[Need::Inertia, Need::Derivatives, Need::PassiveCalls],
+        |f| Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Vector(f.passive.unwrap_or(0)),
+            ..Declaration::default()
+        },
+    ),
     Row::derived(Id::InputDerivatives, "__input_derivatives", CONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),

@@ -1,7 +1,7 @@
 //! Functions of every mechanism.
 
 use super::Argument::{A, Q, Tau, U, V};
-use super::{Declaration, Id, Need, Row, Shape};
+use super::{Called, Declaration, Id, Need, Row, Shape};
 
 const INERTIA: &[Need] = &[Need::Inertia];
 
@@ -144,6 +144,16 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
+    Row::derived(
+        Id::PassiveForces,
+        Called::PassiveForces.function(),
+        &[Need::Inertia, Need::PassiveCalls],
+        |f| Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Vector(f.nv),
+            ..Declaration::default()
+        },
+    ),
 ];
 
 fn power(arguments: Vec<super::Argument>, docs: Vec<&'static str>) -> Declaration {

@@ -32,11 +32,13 @@ pub enum Need {
     Slipping,
     /// Derivatives of forward dynamics by calls of other functions.
     Calls,
+    /// Passive forces that the other functions call.
+    PassiveCalls,
 }
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 13] = [
+    pub const ALL: [Need; 14] = [
         Need::Inertia,
         Need::Derivatives,
         Need::Centroidal,
@@ -50,6 +52,7 @@ impl Need {
         Need::Constraints,
         Need::Slipping,
         Need::Calls,
+        Need::PassiveCalls,
     ];
 
     /// The trait of the runtime that says so. None for what only others call.
@@ -67,7 +70,7 @@ impl Need {
             Need::Batch => "AsksForBatch",
             Need::RegularMass => "HasRegularMass",
             Need::Slipping => "HasSlipping",
-            Need::Calls => return None,
+            Need::Calls | Need::PassiveCalls => return None,
         })
     }
 }
@@ -95,6 +98,8 @@ pub struct Facts {
     pub calls: bool,
     /// The linear system is made of them.
     pub calls_linear: bool,
+    /// Where the passive forces are long enough for a function of their own: how many derivatives of theirs there are.
+    pub passive: Option<usize>,
     /// How many bodies have standard parameters.
     pub bodies: usize,
     /// How many base parameters there are.
@@ -160,6 +165,7 @@ impl Facts {
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::Calls => self.calls,
+            Need::PassiveCalls => self.passive.is_some(),
         }
     }
 }

@@ -16,7 +16,7 @@ mod written;
 pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, Facts, Need};
 pub use outputs::{JACOBIAN, REACTION, output, reaction};
-pub use shape::{Argument, InverseForm, Record, RecordField, Shape, Structure};
+pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// Names every function whose body follows from equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +68,8 @@ pub enum Id {
     ForwardDynamicsByParameters,
     MassMatrixPacked,
     MassMatrixInto,
+    PassiveForces,
+    PassiveDerivatives,
     /// A step from a link or frame to the next, or the numbers of a prepared mechanism: private parts of what is written.
     Part,
 }

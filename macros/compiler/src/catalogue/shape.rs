@@ -21,6 +21,30 @@ pub enum Argument {
     Standard(usize),
     /// A square matrix of so many rows that a result goes into.
     Into(&'static str, usize),
+    /// The results of another function, which a body calls: in no signature.
+    Called(Called),
+}
+
+/// A function of configuration and velocity whose results bodies of others begin with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Called {
+    /// The one for passive forces.
+    PassiveForces,
+    /// The one for their derivatives.
+    PassiveDerivatives,
+}
+
+impl Called {
+    /// All of them.
+    pub const ALL: [Called; 2] = [Called::PassiveForces, Called::PassiveDerivatives];
+
+    /// The function's name.
+    pub const fn function(self) -> &'static str {
+        match self {
+            Called::PassiveForces => "__passive_forces",
+            Called::PassiveDerivatives => "__passive_derivatives",
+        }
+    }
 }
 
 impl Argument {
@@ -35,6 +59,8 @@ impl Argument {
             Argument::U => "u",
             Argument::Given(name, ..) | Argument::Into(name, _) => name,
             Argument::Standard(_) => "standard",
+            Argument::Called(Called::PassiveForces) => "passive",
+            Argument::Called(Called::PassiveDerivatives) => "change",
         }
     }
 }

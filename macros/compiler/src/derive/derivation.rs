@@ -10,6 +10,7 @@ use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
 use crate::lower::{Program, pipeline};
 use crate::mechanics::{Joint, energy, forces, power};
+use crate::model::passive::PassiveForces;
 use crate::model::{Chart, Model};
 use crate::passes::Passes;
 use std::cell::OnceCell;
@@ -96,6 +97,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.identification.map(outputs).unwrap_or_default()
     }
 
+    /// What a function for passive forces gives, where they have one.
+    fn passive(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.model.passive.as_deref().map_or_else(Vec::new, outputs)
+    }
+
     fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
         let plain = |program: Program| (program, Structure::default());
         let of = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
@@ -147,6 +153,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::InverseDynamicsByParameters => plain(self.sensitivities().inverse_dynamics()),
             Id::ForwardDynamicsByParameters => plain(self.sensitivities().forward_dynamics()),
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
+            Id::PassiveForces => of(&self.passive(|passive| passive.forces.clone())),
+            Id::PassiveDerivatives => of(&self.passive(|passive| passive.derivatives.clone())),
             Id::Part => plain(Program::default()),
         }
     }

@@ -22,6 +22,8 @@ impl<'g> Sensitivities<'g> {
         passes: Passes,
         specialisation: Specialisation,
     ) -> Sensitivities<'g> {
+        // Given forces do not show what they depend on.
+        let model = &Model { passive: None, ..model.clone() };
         let mut forms =
             if model.nv() <= DERIVATIVES_COMPARED { passes::forms(model, passes) } else { Vec::new() };
         forms.retain(|form| !form.anchored);

@@ -6,7 +6,7 @@ use super::function::{Signature, filled, given, index};
 use super::matrices;
 use super::scalar::ScalarSpelling;
 use super::stores;
-use crate::catalogue::{Argument, Record, Shape};
+use crate::catalogue::{Argument, Called, Record, Shape};
 use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
@@ -58,7 +58,8 @@ struct Writer<'a> {
     /// By value: how many lanes it has, one for none.
     lanes: Vec<usize>,
     scalar: &'a ScalarSpelling,
-    arguments: &'a [Argument],
+    /// Those of the function, and what it calls.
+    arguments: Vec<Argument>,
     statements: Vec<Statement>,
     /// By value: its text if it is not bound.
     pieces: Vec<Option<Piece>>,
@@ -83,7 +84,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         program,
         lanes: program.lanes(),
         scalar: s.scalar,
-        arguments: &f.arguments,
+        arguments: f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect(),
         statements: Vec::new(),
         pieces: vec![None; program.instructions.len()],
         head: 0,
@@ -104,7 +105,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     // What the angles do not need is read when they are done: it would wait in memory, not in registers.
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
-        f.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
+        w.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
     write_inputs(out, &early, s, &w);
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
     write_inputs(out, &late, s, &w);
@@ -438,7 +439,7 @@ fn wrap(piece: &Piece, level: u8) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }
 
-/// The numbers of arguments, and those of them that are lanes.
+/// The numbers of arguments and of what is called, and those of them that are lanes.
 fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
     let in_lanes = s.scalar.is_in_lanes();
     let used = w.program.symbols();
@@ -454,11 +455,14 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             Argument::Standard(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
             Argument::Into(..) => continue,
+            Argument::Called(_) => (usize::MAX, false),
         };
-        if n == 0 {
-            continue;
-        }
-        let name = argument.name();
+        let name = match argument {
+            Argument::Called(f) => {
+                format!("self.{}{}({}q, v)", f.function(), s.suffix(), if s.time { "t, " } else { "" })
+            }
+            _ => argument.name().to_string(),
+        };
         let Some(list) = pattern(*argument, n, &used) else { continue };
         let _ = match (given, in_lanes) {
             (true, false) => writeln!(out, "let [{list}] = *{name};"),
@@ -477,17 +481,19 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
 /// The elements of an argument's array that a program uses, by name, between those that it does not: rustc takes long over
 /// variables that nothing reads. `None` if it uses none.
 fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
-    let mut list = vec!["_".to_string(); n];
-    let mut end = 0;
+    let mut list = Vec::new();
     for k in used.iter().filter_map(|s| index(argument, Quantity::of(*s))).filter(|k| *k < n) {
+        let length = list.len().max(k + 1);
+        list.resize(length, "_".to_string());
         list[k] = format!("{}{k}", argument.name());
-        end = end.max(k + 1);
     }
-    if end < n {
-        list.truncate(end);
+    if list.is_empty() {
+        return None;
+    }
+    if list.len() < n {
         list.push("..".to_string());
     }
-    (end > 0).then(|| list.join(", "))
+    Some(list.join(", "))
 }
 
 fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {

@@ -68,18 +68,17 @@ pub fn operations(functions: &[Function]) -> String {
     let mut text = String::from(
         "\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n",
     );
-    for f in functions.iter().filter(|f| !f.is_hidden() || f.id == Id::ConstrainedDynamics) {
+    for f in functions {
+        let name = match f.id {
+            Id::PassiveForces => "passive forces, which others call".to_string(),
+            Id::PassiveDerivatives => "derivatives of these, which others call".to_string(),
+            Id::ConstrainedDynamics => format!("`{}`", f.name.trim_start_matches('_')),
+            _ if f.is_hidden() => continue,
+            _ => format!("`{}`", f.name),
+        };
         let c = f.program.counts;
         if c.total() + c.calls > 0 {
-            let _ = writeln!(
-                text,
-                "| `{}` | {} | {} | {} | {} |",
-                f.name.trim_start_matches('_'),
-                c.mul,
-                c.add,
-                c.div,
-                c.calls
-            );
+            let _ = writeln!(text, "| {name} | {} | {} | {} | {} |", c.mul, c.add, c.div, c.calls);
         }
         if let Some(program) = &f.program.simd {
             let c = program.counts;

@@ -3,7 +3,7 @@
 use super::body::{Build, write_body};
 use super::matrices;
 use super::scalar::ScalarSpelling;
-use crate::catalogue::{Argument, Shape};
+use crate::catalogue::{Argument, Called, Shape};
 use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
 use crate::model::Quantity;
@@ -20,7 +20,9 @@ pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
         (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
             Some(k - first)
         }
-        (Argument::Standard(_), Quantity::Given(k)) => Some(k),
+        (Argument::Standard(_), Quantity::Given(k))
+        | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
+        | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
         _ => None,
     }
 }
@@ -78,6 +80,7 @@ impl Signature<'_> {
             Argument::Standard(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
             Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
+            Argument::Called(_) => 0,
         };
         format!("&{}", self.vector(n))
     }

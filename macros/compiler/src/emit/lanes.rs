@@ -26,8 +26,8 @@ pub fn write_methods(
     let lanes = Signature { scalar: &in_lanes, ..*s };
     let wanted = |f: &&Function| match f.id {
         Id::ConstrainedDynamics => !i.constraints.overdetermined,
-        // What the derivatives of forward dynamics call.
-        Id::AccelerationsAndInverse => true,
+        // What other functions call.
+        Id::AccelerationsAndInverse | Id::PassiveForces | Id::PassiveDerivatives => true,
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(wanted) {

@@ -183,6 +183,7 @@ fn empty_model<'g>(
         solved: Vec::new(),
         freedom: [0; 2],
         loads: Vec::new(),
+        passive: None,
         inertances: Vec::new(),
         outputs: Vec::new(),
         opened: None,

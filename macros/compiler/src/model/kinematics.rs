@@ -354,8 +354,11 @@ pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Ve
 }
 
 /// Sum of the generalized forces of springs, dashpots and the like, with the sign of `h`: what resists motion is
-/// positive. Without velocity, those of potential energies alone.
+/// positive. Without velocity, those of potential energies alone. Where another function computes them, they are given.
 pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
+    if let Some(passive) = model.passive.as_ref().filter(|_| with_velocity) {
+        return passive.given_forces();
+    }
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {

@@ -22,6 +22,7 @@ pub mod kinematics;
 mod masses;
 mod mobility;
 mod outline;
+pub mod passive;
 mod place;
 mod reaction;
 mod redundancy;
@@ -61,6 +62,10 @@ pub enum Quantity {
     Prepared(usize),
     /// A component of what a joint transmits: six for each, a force and then a torque.
     Reaction(usize),
+    /// A passive force that a function of its own computes, by velocity.
+    PassiveForce(usize),
+    /// A derivative of passive forces that a function of its own computes, in the order of its results.
+    PassiveDerivative(usize),
 }
 
 impl Quantity {
@@ -79,6 +84,8 @@ impl Quantity {
             Quantity::Given(k) => (7, k),
             Quantity::Prepared(k) => (8, k),
             Quantity::Reaction(k) => (9, k),
+            Quantity::PassiveForce(k) => (10, k),
+            Quantity::PassiveDerivative(k) => (11, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -96,7 +103,9 @@ impl Quantity {
             6 => Quantity::Time,
             7 => Quantity::Given(index),
             8 => Quantity::Prepared(index),
-            _ => Quantity::Reaction(index),
+            9 => Quantity::Reaction(index),
+            10 => Quantity::PassiveForce(index),
+            _ => Quantity::PassiveDerivative(index),
         }
     }
 
@@ -394,6 +403,8 @@ pub struct Model<'g> {
     pub dissipations: Vec<Expr<'g>>,
     /// Other forces.
     pub loads: Vec<Load<'g>>,
+    /// The forces of all these, where a function of its own computes them and all others take them as given.
+    pub passive: Option<Rc<passive::PassiveForces<'g>>>,
     /// Inertances.
     pub inertances: Vec<Inertance<'g>>,
     /// Scalar constraints; those on configurations first.

@@ -155,6 +155,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         potentials: _,
         dissipations: _,
         loads: _,
+        passive: _,
         constraints: _,
         redundant: _,
         dependent: _,

@@ -33,13 +33,19 @@ fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let direction = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let seed = |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.of(*rate));
-        rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect()
+        let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero());
+        let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
+        own.chain(given).collect()
     };
     columns(model, e, (0..model.nv()).map(direction))
 }
 
 fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    columns(model, e, (0..model.nv()).map(|k| vec![(Quantity::Velocity(k).symbol(), model.graph.one())]))
+    let direction = |k: usize| {
+        let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
+        [(Quantity::Velocity(k).symbol(), model.graph.one())].into_iter().chain(given).collect()
+    };
+    columns(model, e, (0..model.nv()).map(direction))
 }
 
 /// Derivatives of expressions by the inputs.

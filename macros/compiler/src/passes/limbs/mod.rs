@@ -208,6 +208,7 @@ fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
     model.potentials.clear();
     model.dissipations.clear();
     model.loads.clear();
+    model.passive = None;
     model
 }
 
