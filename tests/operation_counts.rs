@@ -168,3 +168,47 @@ fn curves_of_growth() {
         assert!(growth < (n as f64 / 16.0).powi(2), "{n}: {growth} times the expressions of 16");
     }
 }
+
+/// A planar chain of particles on rods, each placed by the angles of all rods before it.
+fn placed_chain(n: usize) -> String {
+    let mut item = String::from("pub struct Placed {");
+    let (mut x, mut z) = (Vec::new(), Vec::new());
+    for k in 1..=n {
+        let length = 0.3 + 0.01 * k as f64;
+        x.push(format!("{length:.2} * sin(a{k})"));
+        z.push(format!("{length:.2} * cos(a{k})"));
+        item.push_str(&format!(
+            "a{k}: Coordinate,
+             #[particle(mass = {:.1}, at = ({}) * x - ({}) * z)] p{k}: Particle,",
+            1.0 + 0.1 * k as f64,
+            x.join(" + "),
+            z.join(" + ")
+        ));
+    }
+    item.push('}');
+    item
+}
+
+/// What particles have in common is summed once: the mass matrix takes `3/2 n²` operations, factorisation the `n³/3` that a
+/// full matrix takes, and everything else grows linearly.
+#[test]
+fn chains_placed_by_expressions() {
+    let lines = [
+        ("bias_forces", 16, -10),
+        ("inverse_dynamics", 22, -24),
+        ("kinetic_energy", 12, -2),
+        ("generalized_momentum", 13, -4),
+        ("momentum_rate", 15, -4),
+    ];
+    for n in [16, 24, 32, 48_i64] {
+        let names: Vec<&str> =
+            lines.iter().map(|line| line.0).chain(["mass_matrix", "forward_dynamics"]).collect();
+        let all = programs("gravity = -9.81 * z", &placed_chain(n as usize), &names);
+        let found: Vec<i64> = all.iter().map(|program| program.counts.total() as i64).collect();
+        for ((name, slope, start), found) in lines.iter().zip(&found) {
+            assert_eq!(*found, slope * n + start, "{name} of {n} particles");
+        }
+        assert_eq!(found[5], (3 * n * n + 11 * n) / 2, "mass matrix of {n} particles");
+        assert!(found[6] < n * n * n / 3 + 6 * n * n, "forward dynamics of {n} particles: {}", found[6]);
+    }
+}

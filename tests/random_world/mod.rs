@@ -1,5 +1,5 @@
 //! Random mechanisms with every element of the language that is not a joint: free coordinates, frames and points that
-//! move by coordinates and time, bodies and particles placed by them, springs and inerters between points, potentials,
+//! move by coordinates and time, bodies and particles placed by them, some of them alike, springs and inerters between points, potentials,
 //! dissipation functions, forces with a value, and outputs.
 
 use proptest::collection::vec;
@@ -52,6 +52,12 @@ const PLACES: &str = "
     #[particle(mass = 0.3, at = [first, second, 0.2 * @])] plain: Particle,
     #[body(mass = 0.8, inertia = diagonal(0.3, 0.5, 0.6).rotated(y(#)), at = hook.at([#, #, #]), frame = carried)]
     placed: Body,
+    #[particle(mass = 0.6, at = plain.at([#, #, #]))] beside: Particle,
+    #[particle(mass = 0.2, at = [first + sin(second), second, cos(second)])] further: Particle,
+    #[body(mass = 0.4, com = [#, #, #], inertia = diagonal(0.2, 0.3, 0.25), at = [sin(first), @, 0], frame = turning)]
+    twin: Body,
+    #[body(mass = 0.7, com = [#, #, #], inertia = diagonal(0.3, 0.3, 0.2), at = [sin(first), @, #], frame = turning)]
+    other: Body,
     #[body(mass = 0.5, com = [#, #, #], inertia = diagonal(0.2, 0.3, 0.25))] hung: Body,
     #[joint(hook.rotated(x(#)) -> hung.at([#, #, 0]), about = z)] pin: Pin,
     #[define(v(bead / base.at([#, #, 0]) / carried))] drift: Vector,

@@ -1,5 +1,6 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
+use super::alike::Alike;
 use super::kinematics::{Dof, Joint, map_spatial};
 use super::paths::{Carried, Paths, Walk};
 use super::{Spatial, inertances};
@@ -20,9 +21,11 @@ pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     let dofs =
         joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let mut columns = Columns { joints, dofs: dofs.collect(), composites: composites(model, joints), matrix };
+    let (composites, alike) = (composites(model, joints), Alike::of(model, joints));
+    let mut columns = Columns { joints, dofs: dofs.collect(), composites, alike, matrix };
     paths.carry(&mut columns);
-    let mut m = columns.matrix;
+    let Columns { composites, alike, matrix: mut m, .. } = columns;
+    alike.add_masses(&composites, &mut m);
     inertances::add_to_mass_matrix(model, &mut m);
     m
 }
@@ -33,6 +36,7 @@ struct Columns<'a, 'g> {
     /// Joint, and which of its degrees of freedom.
     dofs: Vec<(usize, usize)>,
     composites: Vec<Inertia<'g>>,
+    alike: Alike<'g>,
     matrix: Matrix<'g>,
 }
 
@@ -52,6 +56,10 @@ impl<'g> Walk<'g> for Columns<'_, 'g> {
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
+        if self.alike.has(link) {
+            // Such a link hangs from the ground: nothing is carried on, and its entries are added for all of them together.
+            return own.subspace;
+        }
         let wrench = momentum(&self.composites[link], &own.subspace);
         for other in &joints[link].dofs[..=row] {
             self.add(own, other, other.subspace.dot(&wrench));

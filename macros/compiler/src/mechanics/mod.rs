@@ -6,6 +6,7 @@ use crate::expr::Expr;
 use crate::model::{Model, Motion, Quantity};
 
 pub mod aba;
+mod alike;
 pub mod constraints;
 pub mod crba;
 pub mod derivatives;

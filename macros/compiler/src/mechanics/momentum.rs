@@ -1,5 +1,6 @@
 //! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the momentum of the whole.
 
+use super::alike::Alike;
 use super::crba::{composites, momentum};
 use super::energy::center_of_mass;
 use super::frames::{Placement, flat};
@@ -31,11 +32,13 @@ fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<S
 
 fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
-    for (joint, wrench) in joints.iter().zip(wrenches) {
+    let alike = Alike::of(model, joints);
+    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !alike.has(*k)) {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
         }
     }
+    alike.add_forces(wrenches, &mut out);
     out
 }
 
@@ -65,7 +68,9 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         .collect();
     let mut rate = project(model, joints, &wrenches);
     // Where the subspace itself changes: Ṡᵀ F.
-    for (joint, momentum) in joints.iter().zip(&momenta) {
+    let alike = Alike::by_rates(model, joints);
+    alike.add_forces(&momenta, &mut rate);
+    for (_, (joint, momentum)) in joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !alike.has(*k)) {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
         }

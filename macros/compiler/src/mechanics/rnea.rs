@@ -2,6 +2,7 @@
 //! the acceleration of the points of a link given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
+use super::alike::Alike;
 use super::kinematics::{Joint, passive_forces};
 use super::{Spatial, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
@@ -17,15 +18,17 @@ pub fn inverse_dynamics<'g>(
     let mut wrenches = wrenches(model, joints, v, a);
     let mut tau = passive_forces(model, true);
     inertances::add_to_forces(model, a, &mut tau);
+    let alike = Alike::of(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in &joint.dofs {
+        for dof in joint.dofs.iter().filter(|_| !alike.has(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
             wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
+    alike.add_forces(&wrenches, &mut tau);
     tau
 }
 
