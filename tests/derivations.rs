@@ -6,10 +6,12 @@ mod random_tree;
 
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::sample::sample;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
-use linkwork_compiler::lower;
-use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
-use linkwork_compiler::model::{Direction, Input, LinkId, Model, Quantity, random_configuration, sample};
+use linkwork_compiler::kinematics::{self, Joint, random_configuration};
+use linkwork_compiler::mechanics::{aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
+use linkwork_compiler::mechanism::{Direction, Input, LinkId, Model, Quantity};
+use linkwork_compiler::{lower, mechanics};
 use proptest::prelude::*;
 use random_tree::trees;
 use support::model::{symbols, with_model};
@@ -37,7 +39,7 @@ fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let reference = lagrange::derive(model, &joints);
     let mass = crba::mass_matrix(model, &joints);
@@ -114,14 +116,14 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
 /// with the velocity of its point, found here by differentiating the point's position in the ground frame.
 fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let world = world_frames(&joints, g);
     let mut power = g.zero();
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
         power += u * match input {
             Input::Named => g.zero(),
-            Input::Coordinate(c) => mechanics::rate(model, c),
+            Input::Coordinate(c) => kinematics::rate(model, c),
             Input::Force { link, point, along } => {
                 let (r, p) = &world[link.0];
                 ground_vector(along, &world, g).dot(velocity(model, *p + *r * *point))

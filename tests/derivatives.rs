@@ -11,10 +11,11 @@ use linkwork::nalgebra::SMatrix;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph};
+use linkwork_compiler::kinematics;
 use linkwork_compiler::lower::{Op, Program, lower};
 use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, invariance, symbolic};
-use linkwork_compiler::mechanics::{self, crba, kinematics, ldl, rnea};
-use linkwork_compiler::model::{Chart, Model, Quantity};
+use linkwork_compiler::mechanics::{self, crba, ldl, rnea};
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 use linkwork_compiler::{compile, read};
 use proptest::prelude::*;
 use random_limbs::creatures;
@@ -95,7 +96,7 @@ fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Ex
 }
 
 fn check_recursion(model: &Model<'_>, seed: u64) {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     let expected = symbolic::derivatives(model, &tau);
@@ -116,7 +117,7 @@ fn check_recursion(model: &Model<'_>, seed: u64) {
 
 /// `C v` is what of the bias depends on the velocities of the links, and `Ṁ = C + Cᵀ`.
 fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64) {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let v = mechanics::velocities(model);
     let still = vec![model.graph.zero(); model.nv()];
     let c = analytic::coriolis_matrix(model, &joints, &v);
@@ -135,7 +136,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64) {
 }
 
 fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let factor = derivatives::Factor::of(&mass, &joints);
     let a = mechanics::accelerations(model);
@@ -162,7 +163,7 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
 
 /// What is known of the motion of a free base solves the equations, differentiated.
 fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let a = mechanics::accelerations(model);
     let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), Some(&a));
@@ -207,7 +208,7 @@ fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
 /// largest deviation relative to the largest derivative, and how many columns are known.
 fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     const STEP: f64 = 1e-5;
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
     let bias = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), None);

@@ -6,10 +6,15 @@ mod random_world;
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::replace::replace;
+use linkwork_compiler::expr::sample::sample;
 use linkwork_compiler::expr::{Expr, Symbol};
-use linkwork_compiler::mechanics::{self, Joint, crba, energy, lagrange, ldl, momentum, rnea};
-use linkwork_compiler::model::kinematics::{symbols_in, time_derivative, velocity_gradient};
-use linkwork_compiler::model::{Model, Quantity, outline, random_configuration, sample};
+use linkwork_compiler::kinematics::{
+    self, Joint, random_configuration, symbols_in, time_derivative, velocity_gradient,
+};
+use linkwork_compiler::mechanics;
+use linkwork_compiler::mechanics::{crba, energy, lagrange, ldl, momentum, rnea};
+use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::resolve::outline;
 use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
 use random_world::{OUTPUTS, worlds};
@@ -110,7 +115,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let close = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
         assert_close(what, &state.values(a), &state.values(b), TOLERANCE);
     };
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let reference = lagrange::derive(model, &joints);
     let mass = crba::mass_matrix(model, &joints);
@@ -148,7 +153,7 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
     let along = |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
     let mut power = dot(tau, &v);
     for dashpot in &model.dashpots {
-        power -= dashpot.damping * mechanics::rate(model, &dashpot.on).square();
+        power -= dashpot.damping * kinematics::rate(model, &dashpot.on).square();
     }
     for function in &model.dissipations {
         power -= along(*function);

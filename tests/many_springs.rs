@@ -7,7 +7,7 @@ use linkwork::{Rheonomic, at};
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::model::Quantity;
+use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::{compile, expand, read};
 use proc_macro2::TokenStream;
 use std::ops::Range;

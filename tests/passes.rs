@@ -5,17 +5,18 @@ mod random_limbs;
 mod random_robot;
 mod random_tree;
 
-use linkwork_compiler::derive::in_lanes;
-use linkwork_compiler::derive::{Output, Prepared};
+use linkwork_compiler::derive::{Output, Prepared, in_lanes};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
+use linkwork_compiler::kinematics::{self, Joint};
 use linkwork_compiler::lower::lower;
-use linkwork_compiler::mechanics::{self, Joint, aba, crba, energy, forces, frames, ldl, momentum, rnea};
-use linkwork_compiler::model::{Model, Quantity};
-use linkwork_compiler::passes::limbs::{Limbs, find};
+use linkwork_compiler::mechanics::passive::passive_forces;
+use linkwork_compiler::mechanics::{self, aba, crba, energy, forces, frames, ldl, momentum, rnea};
+use linkwork_compiler::mechanism::{Model, Quantity};
 use linkwork_compiler::passes::{Form, Passes, forms, in_common_axes, sizes};
 use linkwork_compiler::syntax::Requests;
+use linkwork_compiler::vectorise::{Limbs, find};
 use linkwork_compiler::{compile_with, derive_with, read};
 use proptest::prelude::*;
 use random_limbs::creatures;
@@ -84,7 +85,7 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
 /// that does not name the axes of links.
 fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let old: Vec<_> = functions(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
     let check = |form: &Form<'_>, count: usize| {
         for ((name, new), (_, old)) in functions(&form.model, &form.joints).iter().zip(&old[..count]) {
@@ -196,7 +197,7 @@ fn robots_move_as_without_passes() {
 fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
     let at = symbols(model, seed);
-    let joints = &mechanics::joints(model);
+    let joints = &kinematics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let mass = eval(&crba::mass_matrix(model, joints).concat(), &at);
     let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
@@ -210,7 +211,8 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     for form in all.iter().chain(&in_common_axes(&all)) {
         let groups = find(&form.model, &form.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
-        let Some(limbs) = Limbs::of(&form.model, &form.joints, &groups) else {
+        let Some(limbs) = Limbs::of(&form.model, &form.joints, &groups, || passive_forces(&form.model, true))
+        else {
             // Of numbers lanes can be made always; expressions of parameters may be built differently.
             assert!(interacts || !model.parameters.is_empty(), "limbs become lanes");
             continue;
@@ -260,7 +262,7 @@ proptest! {
 /// Every form has the functions of its model to the last digits, and no figures that are larger than its own.
 fn check_digits(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let mass = eval(&crba::mass_matrix(model, &joints).concat(), &at);
     let tau = eval(&rnea::inverse_dynamics(model, &joints, &v, Some(&a)), &at);

@@ -5,7 +5,7 @@ mod gallery;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::model::units::Units;
+use linkwork_compiler::mechanism::Units;
 use linkwork_compiler::{compile, expand, read};
 use std::path::Path;
 
@@ -427,7 +427,7 @@ fn large_structs_are_read_in_time() {
         &mut cx,
     );
     if let Some(source) = source {
-        linkwork_compiler::model::build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+        linkwork_compiler::resolve::build_model(&source.mechanism.description, &Graph::new(), &mut cx);
     }
     assert_eq!(cx.messages(), Vec::<String>::new());
 }

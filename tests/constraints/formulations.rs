@@ -4,8 +4,10 @@
 use linkwork::__private::{Elimination, independent_solution};
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::kinematics::{self, random_configuration};
 use linkwork_compiler::mechanics::{self, constraints, crba, rnea};
-use linkwork_compiler::model::{Model, Quantity, random_configuration, sample};
+use linkwork_compiler::mechanism::{Model, Quantity};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
@@ -123,7 +125,7 @@ fn both_formulations_fulfil_the_equations() {
     let checked = Cell::new(0);
     let run = TestRunner::new(config(cases(64))).run(&(chains(), 0..1000_u64), |(chain, seed)| {
         with_model(&chain, ", formulation = speeds", |model| {
-            let joints = mechanics::joints(model);
+            let joints = kinematics::joints(model);
             let v = mechanics::velocities(model);
             let mass = crba::mass_matrix(model, &joints);
             let h = rnea::inverse_dynamics(model, &joints, &v, None);

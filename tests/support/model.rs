@@ -1,9 +1,12 @@
 //! Models of generated sources, and numbers for their symbols.
 
 use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::sample::sample;
 use linkwork_compiler::expr::{Graph, Symbol};
-use linkwork_compiler::model::{Model, Quantity, build_model, random_configuration, sample};
+use linkwork_compiler::kinematics::random_configuration;
+use linkwork_compiler::mechanism::{Model, Quantity};
 use linkwork_compiler::read;
+use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::Description;
 use std::path::Path;
 

@@ -14,8 +14,9 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::lower::{Counts, Op, Program, pipeline};
-use linkwork_compiler::model::{Quantity, build_model};
+use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::passes::Passes;
+use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::{compile, derive_with, expand, read};
 use proc_macro2::TokenStream;
 use quote::ToTokens;

@@ -4,9 +4,10 @@ use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
 use crate::expr::print::Written;
 use crate::expr::{Expr, Symbol};
+use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, lower_without, pipeline, size};
-use crate::mechanics::{self, Joint, crba, frames};
-use crate::model::{Model, Quantity};
+use crate::mechanics::{self, crba, frames};
+use crate::mechanism::{Model, Quantity};
 use crate::passes::Passes;
 use crate::syntax::{Requests, Skipped};
 
@@ -45,7 +46,7 @@ pub fn derive_with<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Output> {
     let passes = without(passes, requests.skipped);
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     if model.kinematic {
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
         let functions =
@@ -292,7 +293,7 @@ pub fn equations_latex(model: &Model<'_>) -> String {
 }
 
 fn written_alone(model: &Model<'_>) -> Written {
-    let joints = mechanics::joints(model);
+    let joints = kinematics::joints(model);
     written(model, &joints, &crba::mass_matrix(model, &joints))
 }
 
@@ -322,7 +323,7 @@ fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
     }
 }
 
-fn frame_steps<'g>(model: &Model<'g>, frame: &crate::model::NamedFrame<'g>) -> FrameSteps {
+fn frame_steps<'g>(model: &Model<'g>, frame: &crate::mechanism::NamedFrame<'g>) -> FrameSteps {
     FrameSteps {
         name: frame.name.clone(),
         link: frame.link.map(|l| l.0),

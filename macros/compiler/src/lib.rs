@@ -6,12 +6,15 @@ pub mod diag;
 pub mod emit;
 pub mod expr;
 pub mod import;
+pub mod kinematics;
 pub mod lower;
 mod machine;
 pub mod mechanics;
-pub mod model;
+pub mod mechanism;
 pub mod passes;
+pub mod resolve;
 pub mod syntax;
+pub mod vectorise;
 
 use catalogue::{ConstraintFacts, Facts, JACOBIAN};
 use diag::{Diagnostic, Diagnostics};
@@ -123,7 +126,7 @@ pub fn compile<'g>(
     source: &Source,
     graph: &'g Graph,
     cx: &mut Diagnostics,
-) -> Option<(model::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::Output)> {
     compile_with(source, graph, passes::Passes::default(), cx)
 }
 
@@ -133,12 +136,12 @@ pub fn compile_with<'g>(
     graph: &'g Graph,
     passes: passes::Passes,
     cx: &mut Diagnostics,
-) -> Option<(model::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::Output)> {
     if !cx.is_empty() {
         check_rest(source, graph, cx);
         return None;
     }
-    let model = model::build_model(&source.mechanism.description, graph, cx)?;
+    let model = resolve::build_model(&source.mechanism.description, graph, cx)?;
     let requests = source.mechanism.requests;
     let mut output = derive_with(&model, requests, passes, cx)?;
     describe(&mut output, &source.mechanism);
@@ -151,7 +154,7 @@ pub fn compile_with<'g>(
 pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.rest(description).filter(|_| source.imported) {
-        model::build_model(&rest, graph, cx);
+        resolve::build_model(&rest, graph, cx);
     }
 }
 
@@ -224,7 +227,7 @@ fn check_outputs(
 
 impl Source {
     /// What the outside sees of the mechanism.
-    fn interface(&self, m: &model::Model<'_>, output: &derive::Output) -> Interface<'_> {
+    fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
         let facts = Facts::of(m, self.mechanism.requests);
         Interface {
@@ -253,7 +256,7 @@ impl Source {
             structure: d.joints.iter().map(structure_line).collect(),
             constraints: Constraints::default(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
-            units: model::units::Units::default(),
+            units: mechanism::Units::default(),
             facts: Facts::default(),
             detect: !self.mechanism.requests.target_only,
             snapped: &d.snapped,
@@ -264,7 +267,7 @@ impl Source {
 
     /// The interface of a mechanism that failed to compile, as far as it can be guessed.
     fn emit_failed(&self) -> Emitted {
-        let outline = model::outline(&self.mechanism.description);
+        let outline = resolve::outline(&self.mechanism.description);
         let facts = self.guess(&outline);
         let mut functions = catalogue::before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
@@ -308,7 +311,7 @@ impl Source {
     }
 
     /// What signatures of a mechanism that failed to compile depend on, as far as it can be guessed.
-    fn guess(&self, outline: &model::Outline) -> Facts {
+    fn guess(&self, outline: &resolve::Outline) -> Facts {
         let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
         let kinematic = description.inertias == syntax::Inertias::None;
         let nv = outline.velocities.len();

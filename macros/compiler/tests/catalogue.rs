@@ -4,7 +4,7 @@ use linkwork_compiler::catalogue::{self, Facts};
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::model::Model;
+use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::{compile, expand, read};
 use proc_macro2::TokenStream;
 use std::collections::BTreeSet;

@@ -3,7 +3,8 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
-use linkwork_compiler::model::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity, build_model};
+use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
+use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{Base, Inertias, Name, UrdfOptions};
 use linkwork_compiler::{import, read};
 use std::path::Path;

@@ -4,7 +4,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::model::build_model;
+use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::{check_rest, read};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;

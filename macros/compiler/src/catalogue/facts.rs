@@ -1,6 +1,6 @@
 //! What signatures depend on.
 
-use crate::model::Model;
+use crate::mechanism::Model;
 use crate::syntax::Requests;
 
 /// What a function needs of a mechanism.

@@ -2,7 +2,7 @@
 
 use super::Argument::{A, Q, T, U, V};
 use super::{Argument, Declared, Facts, Id, Shape};
-use crate::model::Uses;
+use crate::mechanism::Uses;
 
 /// What the hidden function of a reaction's output is called, after which the output is.
 pub const REACTION: &str = "__reaction_";

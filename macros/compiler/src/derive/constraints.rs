@@ -2,7 +2,7 @@
 
 use crate::expr::Expr;
 use crate::mechanics::constraints;
-use crate::model::Model;
+use crate::mechanism::Model;
 
 pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
 

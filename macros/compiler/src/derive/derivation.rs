@@ -8,10 +8,10 @@ use super::sensitivities::Sensitivities;
 use super::{Specialisation, constraints, outputs};
 use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
+use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
-use crate::mechanics::{Joint, energy, forces, power};
-use crate::model::passive::PassiveForces;
-use crate::model::{Chart, Model};
+use crate::mechanics::{energy, forces, power};
+use crate::mechanism::{Chart, Model, PassiveForces};
 use crate::passes::Passes;
 use std::cell::OnceCell;
 

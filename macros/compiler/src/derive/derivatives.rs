@@ -4,18 +4,18 @@ use super::output::Function;
 use super::{Specialisation, in_lanes};
 use crate::catalogue::{InverseForm, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
+use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
-use crate::machine::DERIVATIVES_COMPARED;
-use crate::machine::DERIVATIVES_WRITTEN_OUT;
-use crate::machine::INVERSE_WRITTEN_OUT;
+use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
 use crate::mechanics::derivatives::{
     self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, divided, invariance,
     symbolic,
 };
-use crate::mechanics::{self, Joint, constraints, crba, forces, rnea};
-use crate::model::{Chart, Model, Quantity};
-use crate::passes::limbs::{self, Limbs};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanics::{self, constraints, crba, forces, rnea};
+use crate::mechanism::{Chart, Model, Quantity};
 use crate::passes::{self, Form, Passes};
+use crate::vectorise::{self, Limbs};
 
 /// Up to how many velocities differentiation is tried.
 const DIFFERENTIATE: usize = 6;
@@ -68,7 +68,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
             parts.wide = passes.wide(model.nv());
             parts.take_apart(passes.lanes && specialisation == Specialisation::None);
         }
-        let tau = forces::generalized_forces(model, &mechanics::joints(model));
+        let tau = forces::generalized_forces(model, &kinematics::joints(model));
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
@@ -170,8 +170,8 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Finds alike limbs, and what all limbs hang from.
     fn take_apart(&mut self, lanes: bool) {
-        let groups = if lanes { limbs::find(self.model, &self.joints) } else { Vec::new() };
-        let limbs = Limbs::of(self.model, &self.joints, &groups);
+        let groups = if lanes { vectorise::find(self.model, &self.joints) } else { Vec::new() };
+        let limbs = Limbs::of(self.model, &self.joints, &groups, || passive_forces(self.model, true));
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {

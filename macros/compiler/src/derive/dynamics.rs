@@ -3,14 +3,16 @@
 
 use super::{Candidate, Specialisation, in_lanes};
 use crate::expr::Expr;
+use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::machine::COMPARED_VELOCITIES;
+use crate::mechanics::passive::passive_forces;
 use crate::mechanics::{
-    self, Joint, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
+    self, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
 };
-use crate::model::{Model, Quantity};
-use crate::passes::limbs::{self, Limbs};
+use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
+use crate::vectorise::{self, Limbs};
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
 const SIMILAR: usize = 8;
@@ -245,11 +247,14 @@ impl<'g> Forms<'g> {
         let joints = all.first().map_or(Vec::new(), |form| form.joints.clone());
         let groups = match all.first() {
             Some(form) if passes.lanes && specialisation == Specialisation::None => {
-                limbs::find(&form.model, &joints)
+                vectorise::find(&form.model, &joints)
             }
             _ => Vec::new(),
         };
-        let in_lanes = |form: &Form<'g>| Some((Limbs::of(&form.model, &joints, &groups)?, form.anchored));
+        let in_lanes = |form: &Form<'g>| {
+            let forces = || passive_forces(&form.model, true);
+            Some((Limbs::of(&form.model, &joints, &groups, forces)?, form.anchored))
+        };
         let limbs = all.iter().filter_map(in_lanes).collect();
         Forms { all, joints, specialisation, limbs, bias: Bias::default() }
     }

@@ -4,8 +4,8 @@
 use crate::expr::Expr;
 use crate::mechanics::derivatives::{ForceDerivatives, Inverse, analytic, symbolic};
 use crate::mechanics::{aba, crba, rnea};
-use crate::model::{Model, Quantity};
-use crate::passes::limbs::Limbs;
+use crate::mechanism::{Model, Quantity};
+use crate::vectorise::Limbs;
 
 /// The mass matrix, by rows; in up to `most` lanes.
 pub fn mass_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> Vec<Expr<'g>> {

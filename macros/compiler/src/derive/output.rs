@@ -3,7 +3,7 @@
 use crate::catalogue::{Argument, Declared, Id, Shape, Structure};
 use crate::expr::print::Written;
 use crate::lower::Program;
-use crate::model::Chart;
+use crate::mechanism::Chart;
 
 /// A generated function.
 #[derive(Clone)]

@@ -3,9 +3,9 @@
 use crate::catalogue::{self, Declared, Facts, Id, JACOBIAN, REACTION};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
+use crate::kinematics::{symbols_in, time_derivative};
 use crate::mechanics::reactions;
-use crate::model::kinematics::{symbols_in, time_derivative};
-use crate::model::{Model, OutputValue, Quantity, Uses};
+use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
 /// The functions of all outputs, in order. Without dynamics there are no reactions.
 pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {

@@ -4,9 +4,8 @@ use crate::expr::Expr;
 use crate::lower::size;
 use crate::machine::CALLED_OPERATIONS;
 use crate::mechanics::derivatives::symbolic;
-use crate::model::Model;
-use crate::model::kinematics::passive_forces;
-use crate::model::passive::PassiveForces;
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Model, PassiveForces};
 use std::rc::Rc;
 
 /// The model with passive forces that are given, if they are long enough; their derivatives are found only if they are asked for.

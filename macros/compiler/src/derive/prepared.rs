@@ -4,7 +4,7 @@
 use super::output::{Function, Prepared};
 use crate::expr::{Expr, Graph, Id};
 use crate::lower::{lower, pipeline, place_hoisted};
-use crate::model::Quantity;
+use crate::mechanism::Quantity;
 use std::collections::BTreeMap;
 
 /// Numbers the values that programs name, in the order of their first use.

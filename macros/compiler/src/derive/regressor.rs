@@ -3,10 +3,11 @@
 
 use super::output::Constant;
 use crate::expr::Expr;
+use crate::kinematics::{self, Joint};
+use crate::mechanics;
 use crate::mechanics::independence::{Part, independent};
 use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
-use crate::mechanics::{self, Joint};
-use crate::model::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity};
+use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity};
 use crate::passes::{Gauge, Regroup, regroup};
 
 /// What identification needs to know of a model.
@@ -44,7 +45,7 @@ impl<'a, 'g> Identification<'a, 'g> {
     pub(super) fn names(&self) -> Vec<Constant> {
         let link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
-            let moved = || mechanics::joints(self.model)[k].dofs.first().map(|d| d.index);
+            let moved = || kinematics::joints(self.model)[k].dofs.first().map(|d| d.index);
             let joint = || moved().map_or(String::new(), |v| self.model.velocities[v].0.clone());
             body.map_or_else(joint, |body| body.name.clone())
         };

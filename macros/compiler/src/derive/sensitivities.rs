@@ -2,11 +2,11 @@
 
 use super::Specialisation;
 use crate::expr::Expr;
+use crate::kinematics;
 use crate::lower::Program;
 use crate::machine::DERIVATIVES_COMPARED;
-use crate::mechanics;
 use crate::mechanics::derivatives::parameters;
-use crate::model::{Model, Quantity};
+use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
 
 /// What both functions are derived from: the model as it is or one of its forms, whichever costs less.
@@ -27,7 +27,7 @@ impl<'g> Sensitivities<'g> {
         let mut forms =
             if model.nv() <= DERIVATIVES_COMPARED { passes::forms(model, passes) } else { Vec::new() };
         forms.retain(|form| !form.anchored);
-        forms.push(Form { joints: mechanics::joints(model), model: model.clone(), anchored: false });
+        forms.push(Form { joints: kinematics::joints(model), model: model.clone(), anchored: false });
         if passes.parallel {
             forms.extend(passes::in_common_axes(&forms));
         }

@@ -2,8 +2,9 @@
 
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Sym3, Vec3};
-use crate::mechanics::{Joint, crba, massless, regularity};
-use crate::model::{Inertia, LinkId, Model, Motion};
+use crate::kinematics::Joint;
+use crate::mechanics::{crba, massless, regularity};
+use crate::mechanism::{Inertia, LinkId, Model, Motion};
 use crate::syntax::ROOT_JOINT;
 
 /// What to write for a mechanism without inertia.

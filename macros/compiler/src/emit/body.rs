@@ -3,14 +3,13 @@
 
 use super::angles::{Angle, Angles, Calls, WIDTH};
 use super::function::{Signature, filled, given, index};
-use super::matrices;
 use super::scalar::ScalarSpelling;
-use super::stores;
+use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Record, Shape};
 use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Op, Operand, Program};
-use crate::model::Quantity;
+use crate::mechanism::Quantity;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 

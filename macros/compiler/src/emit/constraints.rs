@@ -4,7 +4,7 @@
 use super::function::Signature;
 use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
-use crate::model::Model;
+use crate::mechanism::Model;
 use std::fmt::Write;
 
 /// The scalar constraints of a mechanism.
@@ -48,7 +48,7 @@ impl Constraints {
 
     /// Those of a model.
     pub fn of(model: &Model<'_>) -> Constraints {
-        let those = |is: fn(&crate::model::Constraint<'_>) -> bool| {
+        let those = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
             let all = model.constraints.iter().enumerate();
             all.filter(|(_, c)| is(c)).map(|(k, _)| k).collect()
         };

@@ -5,7 +5,7 @@ use crate::catalogue::Id;
 use crate::derive::{Function, Output};
 use crate::expr::Symbol;
 use crate::lower::Program;
-use crate::model::Quantity;
+use crate::mechanism::Quantity;
 use std::fmt::Write;
 
 /// Paragraphs for the struct's rustdoc.

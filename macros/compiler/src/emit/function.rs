@@ -6,7 +6,7 @@ use super::scalar::ScalarSpelling;
 use crate::catalogue::{Argument, Called, Shape};
 use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
-use crate::model::Quantity;
+use crate::mechanism::Quantity;
 use std::fmt::Write;
 
 /// The index in an argument of what a symbol stands for.

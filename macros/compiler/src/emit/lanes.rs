@@ -6,7 +6,7 @@ use super::item::{Interface, needed};
 use super::manifold::write_manifold;
 use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
-use crate::model::Chart;
+use crate::mechanism::Chart;
 use std::fmt::Write;
 
 /// Writes every public function of the state once more, its name with `_lanes`, if this was asked for; without the parts of

@@ -1,7 +1,7 @@
 //! The functions of the configuration space.
 
 use super::function::Signature;
-use crate::model::Chart;
+use crate::mechanism::Chart;
 use std::fmt::Write;
 
 /// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space; without its parts, for a

@@ -3,17 +3,15 @@
 
 use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
-use super::constraints;
 use super::dispatch::Bodies;
 use super::docs::operations;
 use super::function::{Signature, write_function};
 use super::item::{ALLOW, Head, Interface};
-use super::lanes;
 use super::manifold::write_manifold;
-use super::reactions;
+use super::{constraints, lanes, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
-use crate::model::Chart;
+use crate::mechanism::Chart;
 use quote::ToTokens;
 use std::fmt::Write;
 

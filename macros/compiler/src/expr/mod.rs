@@ -15,6 +15,7 @@ pub mod polynomial;
 pub mod print;
 pub mod replace;
 pub mod rotation;
+pub mod sample;
 pub mod trigonometry;
 pub mod unit;
 

@@ -2,11 +2,12 @@
 //! the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at rest without
 //! gravity, so the recursion has no velocity terms.
 
-use super::kinematics::{Dof, Joint, passive_forces};
+use super::is_plain_tree;
 use super::ldl::second_inverse;
-use super::{Spatial, is_plain_tree};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
-use crate::model::{Inertia, Model};
+use crate::kinematics::{Dof, Joint, Spatial};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Inertia, Model};
 
 /// `M⁻¹ r`. `None` for a mechanism with coupled coordinates.
 pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
@@ -223,7 +224,7 @@ impl<'g> Articulated<'g> {
             diagonal: std::array::from_fn(|k| entry(&both, k, k)),
             off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(&h, a, b) + entry(&moved, b, a)),
         };
-        let all = |e| joint.gathered(e);
+        let all = |e| joint.lane_sum(e);
         let moved = Mat3::from_fn(|i, j| all(moved.0[i][j]));
         Articulated { m: sum.m + m.map(all), h: sum.h + moved, i: sum.i + (i - shift).map(all) }
     }

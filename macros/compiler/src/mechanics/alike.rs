@@ -2,11 +2,10 @@
 //! What they are multiplied with is summed over the links first: `Σ sᵀ Wₖ = sᵀ Σ Wₖ`, and `Σ sᵀ Iₖ r = sᵀ (Σ Iₖ) r`, so that a
 //! chain of `n` takes `n²` operations for its mass matrix instead of `n³`.
 
-use super::Spatial;
 use super::crba::{Matrix, momentum};
-use super::kinematics::Joint;
 use crate::expr::{Expr, Id, Sym3};
-use crate::model::{Inertia, Model, Motion};
+use crate::kinematics::{Joint, Spatial};
+use crate::mechanism::{Inertia, Model, Motion};
 use std::collections::BTreeMap;
 
 /// The motions of links that are placed by expressions, those once that several links share; none if no two do.

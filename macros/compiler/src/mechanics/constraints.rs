@@ -11,10 +11,10 @@
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
 use super::friction;
-use super::kinematics::{Joint, velocity_gradients};
 use super::ldl::{self, Solution, solve_in};
 use crate::expr::{Expr, Function};
-use crate::model::{Model, Quantity};
+use crate::kinematics::{Joint, velocity_gradients};
+use crate::mechanism::{Model, Quantity};
 
 /// `J`: a row for each constraint, a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {

@@ -1,11 +1,11 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
 use super::alike::Alike;
-use super::kinematics::{Dof, Joint, map_spatial};
-use super::paths::{Carried, Paths, Walk};
-use super::{Spatial, inertances};
+use super::inertances;
 use crate::expr::{Expr, Vec3};
-use crate::model::{Inertia, Model};
+use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
+use crate::mechanism::{Inertia, Model};
+use crate::vectorise::{LaneGroup, Paths, Visitor};
 
 /// A square matrix of expressions by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
@@ -23,7 +23,7 @@ pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let (composites, alike) = (composites(model, joints), Alike::of(model, joints));
     let mut columns = Columns { joints, dofs: dofs.collect(), composites, alike, matrix };
-    paths.carry(&mut columns);
+    paths.propagate(&mut columns);
     let Columns { composites, alike, matrix: mut m, .. } = columns;
     alike.add_masses(&composites, &mut m);
     inertances::add_to_mass_matrix(model, &mut m);
@@ -50,8 +50,8 @@ impl<'g> Columns<'_, 'g> {
     }
 }
 
-impl<'g> Walk<'g> for Columns<'_, 'g> {
-    type Load = Spatial<'g>;
+impl<'g> Visitor<'g> for Columns<'_, 'g> {
+    type Item = Spatial<'g>;
 
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
@@ -67,11 +67,11 @@ impl<'g> Walk<'g> for Columns<'_, 'g> {
         wrench
     }
 
-    fn meet(&mut self, carried: &Carried<Spatial<'g>>) {
+    fn visit(&mut self, group: &LaneGroup<Spatial<'g>>) {
         let joints = self.joints;
-        for other in &joints[carried.link].dofs {
-            let subspace = map_spatial(&other.subspace, |c| carried.spread(c));
-            for (dof, entry) in carried.parts(subspace.dot(&carried.load)) {
+        for other in &joints[group.link].dofs {
+            let subspace = map_spatial(&other.subspace, |c| group.spread(c));
+            for (dof, entry) in group.parts(subspace.dot(&group.item)) {
                 let (link, row) = self.dofs[dof];
                 self.add(&joints[link].dofs[row], other, entry);
             }

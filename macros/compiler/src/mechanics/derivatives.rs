@@ -4,11 +4,11 @@
 //! (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018, § IV).
 
 use super::crba::Matrix;
-use super::kinematics::Joint;
 use super::{accelerations, rnea, velocities};
 use crate::expr::Expr;
 use crate::expr::replace::replace_all;
-use crate::model::{Model, Motion, Quantity};
+use crate::kinematics::Joint;
+use crate::mechanism::{Model, Motion, Quantity};
 
 pub mod analytic;
 mod columns;

@@ -1,10 +1,10 @@
 //! Energies, mass and centre of mass.
 
 use super::crba::{composites, momentum};
-use super::kinematics::{Joint, twists};
-use super::{inertances, position};
+use super::inertances;
 use crate::expr::{Expr, Vec3};
-use crate::model::Model;
+use crate::kinematics::{Joint, position, twists};
+use crate::mechanism::Model;
 
 /// Kinetic energy: half of twist times momentum, summed over the links.
 pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Expr<'g> {

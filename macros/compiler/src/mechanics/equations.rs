@@ -3,7 +3,6 @@
 //! Lagrange's equations are the same polynomials, as a test shows.
 
 use super::crba::Matrix;
-use super::kinematics::Joint;
 use super::{accelerations, constraints, energy, forces, rnea, velocities};
 use crate::expr::eval::Tape;
 use crate::expr::factor::without_noise;
@@ -12,7 +11,8 @@ use crate::expr::polynomial::{Polynomial, Rank, Ring};
 use crate::expr::trigonometry::simplified;
 use crate::expr::unit::on_unit_sphere;
 use crate::expr::{Expr, Function, Node, Symbol};
-use crate::model::{Chart, Model, Quantity};
+use crate::kinematics::Joint;
+use crate::mechanism::{Chart, Model, Quantity};
 
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,9 @@
 //! Generalized forces of the inputs: by virtual work, `τ = Σ Sᵀ W` over the links that a wrench's link hangs from.
 
-use super::Spatial;
-use super::kinematics::{Joint, change_axes};
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Vec3};
-use crate::model::{Direction, Input, LinkId, Model, Quantity};
+use crate::kinematics::{Joint, Spatial, change_axes, known_gradient};
+use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 
 /// What the inputs `u` contribute to `τ`.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
@@ -32,7 +31,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         let alone = replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
-            for (k, d) in model.gradients.by_velocity(load.rate) {
+            for (k, d) in known_gradient(model, load.rate) {
                 tau[k] += by_inputs * d;
             }
         }

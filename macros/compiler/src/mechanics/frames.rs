@@ -4,10 +4,9 @@
 //! The parent's figures come in as given numbers: placements as nine entries of the rotation by rows and three of the
 //! position, twists and accelerations as linear and angular part in link axes.
 
-use super::Spatial;
-use super::kinematics::Joint;
 use crate::expr::{Expr, Graph, Mat3, Vec3};
-use crate::model::{Model, NamedFrame, Pose, Quantity};
+use crate::kinematics::{Joint, Spatial};
+use crate::mechanism::{Model, NamedFrame, Pose, Quantity};
 
 /// Placement of a frame in the ground: rotation matrix and position.
 #[derive(Clone, Copy)]

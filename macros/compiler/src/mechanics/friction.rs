@@ -19,10 +19,10 @@
 
 use super::constraints::{elimination_order, jacobian, system};
 use super::crba::Matrix;
-use super::kinematics::velocity_gradients;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
-use crate::model::{Model, Quantity};
+use crate::kinematics::velocity_gradients;
+use crate::mechanism::{Model, Quantity};
 
 /// The constraints whose multipliers are the normal forces of friction.
 pub fn slipping(model: &Model<'_>) -> Vec<usize> {
@@ -32,7 +32,7 @@ pub fn slipping(model: &Model<'_>) -> Vec<usize> {
 
 /// `T`: a row for each constraint, a column for each velocity.
 pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
-    let row = |c: &crate::model::Constraint<'g>| {
+    let row = |c: &crate::mechanism::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         let rates: Vec<Expr<'g>> = c.friction.iter().map(|d| d.rate).collect();
         for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.friction) {

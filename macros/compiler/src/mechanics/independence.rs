@@ -2,8 +2,10 @@
 //! states, and what adds nothing to those before it is a combination of them.
 
 use crate::expr::eval::eval;
+use crate::expr::sample::sample;
 use crate::expr::{Expr, Symbol};
-use crate::model::{Model, Quantity, random_configuration, sample};
+use crate::kinematics::random_configuration;
+use crate::mechanism::{Model, Quantity};
 
 /// A column that is left of another one in proportion to it, and counts as nothing.
 const TOLERANCE: f64 = 1e-8;

@@ -2,9 +2,9 @@
 //! (Smith 2002).
 
 use super::crba::Matrix;
-use super::kinematics::{time_derivative, velocity_gradient};
 use crate::expr::Expr;
-use crate::model::Model;
+use crate::kinematics::{time_derivative, velocity_gradient};
+use crate::mechanism::Model;
 
 /// Adds them to the mass matrix.
 pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {

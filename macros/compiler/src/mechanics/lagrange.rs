@@ -7,11 +7,12 @@
 //! `w × L + v × P`.
 
 use super::crba::Matrix;
-use super::kinematics::{Joint, configuration_rate, passive_forces};
-use super::{position, velocities};
+use super::velocities;
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::model::{Model, Motion, Quantity};
+use crate::kinematics::{Joint, configuration_rate, position};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Model, Motion, Quantity};
 
 /// The Lagrangian and what follows from it.
 pub struct Lagrange<'g> {

@@ -2,8 +2,8 @@
 //! zeros when the leaves are eliminated first (Featherstone 2008, ch. 6.5).
 
 use super::crba::Matrix;
-use super::kinematics::Joint;
 use crate::expr::Expr;
+use crate::kinematics::Joint;
 
 /// The solution of `m x = r`.
 pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {

@@ -9,10 +9,10 @@
 //! Optimization*, 2006, § 17.3).
 
 use super::crba::Matrix;
-use super::kinematics::Joint;
 use super::{constraints, energy};
 use crate::expr::Expr;
-use crate::model::Model;
+use crate::kinematics::Joint;
+use crate::mechanism::Model;
 
 /// The constraints that determine coordinates without inertia.
 pub fn rows(model: &Model<'_>) -> Vec<usize> {

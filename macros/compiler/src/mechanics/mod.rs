@@ -3,7 +3,7 @@
 //! axes, where motion subspaces are constant. Knows no tokens.
 
 use crate::expr::Expr;
-use crate::model::{Model, Motion, Quantity};
+use crate::mechanism::{Model, Motion, Quantity};
 
 pub mod aba;
 mod alike;
@@ -21,14 +21,12 @@ pub mod lagrange;
 pub mod ldl;
 pub mod massless;
 pub mod momentum;
-mod paths;
+pub mod passive;
 pub mod power;
 pub mod reactions;
 pub mod regressor;
 pub mod regularity;
 pub mod rnea;
-
-pub use crate::model::kinematics::{self, Dof, Joint, Spatial, joints, position, rate};
 
 /// All velocities as symbols.
 pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

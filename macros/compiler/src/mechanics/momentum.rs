@@ -4,11 +4,12 @@ use super::alike::Alike;
 use super::crba::{composites, momentum};
 use super::energy::center_of_mass;
 use super::frames::{Placement, flat};
-use super::kinematics::{Joint, passive_forces, twists};
+use super::inertances;
 use super::rnea::wrenches;
-use super::{Spatial, inertances};
 use crate::expr::{Expr, Vec3};
-use crate::model::{Model, Pose};
+use crate::kinematics::{Joint, Spatial, twists};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Model, Pose};
 
 /// Momentum of each link with everything that it carries, about its origin in its axes.
 fn composite_momenta<'g>(

@@ -2,12 +2,11 @@
 //! elements are conservative (in `U`), dissipative, control (inputs) or disturbance (other applied forces), as in
 //! Table 1.4 of Bernstein, Goel and Ansari.
 
-use super::kinematics::velocity_gradient;
-use super::{forces, rate, velocities};
+use super::{forces, velocities};
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Function};
-use crate::model::kinematics::Joint;
-use crate::model::{Load, Model, Quantity};
+use crate::kinematics::{Joint, rate, velocity_gradient};
+use crate::mechanism::{Load, Model, Quantity};
 
 /// Power that dashpots, friction and dissipation functions take out.
 pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {

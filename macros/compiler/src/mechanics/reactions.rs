@@ -4,12 +4,11 @@
 //! transmit nothing in the direction of their own motion.
 
 use super::crba::Matrix;
-use super::kinematics::joints;
 use super::{constraints, forces, rnea};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
-use crate::model::kinematics::symbols_in;
-use crate::model::{Model, Opened, Quantity, SolvedSide};
+use crate::kinematics::{joints, symbols_in};
+use crate::mechanism::{Model, Opened, Quantity, SolvedSide};
 
 /// Components of a joint's reaction: force, torque.
 const SIX: usize = 6;

@@ -1,11 +1,10 @@
 //! Inverse dynamics as a linear function of the mass properties: `τ = Y π`, with ten parameters for each frame in which
 //! mass properties are given (Atkeson, An and Hollerbach 1986). Springs, friction and other elements stay outside.
 
-use super::Spatial;
-use super::kinematics::Joint;
 use super::rnea::{motion, newton_euler};
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::model::{Inertia, LinkId, Model, Pose};
+use crate::kinematics::{Joint, Spatial};
+use crate::mechanism::{Inertia, LinkId, Model, Pose};
 
 /// Parameters of a frame.
 pub const COUNT: usize = 10;

@@ -1,10 +1,10 @@
 //! Whether the mass matrix can be inverted: a coordinate that moves no mass is a mistake in the model.
 
 use super::crba::Matrix;
-use super::kinematics::Joint;
 use crate::expr::Symbol;
 use crate::expr::eval::eval;
-use crate::model::{Model, Quantity, random_configuration};
+use crate::kinematics::{Joint, random_configuration};
+use crate::mechanism::{Model, Quantity};
 
 /// Pivots below this part of their diagonal entry's first value, times the number of velocities, count as zero. Elimination
 /// of a positive definite matrix leaves no more than a few units of rounding for each row (Higham, *Accuracy and Stability
@@ -33,7 +33,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
     let values = eval(&entries, &|s: Symbol| match Quantity::of(s) {
         Quantity::Configuration(k) => q[k],
-        _ => crate::model::sample(s, seed),
+        _ => crate::expr::sample::sample(s, seed),
     });
     let mut m: Vec<Vec<f64>> = values.chunks(n.max(1)).map(<[f64]>::to_vec).collect();
     // Root first: an entry that fails is then one that adds nothing to those before it.

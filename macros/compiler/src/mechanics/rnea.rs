@@ -3,10 +3,11 @@
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
 use super::alike::Alike;
-use super::kinematics::{Joint, passive_forces};
-use super::{Spatial, inertances};
+use super::inertances;
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
-use crate::model::{Inertia, Model, Pose};
+use crate::kinematics::{Joint, Spatial};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Inertia, Model, Pose};
 
 /// `τ = M a + h`. Without accelerations it is the bias `h` alone.
 pub fn inverse_dynamics<'g>(

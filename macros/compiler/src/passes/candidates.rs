@@ -5,7 +5,7 @@ use super::number::{
     transposed_times,
 };
 use super::regroup::coordinate_axis;
-use crate::model::{Link, Motion};
+use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
 
 /// How a link's frame can be chosen.

@@ -10,7 +10,7 @@ use super::candidates::{Freedom, Site, candidates};
 use super::cost;
 use super::number::{Mass, Place, clean, norm};
 use crate::expr::Vec3;
-use crate::model::{Coordinate, Direction, Inertia, Input, Link, Model, Motion, Pose};
+use crate::mechanism::{Coordinate, Direction, Inertia, Input, Link, Model, Motion, Pose};
 
 /// A choice for one link.
 #[derive(Clone, Copy)]
@@ -135,7 +135,6 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         kinematic: _,
         name: _,
         place: _,
-        scalar: _,
         parameters: _,
         gravity: _,
         friction_speed: _,

@@ -1,13 +1,12 @@
 //! `Model` → `Model`: the same mechanism with other link frames and other mass properties, whose equations cost less.
 //! Every pass is exact up to rounding and can be switched off.
 
-use crate::model::Model;
-use crate::model::kinematics::{Joint, joints};
+use crate::kinematics::{Joint, joints};
+use crate::mechanism::Model;
 
 mod candidates;
 mod cost;
 mod frames;
-pub mod limbs;
 mod number;
 mod parallel;
 mod regroup;

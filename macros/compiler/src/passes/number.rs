@@ -1,7 +1,7 @@
 //! Vectors, rotations and mass properties in plain numbers, with what is only rounding told from what is small.
 
 use crate::expr::{Graph, Mat3, Rotation, Sym3, Vec3};
-use crate::model::{Inertia, Pose};
+use crate::mechanism::{Inertia, Pose};
 
 /// A vector.
 pub type Vector = [f64; 3];

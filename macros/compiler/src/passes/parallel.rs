@@ -9,8 +9,8 @@
 use super::Form;
 use super::regroup::coordinate_axis;
 use crate::expr::{Expr, Rotation};
-use crate::model::kinematics::position_in;
-use crate::model::{Link, Model, Motion};
+use crate::kinematics::position_in;
+use crate::mechanism::{Link, Model, Motion};
 
 /// The forms with the axes of parallel joints in common. Empty if there are no such joints.
 pub fn in_common_axes<'g>(forms: &[Form<'g>]) -> Vec<Form<'g>> {

@@ -8,7 +8,7 @@
 
 use super::number::{Mass, Place};
 use crate::expr::{Sym3, Vec3};
-use crate::model::{Inertia, Link, LinkId, Model, Motion};
+use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
 /// Which moment of inertia of a turning link vanishes. About an axis `k` the others are `k + 1` and `k + 2`, cyclic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use super::cost::{LENGTH, PRODUCT};
 use super::frames::move_contents;
 use super::regroup::coordinate_axis;
 use crate::expr::{Expr, Vec3};
-use crate::model::{Inertia, Link, Model, Motion, Pose};
+use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
 
 /// Moves the frames, parents before their children.
 pub fn slide_frames(model: &mut Model<'_>) {

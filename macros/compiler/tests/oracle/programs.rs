@@ -8,7 +8,7 @@ use crate::words;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::model::Quantity;
+use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 

@@ -11,14 +11,14 @@
 //! - `∂τⱼ/∂vᵢ = (Bᵀ Sⱼ) · Sᵢ + (I Sⱼ) · (Ψ̇ᵢ + Ṡᵢ)`.
 
 use super::super::crba::{Matrix, momentum};
-use super::super::kinematics::{Joint, time_derivative, twists, velocity_gradient};
-use super::super::paths::{Carried, Load, Paths, Walk};
-use super::super::{Spatial, rnea};
+use super::super::rnea;
 use super::ForceDerivatives;
 use super::columns::{Column, columns, motions, rate_columns};
 use super::subtree::{Subtree, subtrees};
 use crate::expr::{Expr, Vec3};
-use crate::model::Model;
+use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradient};
+use crate::mechanism::Model;
+use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 
 /// Derivatives of `M a + h`, springs, dashpots and other loads left out; in up to `most` lanes, one for none.
 pub fn inverse_dynamics<'g>(
@@ -73,7 +73,7 @@ fn entries<'g>(
     let out = ForceDerivatives { by_q: zero(), by_v: zero() };
     let paths = Paths::of(joints, most);
     let mut entries = Entries { columns, all: columns.concat(), links: paths.links(), sums, out };
-    paths.carry(&mut entries);
+    paths.propagate(&mut entries);
     entries.out
 }
 
@@ -86,8 +86,8 @@ struct Entries<'a, 'g> {
     out: ForceDerivatives<'g>,
 }
 
-impl<'g> Walk<'g> for Entries<'_, 'g> {
-    type Load = Changes<'g>;
+impl<'g> Visitor<'g> for Entries<'_, 'g> {
+    type Item = Changes<'g>;
 
     fn start(&mut self, dof: usize) -> Changes<'g> {
         let (own, link) = (&self.all[dof], self.links[dof]);
@@ -99,10 +99,10 @@ impl<'g> Walk<'g> for Entries<'_, 'g> {
         changes
     }
 
-    fn meet(&mut self, carried: &Carried<Changes<'g>>) {
-        for other in &self.columns[carried.link] {
-            let [above, below] = carried.load.meet(&other.map(&|e| carried.spread(e)));
-            let parts = |[by_q, by_v]: [Expr<'g>; 2]| carried.parts(by_q).zip(carried.parts(by_v));
+    fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
+        for other in &self.columns[group.link] {
+            let [above, below] = group.item.meet(&other.map(&|e| group.spread(e)));
+            let parts = |[by_q, by_v]: [Expr<'g>; 2]| group.parts(by_q).zip(group.parts(by_v));
             for ((dof, by_q), (_, by_v)) in parts(above) {
                 self.out.add(other, &self.all[dof], by_q, by_v);
             }
@@ -145,7 +145,7 @@ impl<'g> Changes<'g> {
     }
 }
 
-impl<'g> Load<'g> for Changes<'g> {
+impl<'g> Propagated<'g> for Changes<'g> {
     fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Changes {
             by_q: self.by_q.with(&other.by_q, f),

@@ -1,10 +1,9 @@
 //! Motion of the links, and how each degree of freedom changes it (Singh, Russell and Wensing 2022): with the twist `V`
 //! and the acceleration `A` of its parent, a degree of freedom `S` has `Ψ̇ = V × S` and `Ψ̈ = A × S + V × Ψ̇`.
 
-use super::super::Spatial;
-use super::super::kinematics::{Dof, Joint};
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::model::Model;
+use crate::kinematics::{Dof, Joint, Spatial};
+use crate::mechanism::Model;
 
 /// Motion of a frame in its own axes. Accelerations are classical, those of points, and gravity is an acceleration of
 /// the ground upwards.

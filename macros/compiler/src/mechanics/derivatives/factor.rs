@@ -2,9 +2,9 @@
 //! acceleration and the inverse.
 
 use super::super::crba::Matrix;
-use super::super::kinematics::Joint;
 use super::super::ldl::{elimination_order, inverses};
 use crate::expr::Expr;
+use crate::kinematics::Joint;
 
 /// `M = Lᵀ D L`, `L` with a unit diagonal.
 pub struct Factor<'g> {

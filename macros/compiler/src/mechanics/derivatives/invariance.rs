@@ -12,9 +12,9 @@
 use super::{ForceDerivatives, symbolic};
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Symbol, Vec3};
-use crate::mechanics::{Joint, accelerations, rnea, velocities};
-use crate::model::kinematics::{Spatial, symbols_in};
-use crate::model::{Inertia, Link, Model, Motion, Quantity};
+use crate::kinematics::{Joint, Spatial, symbols_in};
+use crate::mechanics::{accelerations, rnea, velocities};
+use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 
 /// Columns that are known, with their indices.
 type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;

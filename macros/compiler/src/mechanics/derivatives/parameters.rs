@@ -1,13 +1,13 @@
 //! Derivatives of the equations of motion by the parameters of the mechanism, by differentiation.
 
 use super::super::crba::Matrix;
-use super::super::kinematics::Joint;
 use super::super::{accelerations, crba, rnea, velocities};
 use super::Factor;
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;
-use crate::model::{Model, Quantity};
+use crate::kinematics::Joint;
+use crate::mechanism::{Model, Quantity};
 
 /// `∂τ/∂p` of inverse dynamics, by columns: one for each parameter.
 pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {

@@ -4,11 +4,10 @@
 //! That map depends on the angular part `x` of `X` alone, and for particles of mass `m` at `r` with velocity `u` it is
 //! `−2 Σ m (u × x, r × (u × x))`: force `−2 p × x` with `p = Σ m u`, moment `−2 (K − tr K) x` with `K = Σ m u rᵀ`.
 
-use super::super::Spatial;
 use super::super::crba;
-use super::super::kinematics::Joint;
 use crate::expr::{Mat3, Sym3, Vec3};
-use crate::model::{Inertia, Model};
+use crate::kinematics::{Joint, Spatial};
+use crate::mechanism::{Inertia, Model};
 
 /// The sums of one link.
 #[derive(Clone, Copy)]
@@ -63,8 +62,8 @@ pub fn subtrees<'g>(
             sum.wrench = joint.add_wrench(&sum.wrench, &child.wrench);
             let momentum = joint.rotation.to_parent(child.momentum);
             let moments = joint.rotation.mat_to_parent(child.moments) + outer(momentum, joint.translation);
-            sum.momentum += momentum.map(|c| joint.gathered(c));
-            sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.gathered(c))));
+            sum.momentum += momentum.map(|c| joint.lane_sum(c));
+            sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.lane_sum(c))));
         }
     }
     sums

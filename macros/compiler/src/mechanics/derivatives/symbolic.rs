@@ -1,11 +1,12 @@
 //! Derivatives of any expressions of the state by differentiation along the tangent directions of the configurations.
 
 use super::super::crba::Matrix;
-use super::super::kinematics::{configuration_rate, passive_forces};
 use super::ForceDerivatives;
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Symbol};
-use crate::model::{Model, Quantity};
+use crate::kinematics::configuration_rate;
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Model, Quantity};
 
 /// Derivatives of expressions by configuration and velocity.
 pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {

@@ -7,10 +7,10 @@
 //! those of the trunk in `M⁻¹`. The part without the product is as sparse as the tree is branched.
 
 use super::super::crba::Matrix;
-use super::super::kinematics::Joint;
 use super::super::ldl::elimination_order;
 use super::factor::Factor;
 use crate::expr::Expr;
+use crate::kinematics::Joint;
 
 /// Which velocities belong to the trunk, and which to each limb.
 #[derive(Clone, Debug)]
@@ -104,7 +104,7 @@ impl Trunk {
 
 impl Limb {
     /// The sum over all limbs that are side by side.
-    fn gathered<'g>(&self, e: Expr<'g>) -> Expr<'g> {
+    fn lane_sum<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         if self.alike == 1 { e } else { e.lane_sum(self.alike) }
     }
 }
@@ -151,7 +151,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
             for (step, &i) in trunk.velocities.iter().enumerate() {
                 for &j in &trunk.velocities[..=step] {
                     let taken = product(&limb.velocities, |k| (mass[i][k], parts[k][j]), zero);
-                    rest[i][j] -= limb.gathered(taken);
+                    rest[i][j] -= limb.lane_sum(taken);
                     rest[j][i] = rest[i][j];
                 }
             }
@@ -170,7 +170,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         for limb in &self.trunk.limbs {
             for &t in trunk {
                 let taken = product(&limb.velocities, |k| (parts[k][t], r[k]), r[t].zero());
-                x[t] -= limb.gathered(taken);
+                x[t] -= limb.lane_sum(taken);
             }
         }
         let forces: Vec<Expr<'g>> = x.clone();

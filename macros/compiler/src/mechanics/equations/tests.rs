@@ -7,7 +7,7 @@ use crate::expr::polynomial::tests::Random;
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};
-use crate::model::{Chart, Motion, Pose};
+use crate::mechanism::{Chart, Motion, Pose};
 use std::path::Path;
 
 mod latex;
@@ -20,7 +20,7 @@ fn with_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) ->
     let arguments = format!("gravity = {gravity}").parse().unwrap();
     let source = crate::read(arguments, item.parse().unwrap(), Path::new(""), &mut cx);
     let (graph, source) = (Graph::new(), source.expect("a struct"));
-    let model = crate::model::build_model(&source.mechanism.description, &graph, &mut cx);
+    let model = crate::resolve::build_model(&source.mechanism.description, &graph, &mut cx);
     f(model.unwrap_or_else(|| panic!("{:?}", cx.messages())))
 }
 
@@ -68,7 +68,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 /// Motion, forces, constraints and Lagrangian against the recursive algorithms as lowered for generation, and motion against
 /// Lagrange's equations.
 fn check(model: &Model<'_>) {
-    let joints = crate::mechanics::joints(model);
+    let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let e = derive(model, &joints, &mass).expect("small");
     let (v, a) = (velocities(model), accelerations(model));

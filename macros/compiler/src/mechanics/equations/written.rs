@@ -5,7 +5,7 @@ use crate::diag::all_of;
 use crate::expr::Symbol;
 use crate::expr::print::names::Names;
 use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
-use crate::model::{Chart, Model, Quantity};
+use crate::mechanism::{Chart, Model, Quantity};
 
 /// Columns of text.
 const WIDTH: usize = 100;

@@ -1,0 +1,22 @@
+//! Numbers for symbols, by which is seen what holds for all values.
+
+use super::eval::eval_one;
+use super::{Expr, Symbol};
+
+/// How far from its value an expression may be.
+const TOLERANCE: f64 = 1e-9;
+
+/// Values for the parameters that are unlikely to meet a special case, one set for every `seed`.
+pub fn sample(symbol: Symbol, seed: u64) -> f64 {
+    let mut h = (u64::from(symbol.0) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        ^ (seed + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
+    h = (h ^ (h >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    h = (h ^ (h >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    h ^= h >> 31;
+    0.5 + (h >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// True if an expression has a value at all samples (within the tolerance).
+pub fn always(e: Expr<'_>, value: f64) -> bool {
+    (0..3).all(|seed| (eval_one(e, &|s| sample(s, seed)) - value).abs() <= TOLERANCE)
+}

@@ -1,0 +1,240 @@
+//! Joints of links: where a link is in its parent, how it can move, and what a twist, a wrench and mass properties become
+//! on the other side. A joint placed by expressions of coordinates and time has a motion subspace that depends on them,
+//! and may move by itself.
+
+use super::rates::{position_in, symbols_in, time_derivative};
+use super::spatial::{Spatial, map_spatial};
+use crate::expr::diff::Derivative;
+use crate::expr::replace::replace;
+use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
+use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
+
+/// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there but for links
+/// that are placed by expressions.
+#[derive(Clone, Debug)]
+pub struct Dof<'g> {
+    /// Entry of `v`.
+    pub index: usize,
+    /// Joint rate per entry of `v`.
+    pub ratio: f64,
+    /// Twist of the link per unit of joint rate, in link axes.
+    pub subspace: Spatial<'g>,
+}
+
+/// A link's joint at a configuration: where the link is in its parent, and how it can move.
+#[derive(Clone, Debug)]
+pub struct Joint<'g> {
+    /// Parent link.
+    pub parent: Option<LinkId>,
+    /// Orientation of the link in the parent link.
+    pub rotation: Rotation<'g>,
+    /// Origin of the link in the parent link.
+    pub translation: Vec3<'g>,
+    /// Degrees of freedom, parent side first.
+    pub dofs: Vec<Dof<'g>>,
+    /// What a link placed by expressions adds.
+    pub drift: Option<Drift<'g>>,
+    /// How many limbs side by side hang from the parent by this joint, one in each lane of its expressions; one for a
+    /// joint that stands for itself.
+    pub limbs: usize,
+}
+
+/// Motion of a link that its coordinates' rates alone do not give, in link axes.
+#[derive(Clone, Debug)]
+pub struct Drift<'g> {
+    /// Twist at zero rates: the link is driven in time.
+    pub twist: Spatial<'g>,
+    /// Rate of the components of the joint's twist at constant `v`.
+    pub acceleration: Spatial<'g>,
+    /// Rate of the components of each degree of freedom's subspace.
+    pub subspace_rates: Vec<Spatial<'g>>,
+}
+
+impl<'g> Joint<'g> {
+    /// A wrench on the link, about the parent's origin in parent axes.
+    pub fn wrench_to_parent(&self, w: &Spatial<'g>) -> Spatial<'g> {
+        let force = self.rotation.to_parent(w.linear);
+        let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
+        Spatial { linear: force, angular: moment }
+    }
+
+    /// The wrench on the parent, given that on the link: the sum of those of limbs side by side.
+    pub fn add_wrench(&self, parent: &Spatial<'g>, link: &Spatial<'g>) -> Spatial<'g> {
+        let wrench = self.wrench_to_parent(link);
+        parent.plus(&map_spatial(&wrench, |c| self.lane_sum(c)))
+    }
+
+    /// The sum over limbs side by side.
+    pub fn lane_sum(&self, e: Expr<'g>) -> Expr<'g> {
+        if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
+    }
+
+    /// Mass properties of the parent with those of the link, or of all limbs side by side.
+    pub fn composite(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
+        if self.limbs == 1 {
+            return parent.plus_placed(link, &self.rotation, self.translation);
+        }
+        let alone = Inertia::zero(parent.mass.graph()).plus_placed(link, &self.rotation, self.translation);
+        parent.plus(&Inertia {
+            mass: self.lane_sum(alone.mass),
+            moment: alone.moment.map(|c| self.lane_sum(c)),
+            tensor: alone.tensor.map(|c| self.lane_sum(c)),
+        })
+    }
+
+    /// The parent's twist, at the link's origin in link axes.
+    pub fn twist_to_child(&self, parent: &Spatial<'g>) -> Spatial<'g> {
+        Spatial {
+            linear: self.rotation.to_child(parent.linear + parent.angular.cross(self.translation)),
+            angular: self.rotation.to_child(parent.angular),
+        }
+    }
+
+    /// The joint's own twist for given rates (by entry of `v`).
+    pub fn relative(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
+        let mut sum = Spatial::zero(model);
+        for dof in &self.dofs {
+            sum = sum.plus(&dof.subspace.times(rates[dof.index] * model.graph.num(dof.ratio)));
+        }
+        sum
+    }
+}
+
+impl<'g> Joint<'g> {
+    /// The joint's twist for rates `v`, what drives it in time included.
+    pub fn twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+        let relative = self.relative(model, v);
+        self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
+    }
+
+    /// The link's acceleration from its parent's twist and acceleration (none for the ground).
+    pub fn acceleration(
+        &self,
+        model: &Model<'g>,
+        parent: Option<(&Spatial<'g>, &Spatial<'g>)>,
+        v: &[Expr<'g>],
+        a: &[Expr<'g>],
+    ) -> Spatial<'g> {
+        let (rate, mut own) = (self.twist(model, v), self.relative(model, a));
+        if let Some(drift) = &self.drift {
+            own = own.plus(&drift.acceleration);
+        }
+        let turning = rate.angular.cross(rate.linear);
+        let Some((twist, parent)) = parent else {
+            return Spatial { linear: own.linear + turning, angular: own.angular };
+        };
+        let w = self.rotation.to_child(twist.angular);
+        let p = self.translation;
+        let carried = parent.linear + parent.angular.cross(p) + twist.angular.cross(twist.angular.cross(p));
+        Spatial {
+            linear: self.rotation.to_child(carried) + (w + w).cross(rate.linear) + turning + own.linear,
+            angular: self.rotation.to_child(parent.angular) + w.cross(rate.angular) + own.angular,
+        }
+    }
+}
+
+/// The joints of all links, at the configuration `q`.
+pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
+    model.links.iter().map(|link| joint(model.space(), link)).collect()
+}
+
+/// The joint of a link.
+pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
+    let g = space.graph;
+    let zero = Vec3::zero(g);
+    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let single = |c: &Coordinate, linear, angular| {
+        vec![Dof { index: c.v, ratio: c.ratio, subspace: Spatial { linear, angular } }]
+    };
+    let (motion, shift, dofs) = match &link.motion {
+        Motion::Turn { axis, coordinate } => {
+            (Rotation::eigenaxis(*axis, position_in(g, coordinate)), zero, single(coordinate, zero, *axis))
+        }
+        Motion::Slide { axis, coordinate } => {
+            (Rotation::identity(g), *axis * position_in(g, coordinate), single(coordinate, *axis, zero))
+        }
+        Motion::Helix { axis, pitch, coordinate } => {
+            let angle = position_in(g, coordinate);
+            let shift = *axis * (*pitch * angle);
+            (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
+        }
+        Motion::Ball { q: first, v } => {
+            let rotation = Rotation::quaternion([q(*first), q(first + 1), q(first + 2), q(first + 3)]);
+            let dofs = (0..3).map(|k| unit_dof(g, v + k, None, Some(k))).collect();
+            (rotation, zero, dofs)
+        }
+        Motion::Free { q: first, v } => {
+            let rotation = Rotation::quaternion([q(first + 3), q(first + 4), q(first + 5), q(first + 6)]);
+            let dofs = (0..6).map(|k| match k {
+                0..3 => unit_dof(g, v + k, Some(k), None),
+                _ => unit_dof(g, v + k, None, Some(k - 3)),
+            });
+            (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
+        }
+        Motion::Placed => return placed_joint(space, link),
+    };
+    Joint {
+        parent: link.parent,
+        translation: link.placement.point(shift),
+        rotation: link.placement.rotation.clone().then(&motion),
+        dofs,
+        drift: None,
+        limbs: 1,
+    }
+}
+
+/// The joint of a link whose placement is an expression of coordinates and time: its twist is the rate of the
+/// placement, and its subspace what each velocity adds to that.
+fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
+    let place = &link.placement;
+    let twist = rate_of_placement(space, &place.rotation, place.translation);
+    let acceleration = map_spatial(&twist, |c| time_derivative(space, c));
+    let mut dofs = Vec::new();
+    let mut subspace_rates = Vec::new();
+    let mut drift = twist;
+    for index in velocities_in(&twist) {
+        let mut d = Derivative::with_respect_to(Quantity::Velocity(index).symbol(), space.graph);
+        let subspace = map_spatial(&twist, |c| d.of(c));
+        // The twist is linear in the velocities: what is left when all are taken away is what time does.
+        drift = map_spatial(&drift, |c| without(space.graph, c, index));
+        subspace_rates.push(map_spatial(&subspace, |c| time_derivative(space, c)));
+        dofs.push(Dof { index, ratio: 1.0, subspace });
+    }
+    Joint {
+        parent: link.parent,
+        rotation: place.rotation.clone(),
+        translation: place.translation,
+        dofs,
+        drift: Some(Drift { twist: drift, acceleration, subspace_rates }),
+        limbs: 1,
+    }
+}
+
+/// Twist of a frame from the rates of its placement, in the frame's axes: `Rᵀ ṗ`, and `[ω]× = Rᵀ Ṙ`.
+pub fn rate_of_placement<'g>(
+    space: Space<'_, 'g>,
+    rotation: &Rotation<'g>,
+    translation: Vec3<'g>,
+) -> Spatial<'g> {
+    let angular = rotation.angular_velocity(&mut |e| time_derivative(space, e));
+    Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(space, c))), angular }
+}
+
+fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
+    let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
+    let index = |s: Symbol| match Quantity::of(s) {
+        Quantity::Velocity(k) => Some(k),
+        _ => None,
+    };
+    symbols_in(&all).into_iter().filter_map(index).collect()
+}
+
+/// An expression with one velocity set to zero.
+fn without<'g>(graph: &'g Graph, e: Expr<'g>, velocity: usize) -> Expr<'g> {
+    replace(e, &|s| (s == Quantity::Velocity(velocity).symbol()).then(|| graph.zero()))
+}
+
+fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
+    let axis = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::axis(g, k));
+    Dof { index, ratio: 1.0, subspace: Spatial { linear: axis(linear), angular: axis(angular) } }
+}

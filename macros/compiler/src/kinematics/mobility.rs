@@ -1,0 +1,226 @@
+//! Degrees of freedom: a configuration that fulfils the constraints is searched for numerically, with the numbers of the
+//! mechanism and samples of its parameters, and the independent rows are counted there. Grübler's count, which takes
+//! all rows for independent, is what is left where none is found.
+
+use super::rates::symbols_in;
+use super::redundancy::Basis;
+use super::rows::{Rows, random_configuration};
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::mechanism::{Chart, Model, Quantity};
+
+/// Random starts of the search; a third of them where the parameters are samples and may not fit each other.
+const STARTS: u64 = 24;
+/// Configurations that must agree on a mechanism that cannot move.
+const WITNESSES: usize = 3;
+/// Bound on the operations of the search, roughly: large mechanisms are searched from fewer starts.
+const WORK: u64 = 40_000_000;
+/// Steps from each start.
+const STEPS: u64 = 60;
+/// What may be left of the residuals.
+const CLOSED: f64 = 1e-11;
+/// Residuals above this, m or rad, are not closed by more steps.
+const OPEN: f64 = 1e-4;
+
+/// Pivots below this part of the largest entry count as zero.
+const SMALL_PIVOT: f64 = 1e-6;
+
+/// A configuration with the seed of the parameters that it belongs to.
+pub type Witness = (Vec<f64>, u64);
+
+/// Some configurations that fulfil the constraints, first one near the configuration with all coordinates zero, if there
+/// is one. Reports loops that nothing closes if all their numbers are known.
+pub fn witnesses(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
+    let mut found: Vec<Witness> = Vec::new();
+    let mut worst: Option<(usize, f64)> = None;
+    let wanted = if is_numeric(model) { STARTS } else { STARTS / 3 };
+    let possible = WORK / rows.cost().max(1);
+    let starts = wanted.min(possible / STEPS).max(1);
+    let steps = STEPS.min(possible);
+    for seed in 0..starts {
+        match close(model, rows, seed, steps) {
+            Ok(q) => found.push((q, seed)),
+            Err(open) if worst.is_none_or(|(_, best)| open.1 < best) => worst = Some(open),
+            Err(_) => {}
+        }
+        if found.len() == WITNESSES {
+            return found;
+        }
+    }
+    if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && starts == STARTS)
+    {
+        let c = &model.constraints[row];
+        cx.error(c.place.clone(), format!("no configuration was found that fulfils `{}`", c.name))
+            .help(format!("the best one is {open:.3} off: check the lengths and axes"));
+    }
+    found
+}
+
+/// No residual depends on a parameter or on time.
+fn is_numeric(model: &Model<'_>) -> bool {
+    let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
+    symbols_in(&residuals)
+        .into_iter()
+        .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
+}
+
+/// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first witness belongs to:
+/// linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move.
+pub fn degrees_of_freedom(
+    model: &Model<'_>,
+    rows: &Rows<'_>,
+    witnesses: &[Witness],
+    cx: &mut Diagnostics,
+) -> [usize; 2] {
+    let (nv, nc) = (model.nv(), model.constraints.len());
+    let free = |(q, seed): &Witness, count: usize| {
+        let mut basis = Basis::default();
+        rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
+        nv - basis.rank()
+    };
+    // The first that can move: others may be locked.
+    let witness = witnesses.iter().find(|w| free(w, nc) > 0).or(witnesses.first());
+    let count = |rank: usize| witness.map_or(nv.saturating_sub(rank), |w| free(w, rank));
+    let freedom = [count(model.holonomic()), count(nc)];
+    if freedom[1] == 0 && !witnesses.is_empty() {
+        let place = model.constraints.last().map_or(&model.place, |c| &c.place);
+        cx.error(place.clone(), "this mechanism cannot move").help(format!(
+            "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
+        ));
+    }
+    freedom
+}
+
+/// A pivot for each constraint, constraint and velocity, among the velocities that need not be independent, in the order of
+/// an elimination that is well conditioned at a witness. `None` if some constraint has none.
+pub fn dependent(
+    model: &Model<'_>,
+    rows: &Rows<'_>,
+    witnesses: &[Witness],
+    independent: &[usize],
+) -> Option<Vec<(usize, usize)>> {
+    let (q, seed) = witnesses.first()?;
+    let mut rows = rows.jacobian(q, *seed);
+    let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    while pivots.len() < rows.len() {
+        let open = (0..rows.len()).filter(|i| pivots.iter().all(|(row, _)| row != i));
+        let all = open.flat_map(|i| (0..model.nv()).map(move |j| (i, j)));
+        let allowed = all.filter(|(_, j)| !independent.contains(j));
+        let (row, column) = allowed.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))?;
+        let pivot = rows[row][column];
+        if pivot.abs() <= SMALL_PIVOT * largest {
+            return None;
+        }
+        pivots.push((row, column));
+        let own = rows[row].clone();
+        for (i, other) in rows.iter_mut().enumerate() {
+            if i != row {
+                let factor = other[column] / pivot;
+                other.iter_mut().zip(&own).for_each(|(x, o)| *x -= factor * o);
+            }
+        }
+    }
+    Some(pivots)
+}
+
+/// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
+fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
+    let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
+    let mut q = random_configuration(model, seed);
+    for chart in &model.charts {
+        if let Chart::Plain(k, _) = chart {
+            q[*k] *= spread;
+        }
+    }
+    let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let mut r = rows.residuals(&q, seed);
+    let mut damping = 1e-3;
+    for _ in 0..steps {
+        if size(&r) <= CLOSED * CLOSED || !size(&r).is_finite() {
+            break;
+        }
+        let jacobian = &rows.jacobian(&q, seed)[..r.len()];
+        let step = damped_step(jacobian, &r, damping);
+        let next = moved(model, &q, &step);
+        let trial = rows.residuals(&next, seed);
+        if size(&trial) < size(&r) {
+            (q, r, damping) = (next, trial, damping * 0.1);
+        } else {
+            damping *= 10.0;
+        }
+    }
+    let worst = r.iter().map(|r| r.abs()).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    match worst {
+        Some((row, open)) if open > CLOSED || open.is_nan() => Err((row, open)),
+        _ => Ok(q),
+    }
+}
+
+/// `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
+fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
+    let n = rows.len();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut m: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
+    let mut y = r.to_vec();
+    for (k, row) in m.iter_mut().enumerate() {
+        row[k] = row[k] * (1.0 + damping) + 1e-12;
+    }
+    for k in 0..n {
+        for i in k + 1..n {
+            let factor = m[i][k] / m[k][k];
+            for j in k..n {
+                m[i][j] -= factor * m[k][j];
+            }
+            y[i] -= factor * y[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let rest: f64 = (k + 1..n).map(|j| m[k][j] * y[j]).sum();
+        y[k] = (y[k] - rest) / m[k][k];
+    }
+    let columns = rows.first().map_or(0, Vec::len);
+    (0..columns).map(|j| -(0..n).map(|i| rows[i][j] * y[i]).sum::<f64>()).collect()
+}
+
+/// `q ⊕ dv`, for free joints to first order.
+fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
+    let mut out = q.to_vec();
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(k, v) => out[k] += dv[v],
+            Chart::Ball(k, v) => turn(&mut out[k..k + 4], &dv[v..v + 3]),
+            Chart::Free(k, v) => {
+                let shift = rotated(&q[k + 3..k + 7], &dv[v..v + 3]);
+                (0..3).for_each(|i| out[k + i] += shift[i]);
+                turn(&mut out[k + 3..k + 7], &dv[v + 3..v + 6]);
+            }
+        }
+    }
+    out
+}
+
+/// A quaternion x y z w turned by a small rotation vector in body axes.
+fn turn(q: &mut [f64], w: &[f64]) {
+    let [x, y, z, s] = [q[0], q[1], q[2], q[3]];
+    let [a, b, c] = [w[0] / 2.0, w[1] / 2.0, w[2] / 2.0];
+    let next = [
+        x + s * a + y * c - z * b,
+        y + s * b + z * a - x * c,
+        z + s * c + x * b - y * a,
+        s - x * a - y * b - z * c,
+    ];
+    let norm = next.iter().map(|c| c * c).sum::<f64>().sqrt();
+    q.iter_mut().zip(next).for_each(|(q, next)| *q = next / norm);
+}
+
+/// A vector in body axes turned by a quaternion x y z w.
+fn rotated(q: &[f64], v: &[f64]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let (u, v) = ([q[0], q[1], q[2]], [v[0], v[1], v[2]]);
+    let once = cross(u, v);
+    let twice = cross(u, once);
+    std::array::from_fn(|k| v[k] + 2.0 * (q[3] * once[k] + twice[k]))
+}

@@ -1,0 +1,19 @@
+//! Kinematics of a mechanism: joints and motion subspaces, velocities and accelerations, the rows of constraints in
+//! configurations, which of them are redundant, and how many degrees of freedom they leave. Knows no syntax.
+
+mod joint;
+mod links;
+pub mod mobility;
+mod rates;
+pub mod redundancy;
+mod rows;
+mod spatial;
+
+pub use joint::{Dof, Drift, Joint, joint, joints};
+pub use links::{accelerations, change_axes, twists};
+pub use rates::{
+    configuration_rate, energy_gradient, known_gradient, position, position_in, rate, symbols_in,
+    time_derivative, velocity_gradient, velocity_gradients,
+};
+pub use rows::{Rows, random_configuration, value_of};
+pub use spatial::{Spatial, map_spatial};

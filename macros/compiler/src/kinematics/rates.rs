@@ -1,0 +1,124 @@
+//! Rates of expressions of the configuration along the motion, and derivatives by the velocities.
+
+use crate::expr::diff::Derivative;
+use crate::expr::eval::needed;
+use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
+use crate::mechanism::{Chart, Coordinate, Gradient, Model, Quantity, Space};
+
+/// Value of a coordinate as an expression of `q`.
+pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+    position_in(model.graph, c)
+}
+
+/// Value of a coordinate as an expression of `q`.
+pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
+    Quantity::Configuration(c.q).expr(g) * g.num(c.ratio) + g.num(c.offset)
+}
+
+/// Rate of a coordinate as an expression of `v`.
+pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+    Quantity::Velocity(c.v).expr(model.graph) * model.graph.num(c.ratio)
+}
+
+/// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
+pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
+    let mut sum = e.zero();
+    for symbol in symbols_in(&[e]) {
+        let rate = match Quantity::of(symbol) {
+            Quantity::Configuration(k) => configuration_rate(space, k),
+            Quantity::Time => space.graph.one(),
+            _ => continue,
+        };
+        sum += Derivative::with_respect_to(symbol, space.graph).of(e) * rate;
+    }
+    sum
+}
+
+/// The symbols of expressions, in order.
+pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
+    let Some(first) = e.first() else { return Vec::new() };
+    let graph = first.graph();
+    let symbol = |id| match graph.node(id) {
+        Node::Symbol(s) => Some(s),
+        _ => None,
+    };
+    let mut symbols: Vec<Symbol> = needed(graph, e).into_iter().filter_map(symbol).collect();
+    symbols.sort_unstable();
+    symbols
+}
+
+/// Rate of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain coordinates, half of the product of
+/// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint.
+pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
+    let g = space.graph;
+    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let v = |k: usize| Quantity::Velocity(k).expr(g);
+    for chart in space.charts {
+        match *chart {
+            Chart::Plain(a, b) if a == k => return v(b),
+            Chart::Ball(a, b) if (a..a + 4).contains(&k) => {
+                return quaternion_rate(
+                    [q(a), q(a + 1), q(a + 2), q(a + 3)],
+                    [v(b), v(b + 1), v(b + 2)],
+                    k - a,
+                );
+            }
+            Chart::Free(a, b) if (a..a + 7).contains(&k) => {
+                let quaternion = [q(a + 3), q(a + 4), q(a + 5), q(a + 6)];
+                if k < a + 3 {
+                    let linear = Vec3([v(b), v(b + 1), v(b + 2)]);
+                    return Rotation::quaternion(quaternion).to_parent(linear)[k - a];
+                }
+                return quaternion_rate(quaternion, [v(b + 3), v(b + 4), v(b + 5)], k - a - 3);
+            }
+            _ => {}
+        }
+    }
+    g.zero()
+}
+
+fn quaternion_rate<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize) -> Expr<'g> {
+    let [x, y, z, s] = quaternion;
+    let [a, b, c] = w.map(|w| w * 0.5);
+    match entry {
+        0 => s * a + y * c - z * b,
+        1 => s * b + z * a - x * c,
+        2 => s * c + x * b - y * a,
+        _ => -(x * a + y * b + z * c),
+    }
+}
+
+/// Derivatives by all velocities that an expression depends on.
+pub fn velocity_gradient(e: Expr<'_>) -> Vec<(usize, Expr<'_>)> {
+    velocity_gradients(&[e]).pop().unwrap_or_default()
+}
+
+/// The same of several expressions, which share what they have in common.
+pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
+    let mut gradients = vec![Vec::new(); all.len()];
+    let Some(graph) = all.first().map(|e| e.graph()) else { return gradients };
+    let mut wanted: Vec<(Symbol, usize)> = Vec::new();
+    for (row, e) in all.iter().enumerate() {
+        wanted.extend(symbols_in(&[*e]).into_iter().map(|s| (s, row)));
+    }
+    wanted.sort_unstable();
+    for rows in wanted.chunk_by(|a, b| a.0 == b.0) {
+        let Quantity::Velocity(k) = Quantity::of(rows[0].0) else { continue };
+        let mut derivative = Derivative::with_respect_to(rows[0].0, graph);
+        for (_, row) in rows {
+            gradients[*row].push((k, derivative.of(all[*row])));
+        }
+    }
+    gradients
+}
+
+/// The generalized forces against which an energy grows: what each velocity adds to its rate, at a given time.
+pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
+    let find = || velocity_gradient(time_derivative(model.space(), energy));
+    model.gradients.of_energy(&model.charts, energy, find)
+}
+
+/// Derivatives by all velocities of an expression that a model asks for again and again.
+pub fn known_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
+    model.gradients.by_velocity(e, || velocity_gradient(e))
+}

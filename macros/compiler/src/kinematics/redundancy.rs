@@ -1,0 +1,123 @@
+//! Rows of constraints that say nothing: spatial joints in a planar mechanism, loops that share a condition. Found in
+//! random configurations and in some that fulfil the constraints, for random parameters, where only what holds
+//! everywhere is seen.
+
+use super::mobility::Witness;
+use super::rows::{Rows, random_configuration, value_of};
+use crate::diag::Diagnostics;
+use crate::expr::eval::Tape;
+use crate::mechanism::{Constraint, Model};
+
+/// A row counts as a combination of others if so little of it is left.
+const TOLERANCE: f64 = 1e-9;
+/// Random configurations tried.
+const SAMPLES: u64 = 3;
+
+/// What is left of zero after the few sums of a row, relative to others of one vector.
+const NOISE: f64 = 1e-12;
+/// What is left of zero after the few sums of a row, relative to all rows, whose units may differ.
+const ROUNDING: f64 = 1e-15;
+
+/// By row, whether no velocity influences it anywhere, be it up to rounding: the height of a wheel whose axle keeps its own.
+pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
+    let sampled = |seed| rows.jacobian(&random_configuration(model, seed), seed);
+    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sampled).collect();
+    let group = |row: usize| model.constraints[row].group;
+    let is_small = |sizes: &[f64], row: usize| {
+        let all = sizes.iter().copied().fold(0.0, f64::max);
+        let own = (0..sizes.len()).filter(|k| group(*k) == group(row)).map(|k| sizes[k]).fold(0.0, f64::max);
+        sizes[row] <= NOISE * own || sizes[row] <= ROUNDING * all
+    };
+    let sizes: Vec<Vec<f64>> =
+        samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
+    let idle = |row| rows.is_constant(row) || sizes.iter().all(|sizes| is_small(sizes, row));
+    (0..model.constraints.len()).map(idle).collect()
+}
+
+/// Reports rows that no velocity influences and that are not fulfilled: they have the same value everywhere.
+pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
+    let all = model.constraints.iter().zip(constant);
+    let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
+    let tape = Tape::of(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
+    let values = |seed| {
+        let q = random_configuration(model, seed);
+        tape.values(&|s| value_of(s, &q, seed))
+    };
+    let open = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
+    for ((c, gap), again) in constant.iter().zip(values(0)).zip(values(1)) {
+        if open(gap) && open(again) {
+            cx.error(c.place.clone(), format!("`{}` can never hold: it stays {gap} away from zero", c.name))
+                .help("no configuration closes this loop: check the lengths and axes on its way");
+        }
+    }
+}
+
+/// Drops rows that follow from the others wherever the mechanism is, constant ones among them; true if there are such rows.
+pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], witnesses: &[Witness]) -> bool {
+    let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
+    let all = random.chain(witnesses.iter().cloned());
+    let samples: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
+    let mut bases: Vec<Basis> = samples.iter().map(|_| Basis::default()).collect();
+    let mut kept: Vec<usize> = Vec::new();
+    for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
+        // Where no configuration is known that fulfils the constraints, only rows without any influence go.
+        let none = Basis::default();
+        let depends = samples.iter().zip(&bases).all(|(j, basis)| {
+            let others = if witnesses.is_empty() { &none } else { basis };
+            others.explains(&j[row], TOLERANCE)
+        });
+        if !depends {
+            kept.push(row);
+            bases.iter_mut().zip(&samples).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
+        }
+    }
+    let all = std::mem::take(&mut model.constraints);
+    for (row, constraint) in all.into_iter().enumerate() {
+        match kept.contains(&row) {
+            true => model.constraints.push(constraint),
+            false => model.redundant.push(constraint.name),
+        }
+    }
+    !model.redundant.is_empty()
+}
+
+/// Orthonormal combinations of rows.
+#[derive(Default)]
+pub struct Basis(Vec<Vec<f64>>);
+
+impl Basis {
+    /// How many rows are independent.
+    pub fn rank(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds a row, unless it is a combination of those before up to a relative tolerance.
+    pub fn add(&mut self, row: &[f64], tolerance: f64) {
+        let rest = self.rest(row);
+        let size = dot(&rest, &rest).sqrt();
+        if size > tolerance * dot(row, row).sqrt().max(tolerance) {
+            self.0.push(rest.iter().map(|x| x / size).collect());
+        }
+    }
+
+    /// True for a row that is a combination of those before, or zero; a row that has no value is none.
+    fn explains(&self, row: &[f64], tolerance: f64) -> bool {
+        let rest = self.rest(row);
+        dot(&rest, &rest).sqrt() <= tolerance * dot(row, row).sqrt().max(tolerance)
+    }
+
+    /// What is left of a row without its parts along those before.
+    fn rest(&self, row: &[f64]) -> Vec<f64> {
+        let mut rest = row.to_vec();
+        // Twice, since the first time leaves the rounding of what it takes away.
+        for b in self.0.iter().chain(&self.0) {
+            let part = dot(&rest, b);
+            rest.iter_mut().zip(b).for_each(|(x, b)| *x -= part * b);
+        }
+        rest
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

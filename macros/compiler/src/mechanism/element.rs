@@ -1,0 +1,82 @@
+//! Force elements and inputs.
+
+use super::link::{Coordinate, LinkId};
+use crate::expr::{Expr, Vec3};
+
+/// A linear spring on a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Spring<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Stiffness.
+    pub stiffness: Expr<'g>,
+    /// Coordinate without force.
+    pub free: Expr<'g>,
+}
+
+/// A dashpot on a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Dashpot<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Damping coefficient.
+    pub damping: Expr<'g>,
+}
+
+/// Coulomb friction on a coordinate, regularised as `friction × tanh(rate / friction_speed)`.
+#[derive(Clone, Copy, Debug)]
+pub struct CoulombFriction<'g> {
+    /// What it acts on.
+    pub on: Coordinate,
+    /// Force or torque of full friction.
+    pub friction: Expr<'g>,
+}
+
+/// What an entry of `u` does.
+#[derive(Clone, Debug)]
+pub enum Input<'g> {
+    /// Nothing by itself: expressions name it.
+    Named,
+    /// A force or torque on a coordinate.
+    Coordinate(Coordinate),
+    /// A force on a link.
+    Force {
+        /// The link.
+        link: LinkId,
+        /// Point of application, in link axes.
+        point: Vec3<'g>,
+        /// Direction.
+        along: Direction<'g>,
+    },
+    /// A torque on a link.
+    Torque {
+        /// The link.
+        link: LinkId,
+        /// Direction.
+        about: Direction<'g>,
+    },
+}
+
+/// A sum of vectors, each in the axes of a link (of the ground if none).
+pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
+
+/// A force with the rate that it does work on: its power is `force × rate`, and it contributes `force × ∂rate/∂v` to the
+/// generalized forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<'g> {
+    /// Linear in the velocities.
+    pub rate: Expr<'g>,
+    /// An expression of state, time and inputs.
+    pub force: Expr<'g>,
+    /// It takes energy out, as a dashpot does; otherwise it is applied from outside.
+    pub dissipative: bool,
+}
+
+/// An inertance on a rate: kinetic energy `½ b rate²`.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertance<'g> {
+    /// Linear in the velocities.
+    pub rate: Expr<'g>,
+    /// Inertance `b`.
+    pub inertance: Expr<'g>,
+}

@@ -1,0 +1,50 @@
+//! Mass properties.
+
+use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
+
+/// Mass properties of a link about its frame's origin, in its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia<'g> {
+    /// Mass.
+    pub mass: Expr<'g>,
+    /// Mass times centre of mass.
+    pub moment: Vec3<'g>,
+    /// Inertia about the origin.
+    pub tensor: Sym3<'g>,
+}
+
+impl<'g> Inertia<'g> {
+    /// Nothing.
+    pub fn zero(graph: &'g Graph) -> Inertia<'g> {
+        Inertia { mass: graph.zero(), moment: Vec3::zero(graph), tensor: Sym3::zero(graph) }
+    }
+
+    /// A body with its centre of mass at `c` and an inertia about it.
+    pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
+        Inertia { mass, moment: c * mass, tensor: central + Sym3::point(mass, c) }
+    }
+
+    /// The sum.
+    pub fn plus(&self, b: &Inertia<'g>) -> Inertia<'g> {
+        Inertia { mass: self.mass + b.mass, moment: self.moment + b.moment, tensor: self.tensor + b.tensor }
+    }
+
+    /// The sum with mass properties of a frame placed in this one.
+    ///
+    /// With `h` the other's first moment in these axes and `s = h + m p / 2`, the parallel-axis theorem adds
+    /// `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
+    pub fn plus_placed(&self, other: &Inertia<'g>, rotation: &Rotation<'g>, p: Vec3<'g>) -> Inertia<'g> {
+        let h = rotation.to_parent(other.moment);
+        let s = h + p * (other.mass * 0.5);
+        let twice: [Expr<'g>; 3] = std::array::from_fn(|k| (p[k] * 2.0) * s[k]);
+        let shift = Sym3 {
+            diagonal: [twice[1] + twice[2], twice[2] + twice[0], twice[0] + twice[1]],
+            off: [(0, 1), (0, 2), (1, 2)].map(|(i, j)| -(p[i] * s[j] + p[j] * s[i])),
+        };
+        Inertia {
+            mass: self.mass + other.mass,
+            moment: self.moment + (h + p * other.mass),
+            tensor: self.tensor + (rotation.sym_to_parent(other.tensor) + shift),
+        }
+    }
+}

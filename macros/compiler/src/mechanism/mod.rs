@@ -1,0 +1,25 @@
+//! The checked mechanism as data: a tree of links with elementary motions, bodies lumped into the links that carry them,
+//! force elements, constraints as scalar rows. Values are expressions of the parameters. Nothing here computes more than
+//! sums of placements and of mass properties.
+
+mod constraint;
+mod element;
+mod gradients;
+mod inertia;
+mod link;
+mod model;
+mod passive;
+mod pose;
+mod quantity;
+mod units;
+
+pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission};
+pub use element::{CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
+pub use gradients::{Gradient, Gradients};
+pub use inertia::Inertia;
+pub use link::{Chart, Coordinate, Link, LinkId, Motion, NamedFrame, Space};
+pub use model::{Model, Opened, OutputValue, Uses};
+pub use passive::PassiveForces;
+pub use pose::Pose;
+pub use quantity::Quantity;
+pub use units::Units;

@@ -1,0 +1,147 @@
+//! The mechanism as a whole.
+
+use super::constraint::{Constraint, SolvedSide};
+use super::element::{CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
+use super::gradients::Gradients;
+use super::inertia::Inertia;
+use super::link::{Chart, Link, NamedFrame, Space};
+use super::passive::PassiveForces;
+use super::units::Units;
+use crate::diag::Place;
+use crate::expr::{Expr, Graph, Vec3};
+use std::rc::Rc;
+
+/// A checked mechanism.
+#[derive(Clone)]
+pub struct Model<'g> {
+    /// Owner of all expressions.
+    pub graph: &'g Graph,
+    /// The struct's name.
+    pub name: String,
+    /// Where the name stands.
+    pub place: Place,
+    /// Names of the parameters.
+    pub parameters: Vec<String>,
+    /// There are no dynamics, as the user asked for: nothing needs inertia.
+    pub kinematic: bool,
+    /// Uniform gravity, in ground axes.
+    pub gravity: Vec3<'g>,
+    /// Speed at which friction is regularised.
+    pub friction_speed: Expr<'g>,
+    /// Links, parents before children.
+    pub links: Vec<Link<'g>>,
+    /// Mass properties that count as moving although the ground carries them: what a pass found to stay where it is.
+    pub still: Inertia<'g>,
+    /// Something depends on time.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
+    /// Parts of the configuration space, in the order of `v`.
+    pub charts: Vec<Chart>,
+    /// Forces of elements that were found so far.
+    pub gradients: Gradients,
+    /// Name of every entry of `q`.
+    pub configuration: Vec<String>,
+    /// Name of every entry of `v`, and where the joint stands.
+    pub velocities: Vec<(String, Place)>,
+    /// Name of every entry of `u`.
+    pub inputs: Vec<(String, Input<'g>)>,
+    /// Named frames.
+    pub frames: Vec<NamedFrame<'g>>,
+    /// Springs.
+    pub springs: Vec<Spring<'g>>,
+    /// Dashpots.
+    pub dashpots: Vec<Dashpot<'g>>,
+    /// Dry friction.
+    pub frictions: Vec<CoulombFriction<'g>>,
+    /// Potential energies beside those of gravity and springs on coordinates.
+    pub potentials: Vec<Expr<'g>>,
+    /// Rayleigh dissipation functions.
+    pub dissipations: Vec<Expr<'g>>,
+    /// Other forces.
+    pub loads: Vec<Load<'g>>,
+    /// The forces of all these, where a function of its own computes them and all others take them as given.
+    pub passive: Option<Rc<PassiveForces<'g>>>,
+    /// Inertances.
+    pub inertances: Vec<Inertance<'g>>,
+    /// Scalar constraints; those on configurations first.
+    pub constraints: Vec<Constraint<'g>>,
+    /// Names of rows of joints and constraints that follow from the others everywhere.
+    pub redundant: Vec<String>,
+    /// The pivots by which dependent velocities are solved for, constraint and velocity, where independent speeds are to
+    /// be used.
+    pub dependent: Option<Vec<(usize, usize)>>,
+    /// The joints that loops are solved for in closed form, two for each.
+    pub solved: Vec<SolvedSide<'g>>,
+    /// Degrees of freedom: independent coordinates and independent velocities.
+    pub freedom: [usize; 2],
+    /// Outputs.
+    pub outputs: Vec<OutputValue<'g>>,
+    /// The same mechanism with the joints whose reactions outputs name opened: six coordinates for each after all others.
+    pub opened: Option<Rc<Opened<'g>>>,
+    /// Units of parameters, coordinates, inputs, outputs and constraints.
+    pub units: Units,
+}
+
+/// A mechanism with opened joints: what holds their coordinates at zero is what they transmit.
+#[derive(Clone)]
+pub struct Opened<'g> {
+    /// The mechanism.
+    pub model: Model<'g>,
+    /// The joints in the order of their coordinates.
+    pub joints: Vec<usize>,
+}
+
+/// An expression that becomes a function.
+#[derive(Clone, Debug)]
+pub struct OutputValue<'g> {
+    /// Its name.
+    pub name: String,
+    /// One component, or three.
+    pub values: Vec<Expr<'g>>,
+}
+
+/// What a value depends on beside the configuration and time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Uses {
+    /// Velocities.
+    pub velocities: bool,
+    /// Accelerations.
+    pub accelerations: bool,
+    /// Inputs.
+    pub inputs: bool,
+}
+
+impl<'g> Model<'g> {
+    /// The configuration space.
+    pub fn space(&self) -> Space<'_, 'g> {
+        Space { graph: self.graph, charts: &self.charts }
+    }
+
+    /// Number of entries of `q`.
+    pub fn nq(&self) -> usize {
+        self.configuration.len()
+    }
+
+    /// Number of entries of `v`.
+    pub fn nv(&self) -> usize {
+        self.velocities.len()
+    }
+
+    /// Number of entries of `u`.
+    pub fn nu(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// Number of constraints on configurations.
+    pub fn holonomic(&self) -> usize {
+        self.constraints.iter().filter(|c| c.residual.is_some()).count()
+    }
+
+    /// Whether some constraints follow from others wherever all are fulfilled, though no elimination could tell which: as
+    /// in Bricard's linkage.
+    pub fn is_overdetermined(&self) -> bool {
+        let plain = self.constraints.iter().all(|c| c.friction.is_empty() && !c.determines);
+        plain && self.constraints.len() + self.freedom[1] > self.nv()
+    }
+}

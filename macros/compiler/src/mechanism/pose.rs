@@ -1,0 +1,38 @@
+//! Placements of frames.
+
+use crate::expr::{Graph, Rotation, Vec3};
+
+/// The placement of a child frame in a parent frame.
+#[derive(Clone, Debug)]
+pub struct Pose<'g> {
+    /// Orientation of the child's axes in the parent's.
+    pub rotation: Rotation<'g>,
+    /// The child's origin, in parent axes.
+    pub translation: Vec3<'g>,
+}
+
+impl<'g> Pose<'g> {
+    /// The child frame is the parent frame.
+    pub fn identity(graph: &'g Graph) -> Pose<'g> {
+        Pose { rotation: Rotation::identity(graph), translation: Vec3::zero(graph) }
+    }
+
+    /// This placement, then `next` in the child frame.
+    pub fn then(&self, next: &Pose<'g>) -> Pose<'g> {
+        Pose {
+            rotation: self.rotation.clone().then(&next.rotation),
+            translation: self.point(next.translation),
+        }
+    }
+
+    /// The placement of the parent frame in the child frame.
+    pub fn inverse(&self) -> Pose<'g> {
+        let rotation = self.rotation.inverse();
+        Pose { translation: -rotation.to_parent(self.translation), rotation }
+    }
+
+    /// A point of the child frame, from the parent's origin in parent axes.
+    pub fn point(&self, p: Vec3<'g>) -> Vec3<'g> {
+        self.translation + self.rotation.to_parent(p)
+    }
+}

@@ -1,0 +1,79 @@
+//! What the symbols of expressions stand for.
+
+use crate::expr::{Expr, Graph, Symbol};
+
+/// What a symbol of the expressions stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A parameter of the struct.
+    Parameter(usize),
+    /// An entry of `q`.
+    Configuration(usize),
+    /// An entry of `v`.
+    Velocity(usize),
+    /// An entry of `a`.
+    Acceleration(usize),
+    /// An entry of `tau`.
+    Force(usize),
+    /// An entry of `u`.
+    Input(usize),
+    /// Time.
+    Time,
+    /// An entry of an intermediate result that is handed to a generated function.
+    Given(usize),
+    /// A number that is computed from the parameters before.
+    Prepared(usize),
+    /// A component of what a joint transmits: six for each, a force and then a torque.
+    Reaction(usize),
+    /// A passive force that a function of its own computes, by velocity.
+    PassiveForce(usize),
+    /// A derivative of passive forces that a function of its own computes, in the order of its results.
+    PassiveDerivative(usize),
+}
+
+impl Quantity {
+    const SHIFT: u32 = 20;
+
+    /// The symbol that stands for it.
+    pub fn symbol(self) -> Symbol {
+        let (kind, index) = match self {
+            Quantity::Parameter(k) => (0, k),
+            Quantity::Configuration(k) => (1, k),
+            Quantity::Velocity(k) => (2, k),
+            Quantity::Acceleration(k) => (3, k),
+            Quantity::Force(k) => (4, k),
+            Quantity::Input(k) => (5, k),
+            Quantity::Time => (6, 0),
+            Quantity::Given(k) => (7, k),
+            Quantity::Prepared(k) => (8, k),
+            Quantity::Reaction(k) => (9, k),
+            Quantity::PassiveForce(k) => (10, k),
+            Quantity::PassiveDerivative(k) => (11, k),
+        };
+        Symbol((kind << Quantity::SHIFT) | index as u32)
+    }
+
+    /// What a symbol stands for.
+    pub fn of(symbol: Symbol) -> Quantity {
+        let index = (symbol.0 & ((1 << Quantity::SHIFT) - 1)) as usize;
+        match symbol.0 >> Quantity::SHIFT {
+            0 => Quantity::Parameter(index),
+            1 => Quantity::Configuration(index),
+            2 => Quantity::Velocity(index),
+            3 => Quantity::Acceleration(index),
+            4 => Quantity::Force(index),
+            5 => Quantity::Input(index),
+            6 => Quantity::Time,
+            7 => Quantity::Given(index),
+            8 => Quantity::Prepared(index),
+            9 => Quantity::Reaction(index),
+            10 => Quantity::PassiveForce(index),
+            _ => Quantity::PassiveDerivative(index),
+        }
+    }
+
+    /// It as an expression.
+    pub fn expr(self, graph: &Graph) -> Expr<'_> {
+        graph.symbol(self.symbol())
+    }
+}

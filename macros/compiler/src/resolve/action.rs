@@ -1,0 +1,500 @@
+//! Force elements and inputs: what they act on, and with which parameters.
+
+use super::build::Builder;
+use super::tree::GROUND;
+use super::world::{Level, Placed, PlacedKind, View};
+use crate::diag::{Diagnostics, Place, one_of};
+use crate::expr::Vec3;
+use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Load, Pose, Spring};
+use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
+
+/// What an element acts on.
+enum Target<'g> {
+    /// A coordinate; true if it is an angle, nothing if it may be either.
+    Coordinate(Coordinate, Option<bool>),
+    /// A point of a body, a particle, a named point.
+    Point(Placed<'g>),
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds one force element or input to the model.
+    pub fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
+        match (&action.kind, &action.on) {
+            (ActionKind::Force { along, value: None }, On::On(on)) => {
+                let target = self.target(on, cx);
+                self.add_input(action, on, target, along.as_ref(), false, cx);
+            }
+            (ActionKind::Torque { about, value: None }, On::On(on)) => {
+                let target = self.target(on, cx);
+                self.add_input(action, on, target, about.as_ref(), true, cx);
+            }
+            (ActionKind::Force { along, value: Some(value) }, On::On(on)) => {
+                self.add_value(on, along.as_ref(), value, false, cx);
+            }
+            (ActionKind::Torque { about, value: Some(value) }, On::On(on)) => {
+                self.add_value(on, about.as_ref(), value, true, cx);
+            }
+            (ActionKind::Gravity { constant, mu }, on) => {
+                self.add_gravity(action, on, constant.as_ref(), mu.as_ref(), cx);
+            }
+            (_, on) => self.add_element(action, on, cx),
+        }
+    }
+
+    /// What works on a length or an angle.
+    fn add_element(&mut self, action: &Action, on: &On, cx: &mut Diagnostics) {
+        let (stretch, angle) = match on {
+            On::On(e) => match self.target(e, cx) {
+                Some(Target::Coordinate(c, angle)) => {
+                    if self.add_plain(action, c, angle, cx) {
+                        return;
+                    }
+                    (self.coordinate_stretch(&c), angle)
+                }
+                Some(Target::Point(_)) => {
+                    let what = kind_word(&action.kind);
+                    cx.error(
+                        e.place.clone(),
+                        format!("{what} acts on the coordinate of a joint, but this is a body"),
+                    )
+                    .help("name a joint, as in `on = hinge`, or two points: `between = (first, second)`");
+                    return;
+                }
+                None => return,
+            },
+            On::Between(a, b) => match self.distance(a, b, cx) {
+                Some(stretch) => (stretch, Some(false)),
+                None => return,
+            },
+        };
+        match &action.kind {
+            ActionKind::Spring { law, free } => {
+                if let Some(free) = self.free_length(free, angle, cx) {
+                    self.add_spring(stretch, law, free, cx);
+                }
+            }
+            ActionKind::Dashpot { law } => self.add_dashpot(&stretch, law, cx),
+            ActionKind::Inerter { inertance } => self.add_inerter(&stretch, inertance, cx),
+            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
+                let all = [
+                    Some(coulomb),
+                    stiction.as_ref(),
+                    stribeck_speed.as_ref(),
+                    viscous.as_ref(),
+                    speed.as_ref(),
+                ];
+                self.add_friction(&stretch, all, on.place(), cx);
+            }
+            ActionKind::Attraction { strength } => {
+                if let Some(strength) = self.scope.scalar(strength, cx) {
+                    self.add_attraction(&stretch, strength);
+                }
+            }
+            ActionKind::Gravity { .. } | ActionKind::Force { .. } | ActionKind::Torque { .. } => {}
+        }
+    }
+
+    fn free_length(
+        &self,
+        given: &Option<(Expr, bool)>,
+        angle: Option<bool>,
+        cx: &mut Diagnostics,
+    ) -> Option<crate::expr::Expr<'g>> {
+        let Some((free, is_angle)) = given else { return Some(self.scope.graph.zero()) };
+        if let Some(angle) = angle.filter(|angle| angle != is_angle) {
+            let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+            cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+                .help(format!("write `{key} = …`"));
+            return None;
+        }
+        if *is_angle { self.scope.plane_angle(free, cx) } else { self.scope.scalar(free, cx) }
+    }
+
+    /// Linear springs and dashpots on a coordinate; false for everything else.
+    fn add_plain(
+        &mut self,
+        action: &Action,
+        on: Coordinate,
+        angle: Option<bool>,
+        cx: &mut Diagnostics,
+    ) -> bool {
+        match &action.kind {
+            ActionKind::Spring { law: Law::Linear(stiffness), free } => {
+                let stiffness = self.scope.scalar(stiffness, cx);
+                let free = self.free_length(free, angle, cx);
+                if let (Some(stiffness), Some(free)) = (stiffness, free) {
+                    self.model.springs.push(Spring { on, stiffness, free });
+                }
+            }
+            ActionKind::Dashpot { law: Law::Linear(written) } => {
+                let damping = self.scope.scalar(written, cx);
+                if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
+                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
+                }
+                if let Some(damping) = damping {
+                    self.model.dashpots.push(Dashpot { on, damping });
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Central gravity: between two bodies with a gravitational constant, or towards a point with a gravitational
+    /// parameter. It also turns a body with inertia.
+    fn add_gravity(
+        &mut self,
+        action: &Action,
+        on: &On,
+        constant: Option<&Expr>,
+        mu: Option<&Expr>,
+        cx: &mut Diagnostics,
+    ) {
+        let On::Between(a, b) = on else {
+            cx.error(on.place().clone(), "gravity acts between two bodies, or a point and a body").help(
+                "write `between = (sun, planet), constant = G` or `between = (ground, satellite), mu = mu`",
+            );
+            return;
+        };
+        let stretch = self.distance(a, b, cx);
+        // What has no place has no mass either, and that was told.
+        let is_placed = stretch.is_some();
+        let mut mass_of = |e: &Expr| if is_placed { self.mass_of(e, cx) } else { None };
+        match (constant, mu) {
+            (Some(constant), None) => {
+                let masses = [mass_of(a), mass_of(b)];
+                let constant = self.scope.scalar(constant, cx);
+                if let (Some(g), [Some(m1), Some(m2)], Some(stretch)) = (constant, masses, stretch) {
+                    self.add_attraction(&stretch, g * m1 * m2);
+                    self.turn_by_gravity(a, b, g * m1, cx);
+                    self.turn_by_gravity(b, a, g * m2, cx);
+                }
+            }
+            (None, Some(mu)) => {
+                let mass = mass_of(b);
+                let mu = self.scope.scalar(mu, cx);
+                if let (Some(mu), Some(m), Some(stretch)) = (mu, mass, stretch) {
+                    self.add_attraction(&stretch, mu * m);
+                    self.turn_by_gravity(a, b, mu, cx);
+                }
+            }
+            _ => {
+                cx.error(action.name.place.clone(), "gravity has a `constant` or a `mu`").help(
+                    "`constant` is that of two masses, `mu` the gravitational parameter of the first place",
+                );
+            }
+        }
+    }
+
+    fn turn_by_gravity(&mut self, a: &Expr, b: &Expr, mu: crate::expr::Expr<'g>, cx: &mut Diagnostics) {
+        let ExprKind::Name(name) = &b.kind else { return };
+        let Some(index) = self.held_index(name).filter(|k| *k < self.description.bodies.len()) else {
+            return;
+        };
+        if let (Some(center), Some(body)) = (self.scope.place(a, cx), self.scope.place(b, cx)) {
+            self.add_gravity_gradient(&body, &center, mu, index);
+        }
+    }
+
+    /// The mass of a body or particle; its centre of mass must be its origin.
+    fn mass_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<crate::expr::Expr<'g>> {
+        if let ExprKind::Name(name) = &e.kind {
+            if let Some(p) = self.description.particles.iter().find(|p| p.name.text == *name) {
+                return self.scope.scalar(&p.mass, cx);
+            }
+            if let Some(k) = self.description.bodies.iter().position(|b| b.name.text == *name) {
+                let (mass, com, _) = self.masses.get(k).copied().flatten()?;
+                if !com.is_zero() {
+                    cx.error(
+                        e.place.clone(),
+                        format!("gravity acts at the origin of `{name}`, which is not its centre of mass"),
+                    )
+                    .help("put the body's origin at its centre of mass");
+                    return None;
+                }
+                return Some(mass);
+            }
+        }
+        cx.error(e.place.clone(), "expected a body or a particle, which has mass")
+            .help("name one; of a point without mass, such as `ground`, `mu` says what it attracts with");
+        None
+    }
+
+    /// A force or torque with a value.
+    fn add_value(
+        &mut self,
+        on: &Expr,
+        direction: Option<&Expr>,
+        value: &Expr,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        if let Some(direction) = direction {
+            cx.error(direction.place.clone(), "a value has a direction of its own")
+                .help("write the direction into the value: `value = magnitude * x`");
+            return;
+        }
+        let place = match self.target(on, cx) {
+            Some(Target::Point(place)) => place,
+            Some(Target::Coordinate(c, angle)) => {
+                if let Some(angle) = angle.filter(|angle| *angle != torque) {
+                    wrong_kind(on, angle, cx);
+                    return;
+                }
+                let ground = Some((None, Pose::identity(self.scope.graph)));
+                let view = View::new(Level::Motion, ground);
+                if let Some(force) = self.scope.with_view(view, |scope| scope.scalar(value, cx)) {
+                    let rate = self.coordinate_stretch(&c).rate;
+                    self.model.loads.push(Load { rate, force, dissipative: false });
+                }
+                return;
+            }
+            None => return,
+        };
+        if torque && !turns(on, &place, cx) {
+            return;
+        }
+        let Some(link) = place.link else {
+            cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
+            return;
+        };
+        let view = View::new(Level::Motion, Some((place.link, place.pose.clone())));
+        let Some(terms) = self.scope.with_view(view, |scope| scope.terms(value, cx)) else { return };
+        let world = self.scope.world.borrow();
+        let zero = Vec3::zero(self.scope.graph);
+        let force = world.resolve(&terms, place.link, zero);
+        let twist = world.twists[link.0];
+        drop(world);
+        let rate = match torque {
+            true => twist.angular,
+            false => twist.linear + twist.angular.cross(place.pose.translation),
+        };
+        self.add_load(rate, force);
+    }
+
+    fn add_input(
+        &mut self,
+        action: &Action,
+        on: &Expr,
+        target: Option<Target<'g>>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        let Some(target) = target else { return };
+        let input = match target {
+            Target::Coordinate(_, Some(angle)) if angle != torque => return wrong_kind(on, angle, cx),
+            Target::Coordinate(c, _) => {
+                if let Some(direction) = direction {
+                    cx.error(direction.place.clone(), "the joint itself gives the direction")
+                        .help("remove this argument, or let it act on a body");
+                }
+                Input::Coordinate(c)
+            }
+            Target::Point(place) => match self.point_input(action, on, &place, direction, torque, cx) {
+                Some(input) => input,
+                None => return,
+            },
+        };
+        self.set_input(&action.name.text, input);
+    }
+
+    /// Puts an input at its place in the order of declaration.
+    fn set_input(&mut self, name: &str, input: Input<'g>) {
+        if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
+            *slot = input;
+        }
+    }
+
+    fn point_input(
+        &self,
+        action: &Action,
+        on: &Expr,
+        place: &Placed<'g>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<Input<'g>> {
+        let Some(direction) = direction else {
+            let key = if torque { "about" } else { "along" };
+            cx.error(action.name.place.clone(), format!("missing `{key}`"))
+                .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
+            return None;
+        };
+        if torque && !turns(on, place, cx) {
+            return None;
+        }
+        let view = View::new(Level::Constant, Some((place.link, place.pose.clone())));
+        let terms = self.scope.with_view(view, |scope| scope.terms(direction, cx))?;
+        let Some(link) = place.link else {
+            cx.error(
+                on.place.clone(),
+                "this body is fixed to the ground: nothing that acts on it has an effect",
+            );
+            return None;
+        };
+        let sum: Direction<'g> = terms;
+        if sum.iter().all(|(_, v)| v.is_zero()) {
+            cx.error(direction.place.clone(), "this direction is zero");
+            return None;
+        }
+        Some(match torque {
+            true => Input::Torque { link, about: sum },
+            false => Input::Force { link, point: place.pose.translation, along: sum },
+        })
+    }
+
+    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
+    fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
+        match &on.kind {
+            ExprKind::Name(name) => {
+                if self.description.coordinates.iter().any(|c| c.name.text == *name) {
+                    let world = self.scope.world.borrow();
+                    let found = world.coordinates.iter().find(|(known, ..)| known == name);
+                    return found.map(|(_, c, _)| Target::Coordinate(*c, None));
+                }
+                if let Some(joint) = self.joint_coordinates(name) {
+                    return match joint.as_slice() {
+                        [(_, c, angle)] => Some(Target::Coordinate(*c, Some(*angle))),
+                        _ => {
+                            let own: Vec<&str> = joint.iter().map(|(n, ..)| n.as_str()).collect();
+                            let list: Vec<String> = own.iter().map(|c| format!("`on = {c}`")).collect();
+                            if list.is_empty() {
+                                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
+                                    .help("a force or a torque can act on a body that it joins, with a direction");
+                            } else {
+                                cx.error(
+                                    on.place.clone(),
+                                    format!("`{name}` has {} coordinates", list.len()),
+                                )
+                                .help(format!("write {}", one_of(&list)));
+                            }
+                            None
+                        }
+                    };
+                }
+                if let Some(c) = self.free_coordinate(name) {
+                    return Some(Target::Coordinate(c, None));
+                }
+                if !self.placeable.contains(name) {
+                    self.report_target(name, &on.place, cx);
+                    return None;
+                }
+                self.scope.place(on, cx).map(Target::Point)
+            }
+            ExprKind::Field(inner, member) => {
+                let ExprKind::Name(joint) = &inner.kind else {
+                    cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
+                    return None;
+                };
+                let Some(coordinates) = self.joint_coordinates(joint) else {
+                    if self.held_index(joint).is_some() {
+                        cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
+                            .help(format!("write `on = {joint}` and give a direction, or name a joint"));
+                        return None;
+                    }
+                    if self.scope.is_news(joint, cx) {
+                        let known = self.joint_names();
+                        let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
+                        error.suggest(joint, known.iter().map(String::as_str));
+                        if error.is_bare() {
+                            error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
+                        }
+                    }
+                    return None;
+                };
+                let full = format!("{joint}.{}", member.text);
+                if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
+                    return Some(Target::Coordinate(*c, Some(*angle)));
+                }
+                let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
+                cx.error(
+                    member.place.clone(),
+                    format!("`{joint}` has no coordinate `{}` to act on", member.text),
+                )
+                .suggest(&full, own);
+                None
+            }
+            ExprKind::Method(inner, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+                let ExprKind::Name(name) = &inner.kind else {
+                    cx.error(on.place.clone(), "expected a body");
+                    return None;
+                };
+                if !self.placeable.contains(name) {
+                    self.report_target(name, &inner.place, cx);
+                    return None;
+                }
+                self.scope.place(on, cx).map(Target::Point)
+            }
+            _ => {
+                cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
+                    .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+                None
+            }
+        }
+    }
+
+    /// A coordinate of its own, by name.
+    fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
+        let free = self.description.coordinates.iter().any(|c| c.name.text == name);
+        let world = self.scope.world.borrow();
+        let known = world.coordinates.iter().find(|(known, ..)| free && known == name);
+        known.map(|(_, c, _)| *c)
+    }
+
+    /// Says why nothing can act on a name.
+    fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
+        if name == GROUND {
+            cx.error(place.clone(), "nothing that acts on the ground has an effect");
+        } else if self.scope.what(name) == Some("a joint") {
+            cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
+                .help(format!("write `on = {name}`, or name a point of a body"));
+        } else if let Some(what) = self.scope.what(name) {
+            cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
+                .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+        } else {
+            let mut known = self.joint_names();
+            known.extend(self.placeable.iter().cloned());
+            known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
+            if !self.scope.is_news(name, cx) {
+                return;
+            }
+            let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));
+            error.suggest(name, known.iter().map(String::as_str));
+            if error.is_bare() {
+                error.help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+            }
+        }
+    }
+}
+
+/// Reports a torque on a particle or a point, which has nothing to turn.
+fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+    let ExprKind::Name(name) = &on.kind else { return true };
+    if place.kind == PlacedKind::Point {
+        cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
+            .help("let it act on a body, or write a `Force`");
+        return false;
+    }
+    true
+}
+
+fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+    let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
+    cx.error(on.place.clone(), format!("this coordinate is {is}"))
+        .help(format!("what acts on it is a {other}"));
+}
+
+/// The word of an element with its article.
+fn kind_word(kind: &ActionKind) -> &'static str {
+    match kind {
+        ActionKind::Spring { .. } => "a Spring",
+        ActionKind::Dashpot { .. } => "a Dashpot",
+        ActionKind::Inerter { .. } => "an Inerter",
+        ActionKind::Friction { .. } => "a Friction",
+        ActionKind::Gravity { .. } => "a Gravity",
+        ActionKind::Attraction { .. } => "an Attraction",
+        ActionKind::Force { .. } => "a Force",
+        ActionKind::Torque { .. } => "a Torque",
+    }
+}

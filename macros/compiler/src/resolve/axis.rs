@@ -1,0 +1,87 @@
+//! Directions: unit length is checked, and turning axes are brought onto coordinate axes where numbers allow.
+
+use super::expression::Scope;
+use crate::diag::{Diagnostics, Place};
+use crate::expr::sample::always;
+use crate::expr::{Graph, Mat3, Rotation, Vec3};
+use crate::syntax;
+
+impl<'g> Scope<'_, 'g> {
+    /// A direction: a vector of unit length, or normalised if `normalise` says so.
+    pub fn unit_vector(&self, e: &syntax::Expr, normalise: bool, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
+        if let Some(n) = e.literal().filter(|n| *n != 0.0) {
+            let sign = if n < 0.0 { "-" } else { "" };
+            cx.error(e.place.clone(), "expected a direction, found a number")
+                .help(format!("an axis is `{sign}x`, `{sign}y` or `{sign}z`, or a vector of unit length"));
+            return None;
+        }
+        let v = self.own_vector(e, cx)?;
+        let v = v.values().map_or(v, |n| Vec3::numbers(self.graph, n));
+        let squared = v.dot(v);
+        if v.is_zero() || always(squared, 0.0) {
+            cx.error(e.place.clone(), "this axis has no direction: it is zero")
+                .help("write `x`, `y`, `z` or another vector of unit length");
+            return None;
+        }
+        if always(squared, 1.0) {
+            return Some(v);
+        }
+        if normalise && let Some(n) = v.values() {
+            return Some(Vec3::numbers(self.graph, normalised(n)));
+        }
+        let diagnostic = cx.error(e.place.clone(), "this axis is not of unit length");
+        match v.values() {
+            Some(n) => diagnostic.help(format!("its length is {}; write `unit(…)` around it", length(n))),
+            None => diagnostic.help("write `unit(…)` around it"),
+        };
+        None
+    }
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v[0].hypot(v[1]).hypot(v[2])
+}
+
+/// A vector divided by its length; components that are exactly ±1 stay so.
+fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let norm = length(v);
+    v.map(|c| c / norm)
+}
+
+/// True if numbers form a rotation matrix; matrices of parameters are sampled.
+pub fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+    let product = m.transpose() * *m;
+    let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));
+    let orthogonal = (0..3).all(|i| (0..3).all(|j| always(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
+    if orthogonal && always(determinant, 1.0) {
+        return true;
+    }
+    cx.error(place.clone(), "this matrix is not a rotation")
+        .help("its columns are three orthogonal unit vectors that form a right-handed frame");
+    false
+}
+
+/// For a numeric axis off the coordinate axes: the coordinate axis nearest to it and the rotation that takes that one
+/// to it. Then the joint turns about the coordinate axis, which is cheap, and the rotation is a constant.
+pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
+    let identity = Rotation::identity(graph);
+    let Some(n) = axis.values() else {
+        return (axis, identity);
+    };
+    let k = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
+    let mut near = [0.0; 3];
+    near[k] = n[k].signum();
+    if near == n {
+        return (axis, identity);
+    }
+    // R = 1 + [w]× + [w]×² / (1 + c), w = near × n, c = near · n.
+    let w =
+        [near[1] * n[2] - near[2] * n[1], near[2] * n[0] - near[0] * n[2], near[0] * n[1] - near[1] * n[0]];
+    let c = near[k] * n[k];
+    let skew = [[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]];
+    let matrix = Mat3::from_fn(|i, j| {
+        let square: f64 = (0..3).map(|l| skew[i][l] * skew[l][j]).sum();
+        graph.num(f64::from(u8::from(i == j)) + skew[i][j] + square / (1.0 + c))
+    });
+    (Vec3::numbers(graph, near), Rotation::from_matrix(matrix))
+}

@@ -1,0 +1,210 @@
+//! Loops that are solved in closed form: a Pin closes a loop in a plane between two bodies that are held by Pins, or by a
+//! Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of two circles, or of a
+//! circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI); `branch` says which of two.
+
+use super::build::Builder;
+use super::constraint::perpendicular;
+use super::joint::Elementary;
+use super::reaction::OPEN;
+use super::tree::GROUND;
+use super::world::{Placed, PlacedKind};
+use crate::diag::Diagnostics;
+use crate::expr::replace::replace_all;
+use crate::expr::sample::always;
+use crate::expr::{Expr, Rotation, Vec3};
+use crate::kinematics::change_axes;
+use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
+use crate::syntax::{Description, Endpoint, Joint, JointKind};
+
+/// A loop with the joints that are solved for.
+pub struct Embedded {
+    /// The joint that closes it.
+    pub closing: usize,
+    /// The joints that hold the parent and the child of it.
+    pub sides: [usize; 2],
+}
+
+/// A side of a loop where its joint is at zero, in the axes of the first side's joint.
+struct Side<'g> {
+    /// Origin of the joint, from that of the first.
+    base: Vec3<'g>,
+    /// The point that the loop closes in, from the origin.
+    point: Vec3<'g>,
+    /// Direction of a slide; none for a Pin.
+    slide: Option<Vec3<'g>>,
+}
+
+const HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
+
+/// The loops whose joints name a branch.
+pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Embedded> {
+    let mut found: Vec<Embedded> = Vec::new();
+    for (j, joint) in d.joints.iter().enumerate() {
+        let Some(branch) = &joint.branch else { continue };
+        if !closing[j] {
+            cx.error(branch.place.clone(), "this joint closes no loop: it has no branch")
+                .help("a joint closes a loop where its child is held by an earlier joint");
+            continue;
+        }
+        let holder = |end: &Endpoint| {
+            let holds = |(k, other): &(usize, &Joint)| {
+                !closing[*k] && other.child.body.text == end.body.text && end.body.text != GROUND
+            };
+            d.joints.iter().enumerate().find(holds).map(|(k, _)| k)
+        };
+        let taken = |k: usize| found.iter().any(|e| e.sides.contains(&k));
+        let solved = |k: &usize| {
+            matches!(d.joints[*k].kind, JointKind::Pin | JointKind::Sleeve)
+                && d.joints[*k].mimic.is_none()
+                && !taken(*k)
+        };
+        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(solved));
+        let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
+        match (joint.kind, sides) {
+            (JointKind::Pin, [Some(a), Some(b)]) if a != b && pins > 0 => {
+                found.push(Embedded { closing: j, sides: [a, b] });
+            }
+            _ => {
+                cx.error(branch.place.clone(), "this loop is not solved in closed form").help(HELP);
+            }
+        }
+    }
+    found
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// The loop that solves for a joint.
+    pub fn embedding(&self, j: usize) -> Option<&Embedded> {
+        self.embedded.iter().find(|e| e.sides.contains(&j))
+    }
+
+    /// Makes known which motions of which joints are solved for.
+    pub fn remember_solved(&mut self, cx: &mut Diagnostics) {
+        let side = |j: &usize| {
+            let joint = &self.description.joints[*j];
+            let (_, axis) = self.joint_frame(*j, cx)?;
+            Some(SolvedSide { joint: *j, turns: joint.kind == JointKind::Pin, axis })
+        };
+        self.model.solved = self.embedded.iter().flat_map(|e| e.sides.iter()).map_while(side).collect();
+    }
+
+    /// The child's joint frame in the parent's frame: the joint at its solution.
+    pub fn embedded_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
+        let Embedded { closing, sides } = self.embedding(j)?;
+        let joint = &self.description.joints[*closing];
+        let branch = self.scope.scalar(joint.branch.as_ref()?, cx)?;
+        let place = joint.branch.as_ref().map_or(&joint.name.place, |b| &b.place);
+        if !branch.value().is_some_and(|b| b.abs() == 1.0) {
+            cx.error(place.clone(), "unknown branch").help("write `branch = 1` or `branch = -1`");
+            return None;
+        }
+        // The first side is a Pin; its joint's axes are those of all that follows.
+        let pin = usize::from(self.description.joints[sides[0]].kind != JointKind::Pin);
+        let (first, second) = (sides[pin], sides[1 - pin]);
+        let (home, axis) = self.joint_frame(first, cx)?;
+        let ends = [&joint.parent, &joint.child];
+        let a = self.side(first, ends[pin], &home, cx)?;
+        let b = self.side(second, ends[1 - pin], &home, cx)?;
+        let (away, other) = self.joint_frame(second, cx)?;
+        let normal = self.seen_from(&home, away.link, away.pose.rotation.to_parent(other));
+        let still = |e: Expr<'g>| always(e, 0.0);
+        let in_plane = match b.slide {
+            None => normal.cross(axis).0.iter().all(|e| still(*e)),
+            Some(slide) => still(slide.dot(axis)),
+        };
+        if !in_plane || !still((b.base + b.point - a.point).dot(axis)) {
+            cx.error(place.clone(), "this loop does not lie in one plane").help(HELP);
+            return None;
+        }
+        let [(_, e1), (_, e2)] = perpendicular(axis);
+        let flat = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
+        let meeting = meeting(&a, &b, branch, &flat);
+        if j == first {
+            let angle = turned(flat(a.point), meeting);
+            return Some(self.turn(axis, angle));
+        }
+        let reached = e1 * meeting[0] + e2 * meeting[1] - b.base;
+        Some(match b.slide {
+            // In the axes of the second joint, a slide by what is missing.
+            Some(slide) => {
+                let length = (reached - b.point).dot(slide);
+                Pose { rotation: Rotation::identity(self.scope.graph), translation: other * length }
+            }
+            None => {
+                let sense = normal.dot(axis);
+                self.turn(other, turned(flat(b.point), flat(reached)) * sense)
+            }
+        })
+    }
+
+    fn turn(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
+        Pose { rotation: Rotation::eigenaxis(axis, angle), translation: Vec3::zero(self.scope.graph) }
+    }
+
+    /// A joint's frame on its parent, and its axis there.
+    fn joint_frame(&self, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
+        let joint = &self.description.joints[j];
+        let (link, pose) = self.joint_parent(&joint.parent.body, cx)?;
+        let pose = pose.then(&self.endpoint(&joint.parent, cx)?);
+        let axis = match self.scope.motions(joint, cx)?.first()? {
+            Elementary::Turn(axis) | Elementary::Slide(axis) => *axis,
+            _ => return None,
+        };
+        Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
+    }
+
+    fn side(&self, j: usize, end: &Endpoint, home: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
+        let joint = &self.description.joints[j];
+        let (own, axis) = self.joint_frame(j, cx)?;
+        let on_child = self.endpoint(&joint.child, cx)?;
+        let closing = self.endpoint(end, cx)?.translation;
+        let point = on_child.inverse().point(closing);
+        let out = |v| self.seen_from(home, own.link, own.pose.rotation.to_parent(v));
+        let terms = self.scope.world.borrow().between(&own, home);
+        let zero = Vec3::zero(self.scope.graph);
+        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(home, *link, *v));
+        let slide = (joint.kind == JointKind::Sleeve).then(|| out(axis));
+        Some(Side { base, point: out(point), slide })
+    }
+
+    /// A vector in the axes of a link, in those of a frame. Joints that are opened count as closed: the solution is that of
+    /// the mechanism itself.
+    fn seen_from(&self, home: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
+        let v = change_axes(&self.scope.world.borrow().joints, v, link, home.link);
+        let v = home.pose.rotation.to_child(v);
+        let Some((joints, _)) = self.opening else { return v };
+        let own = self.model.nq() - OPEN * joints.len();
+        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);
+        let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
+        closed.try_into().map_or(v, Vec3)
+    }
+}
+
+/// Where both sides meet, in the plane, from the origin of the first.
+fn meeting<'g>(
+    a: &Side<'g>,
+    b: &Side<'g>,
+    branch: Expr<'g>,
+    flat: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
+) -> [Expr<'g>; 2] {
+    let square = |v: [Expr<'g>; 2]| v[0].square() + v[1].square();
+    let reach = square(flat(a.point));
+    if let Some(slide) = b.slide {
+        // The line w + s x, |w + s x| = |a|.
+        let (w, s) = (flat(b.base + b.point), flat(slide));
+        let along = w[0] * s[0] + w[1] * s[1];
+        let x = branch * (along.square() - square(w) + reach).sqrt() - along;
+        return [w[0] + s[0] * x, w[1] + s[1] * x];
+    }
+    // On the line between the origins by `part` of it, and across by `height`.
+    let d = flat(b.base);
+    let distance = square(d);
+    let part = (distance + reach - square(flat(b.point))) * 0.5 / distance;
+    let height = branch * (reach / distance - part.square()).sqrt();
+    [d[0] * part - d[1] * height, d[1] * part + d[0] * height]
+}
+
+/// The angle from one direction to another.
+fn turned<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
+    (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1])
+}

@@ -1,0 +1,70 @@
+//! A cone that rolls on a plane, on a cone or inside of one: they touch along a line. That none of its points slips says
+//! that the apexes stay together and that the bodies turn relative to each other about the line (Poinsot's rolling
+//! cones).
+//!
+//! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α` inside, `α + β`
+//! outside), the line lies in the plane of the axes at the angle `α` from `a`, and `± (b cos α − a cos β) / sin δ` is
+//! normal to both surfaces there. A plane is a funnel with the half angle `π/2`.
+
+use super::Pair;
+use super::surface::Form;
+use crate::diag::Diagnostics;
+use crate::expr::Vec3;
+use crate::mechanism::Measure;
+use crate::resolve::build::Builder;
+use crate::resolve::constraint::perpendicular;
+use crate::syntax;
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the rows of a pair whose first surface is a cone.
+    pub(super) fn roll_cone(
+        &mut self,
+        constraint: &syntax::Constraint,
+        pair: &Pair<'g>,
+        cx: &mut Diagnostics,
+    ) {
+        let g = self.scope.graph;
+        let Form::Cone(half, axis) = pair.a.form else { return };
+        let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
+            Form::Plane(n) => (g.one(), g.zero(), n, true),
+            Form::Cone(half, n) => (half.sin(), half.cos(), n, false),
+            Form::Funnel(half, n) => (half.sin(), half.cos(), n, true),
+            _ => return,
+        };
+        let (sine_a, cosine_a) = (half.sin(), half.cos());
+        let side = g.num(if inside { 1.0 } else { -1.0 });
+        let sine = sine_b * cosine_a - side * cosine_b * sine_a;
+        if sine.value().is_some_and(|n| n <= 0.0) {
+            cx.error(constraint.value.place.clone(), "this cone does not fit into the funnel")
+                .help("give the funnel a larger half angle than the cone");
+            return;
+        }
+        let (a, b) = (self.of_first(pair, axis), self.of_second(pair, axis_b));
+        // Rows of the apex: three places, or one place and two velocities.
+        let apex = match pair.b.form {
+            Form::Plane(n) => {
+                let [first, second] = perpendicular(n);
+                [("normal", n, true), (first.0, first.1, false), (second.0, second.1, false)]
+            }
+            _ => [0, 1, 2].map(|k| (["x", "y", "z"][k], Vec3::axis(g, k), true)),
+        };
+        let (away, slip) = (pair.center.value - pair.base.value, self.slip(pair, Vec3::zero(g)));
+        let (name, place) = (&constraint.name.text, &constraint.name.place);
+        for (word, e, is_place) in apex {
+            let e = self.of_second(pair, e).value;
+            let gap = is_place.then(|| e.dot(away));
+            self.push_rate((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip));
+        }
+        self.group += 1;
+        // The angle by which the wide end is lifted, to first order.
+        let cosine = cosine_b * cosine_a + side * sine_b * sine_a;
+        let lifted = side / sine;
+        let tilt = (a.value.dot(b.value) - cosine) * lifted;
+        let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
+        self.push_rate((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
+        let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
+        let [w_a, w_b] = self.spins(pair);
+        let spin = normal.dot(w_a - w_b);
+        self.push_rate((format!("{name}.spin"), place), Measure::Angle, None, spin);
+    }
+}

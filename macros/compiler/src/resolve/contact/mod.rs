@@ -1,0 +1,284 @@
+//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is found in closed
+//! form: where a convex body touches a plane is its point farthest along the normal (its support function), a sphere
+//! touches along the normal through its centre, and cones touch along a line. On a surface given by its points two
+//! coordinates say where.
+
+mod cones;
+mod contact_point;
+mod slipping;
+mod surface;
+
+pub use slipping::check_pressed;
+pub use surface::FORMS;
+
+use super::build::Builder;
+use super::constraint::{Moving, Relative, perpendicular};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Function, Vec3};
+use crate::kinematics::time_derivative;
+use crate::mechanism::{FrictionTerm, Measure};
+use crate::syntax::{self, ExprKind};
+use surface::{Form, Surface};
+
+/// A contact at a point, in the axes of the link that carries both.
+struct Contact<'g> {
+    /// Distance of the surfaces.
+    gap: Expr<'g>,
+    /// The point of the first body, from its centre.
+    point: Vec3<'g>,
+    /// Normal and two tangents, with their names.
+    axes: [(&'static str, Vec3<'g>); 3],
+    /// Distances that are zero where the coordinates of a surface are those of the contact.
+    conditions: Vec<(&'static str, Expr<'g>)>,
+}
+
+/// Two surfaces with the motions of their bodies, relative to the link that carries both, in its axes.
+struct Pair<'g> {
+    a: Surface<'g>,
+    b: Surface<'g>,
+    on_a: Relative<'g>,
+    on_b: Relative<'g>,
+    /// The place of the first surface.
+    center: Moving<'g>,
+    /// The place of the second one.
+    base: Moving<'g>,
+}
+
+const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the rows of a rolling pair.
+    pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        let Some(pair) = self.pair(constraint, cx) else { return };
+        if let Form::Cone(..) = pair.a.form {
+            self.roll_cone(constraint, &pair, cx);
+            return;
+        }
+        let Some(contact) = self.contact(&pair) else { return };
+        let slip = self.slip(&pair, contact.point);
+        self.hold(constraint, &contact, slip, Vec::new());
+        let [_, tangents @ ..] = contact.axes;
+        for (word, e) in tangents {
+            let name = format!("{}.{word}", constraint.name.text);
+            self.push_rate((name, &constraint.name.place), Measure::Length, None, e.dot(slip));
+        }
+    }
+
+    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal force, and the
+    /// place of the contact on a surface that is given by its points.
+    fn hold(
+        &mut self,
+        constraint: &syntax::Constraint,
+        contact: &Contact<'g>,
+        slip: Vec3<'g>,
+        friction: Vec<FrictionTerm<'g>>,
+    ) {
+        let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
+        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as well.
+        let rate = match contact.conditions.is_empty() {
+            true => normal.dot(slip),
+            false => time_derivative(self.model.space(), contact.gap),
+        };
+        let name = |word| (format!("{}.{word}", constraint.name.text), place);
+        self.push_rate(name(word), Measure::Length, Some(contact.gap), rate);
+        if let Some(row) = self.model.constraints.last_mut() {
+            row.friction = friction;
+        }
+        for (word, distance) in &contact.conditions {
+            let rate = time_derivative(self.model.space(), *distance);
+            self.push_rate(name(word), Measure::Length, Some(*distance), rate);
+            if let Some(row) = self.model.constraints.last_mut() {
+                row.determines = true;
+            }
+        }
+    }
+
+    /// Reads a pair, for its mistakes alone.
+    pub fn check_pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        let _ = self.pair(constraint, cx);
+    }
+
+    /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
+    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
+        let (e, known) = (&constraint.value, constraint.kind.verb());
+        let example = format!("write `{known}(disk.circle(radius, y), ground.plane(z))`");
+        let (first, second) = match &e.kind {
+            ExprKind::Call(word, pair) if word.text == known && pair.len() == 2 => (&pair[0], &pair[1]),
+            _ => {
+                cx.error(e.place.clone(), format!("expected a pair that {known}")).help(example);
+                return None;
+            }
+        };
+        let a = self.surface(first, &example, cx);
+        // Two bodies in the place of two surfaces are one mistake.
+        if a.is_none() && !matches!(second.kind, ExprKind::Method(..)) {
+            return None;
+        }
+        let b = self.surface(second, &example, cx);
+        let (mut a, mut b) = (a?, b?);
+        if a.home.link == b.home.link {
+            cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
+                .help("surfaces touch that belong to bodies which move relative to each other");
+            return None;
+        }
+        if !a.form.rolls_on(&b.form) {
+            std::mem::swap(&mut a, &mut b);
+        }
+        if !a.form.rolls_on(&b.form) {
+            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            return None;
+        }
+        let (on_a, on_b) = (self.relative(a.home.link, b.home.link), self.relative(b.home.link, a.home.link));
+        let center = self.point(&on_a, a.home.pose.translation);
+        let base = self.point(&on_b, b.home.pose.translation);
+        Some(Pair { a, b, on_a, on_b, center, base })
+    }
+
+    /// A direction of the first body.
+    fn of_first(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+        self.direction(&pair.on_a, pair.a.home.pose.rotation.to_parent(v))
+    }
+
+    /// A direction of the second body.
+    fn of_second(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+        self.direction(&pair.on_b, pair.b.home.pose.rotation.to_parent(v))
+    }
+
+    /// Velocity of the first body relative to the second one, at a point from the first one's centre.
+    fn slip(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Vec3<'g> {
+        let Pair { center, base, .. } = pair;
+        let [w_a, w_b] = self.spins(pair);
+        let arm = center.value + point - base.value;
+        center.rate + w_a.cross(point) - (base.rate + w_b.cross(arm))
+    }
+
+    /// Angular velocities.
+    fn spins(&self, pair: &Pair<'g>) -> [Vec3<'g>; 2] {
+        [&pair.on_a, &pair.on_b].map(|on| self.direction_out(on, on.twist.angular))
+    }
+
+    /// Where a pair touches at a point; `None` for pairs that touch along a line.
+    fn contact(&self, pair: &Pair<'g>) -> Option<Contact<'g>> {
+        let turned_a = |v| self.of_first(pair, v).value;
+        let turned_b = |v| self.of_second(pair, v).value;
+        let c = pair.center.value - pair.base.value;
+        match (&pair.a.form, &pair.b.form) {
+            (_, Form::Sheet(sheet)) => self.contact_point(pair, sheet),
+            (a, Form::Plane(n)) => {
+                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
+                let normal = turned_b(*n);
+                let point = -farthest(a, normal, &turned_a)?;
+                let gap = normal.dot(c + point);
+                Some(Contact {
+                    gap,
+                    point,
+                    axes: [("normal", normal), (first, e1), (second, e2)],
+                    conditions: Vec::new(),
+                })
+            }
+            (Form::Sphere(radius), b) => sphere_contact(*radius, b, c, &turned_b),
+            _ => None,
+        }
+    }
+}
+
+impl Form<'_> {
+    /// True for pairs whose contact is known.
+    fn rolls_on(&self, b: &Form<'_>) -> bool {
+        match b {
+            Form::Plane(_) => {
+                matches!(
+                    self,
+                    Form::Circle(..)
+                        | Form::Torus(..)
+                        | Form::Sphere(_)
+                        | Form::Ellipsoid(_)
+                        | Form::Cone(..)
+                )
+            }
+            Form::Sphere(_) | Form::Bowl(_) | Form::Cylinder(..) | Form::Tube(..) => {
+                matches!(self, Form::Sphere(_))
+            }
+            Form::Sheet(_) => {
+                matches!(self, Form::Circle(..) | Form::Torus(..) | Form::Sphere(_) | Form::Ellipsoid(_))
+            }
+            Form::Cone(..) | Form::Funnel(..) => matches!(self, Form::Sphere(_) | Form::Cone(..)),
+            _ => false,
+        }
+    }
+}
+
+/// The contact of a sphere with its centre at `c` from the centre or apex of the other surface.
+fn sphere_contact<'g>(
+    radius: Expr<'g>,
+    b: &Form<'g>,
+    c: Vec3<'g>,
+    turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> Option<Contact<'g>> {
+    let inside = matches!(b, Form::Bowl(_) | Form::Tube(..) | Form::Funnel(..));
+    let side = |x: Expr<'g>| if inside { -x } else { x };
+    let (normal, distance, tangents) = match b {
+        Form::Sphere(r) | Form::Bowl(r) => {
+            let size = c.norm();
+            let normal = c.map(|x| side(x / size));
+            let (first, second) = tangents_of(normal);
+            (normal, side(size - *r), [("first", first), ("second", second)])
+        }
+        Form::Cylinder(r, u) | Form::Tube(r, u) => {
+            let axis = turned_b(*u);
+            let outward = c - axis * axis.dot(c);
+            let size = outward.norm();
+            let normal = outward.map(|x| side(x / size));
+            (normal, side(size - *r), [("along", axis), ("around", normal.cross(axis))])
+        }
+        Form::Cone(half, u) | Form::Funnel(half, u) => {
+            let (sine, cosine) = (half.sin(), half.cos());
+            let axis = turned_b(*u);
+            let height = axis.dot(c);
+            let outward = c - axis * height;
+            let size = outward.norm();
+            let radial = outward.map(|x| x / size);
+            let normal = (radial * cosine - axis * sine).map(side);
+            let along = radial * sine + axis * cosine;
+            let distance = side(size * cosine - height * sine);
+            (normal, distance, [("along", along), ("around", normal.cross(along))])
+        }
+        _ => return None,
+    };
+    let [first, second] = tangents;
+    let axes = [("normal", normal), first, second];
+    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
+}
+
+/// The point of a convex body that is farthest along `n`, from its centre.
+fn farthest<'g>(form: &Form<'g>, n: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> Option<Vec3<'g>> {
+    let across = |axis: Vec3<'g>| {
+        let a = turned(axis);
+        let cosine = a.dot(n);
+        let sine = (cosine.num(1.0) - cosine.square()).sqrt();
+        (n - a * cosine).map(|x| x / sine)
+    };
+    Some(match form {
+        Form::Circle(r, axis) => across(*axis) * *r,
+        Form::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
+        Form::Sphere(r) => n * *r,
+        Form::Ellipsoid(half) => {
+            let g = n[0].graph();
+            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned(Vec3::axis(g, k)));
+            let parts: [Expr<'g>; 3] = std::array::from_fn(|k| half[k] * axes[k].dot(n));
+            let size = Vec3(parts).norm();
+            (0..3).fold(Vec3::zero(g), |sum, k| sum + axes[k] * (half[k] * parts[k] / size))
+        }
+        _ => return None,
+    })
+}
+
+/// Two tangents for a normal of any direction (Duff et al., *Building an orthonormal basis, revisited*, 2017).
+fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
+    let [x, y, z] = n.0;
+    let sign = z.call(Function::Signum);
+    let a = -((sign + z).num(1.0) / (sign + z));
+    let b = x * y * a;
+    let one = z.num(1.0);
+    (Vec3([one + sign * x * x * a, sign * b, -(sign * x)]), Vec3([b, sign + y * y * a, -y]))
+}

@@ -1,0 +1,66 @@
+//! Surfaces that touch and slip, with Coulomb's friction: `slips(surface, surface), friction = μ, speed = v₀`. The bodies
+//! are held at their distance, by the normal force `λ`; in the tangent plane acts `−μ |λ| s / √(|s|² + v₀²)` at the slip
+//! `s`, Coulomb's law made smooth around rest.
+
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::mechanism::{Constraint, FrictionTerm, Pose};
+use crate::resolve::build::Builder;
+use crate::resolve::world::{Level, View};
+use crate::syntax;
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the row of a slipping pair.
+    pub fn add_slipping(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+        let found = (self.pair(constraint, cx), self.friction(constraint, cx));
+        let (Some(pair), Some((coefficient, speed))) = found else { return };
+        let Some(contact) = self.contact(&pair) else {
+            cx.error(constraint.value.place.clone(), "these surfaces touch along a line").help(
+                "where on it friction acts does not follow: let a surface slip that touches at a point",
+            );
+            return;
+        };
+        let slip = self.slip(&pair, contact.point);
+        let [_, tangents @ ..] = contact.axes;
+        let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
+        let size = rates.iter().fold(speed.square(), |sum, rate| sum + rate.square()).sqrt();
+        let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
+        let friction =
+            moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
+        self.hold(constraint, &contact, slip, friction);
+    }
+
+    /// Coefficient of friction and speed of the regularisation.
+    fn friction(
+        &self,
+        constraint: &syntax::Constraint,
+        cx: &mut Diagnostics,
+    ) -> Option<(Expr<'g>, Expr<'g>)> {
+        let given = constraint.friction.as_ref()?;
+        let ground = Some((None, Pose::identity(self.scope.graph)));
+        let coefficient = self
+            .scope
+            .with_view(View::new(Level::Placement, ground), |s| s.scalar(&given.coefficient, cx))?;
+        if let Some(n) = coefficient.value().filter(|n| *n < 0.0) {
+            let place = given.coefficient.place.clone();
+            cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"));
+        }
+        let Some(written) = &given.speed else { return Some((coefficient, self.model.friction_speed)) };
+        let speed = self.scope.with_view(View::new(Level::Constant, None), |s| s.scalar(written, cx))?;
+        if let Some(n) = speed.value().filter(|n| *n <= 0.0) {
+            cx.error(written.place.clone(), format!("this speed must be positive, but it is {n}")).help(
+                "around it Coulomb's law is smooth; the smaller it is, the stiffer is the motion at rest",
+            );
+        }
+        Some((coefficient, speed))
+    }
+}
+
+/// Reports slipping contacts whose normal force does not follow from the motion: with their rows goes their friction.
+pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
+    for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
+        cx.error(row.place.clone(), "the normal force of this contact does not follow from the motion").help(
+            "other constraints hold these bodies at their distance already: without it there is no friction",
+        );
+    }
+}

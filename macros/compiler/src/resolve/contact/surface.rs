@@ -1,0 +1,146 @@
+//! Surfaces of bodies, as contacts name them: `body.form(arguments)`.
+
+use crate::diag::{Diagnostics, all_of};
+use crate::expr::{Expr, Vec3};
+use crate::resolve::build::Builder;
+use crate::resolve::tree::GROUND;
+use crate::resolve::world::{Level, Placed, View};
+use crate::syntax::{self, ExprKind};
+use std::f64::consts::FRAC_PI_2;
+
+/// A surface of a body; vectors and lengths in body axes.
+pub enum Form<'g> {
+    /// The rim of a disk: radius, axis.
+    Circle(Expr<'g>, Vec3<'g>),
+    /// A tyre: radius of its centre line, radius of its section, axis.
+    Torus(Expr<'g>, Expr<'g>, Vec3<'g>),
+    /// Radius.
+    Sphere(Expr<'g>),
+    /// Semi-axes along the body's axes.
+    Ellipsoid([Expr<'g>; 3]),
+    /// Normal, towards what rolls on it.
+    Plane(Vec3<'g>),
+    /// The inside of a sphere: radius.
+    Bowl(Expr<'g>),
+    /// The outside of a cylinder: radius, axis.
+    Cylinder(Expr<'g>, Vec3<'g>),
+    /// The inside of a cylinder: radius, axis.
+    Tube(Expr<'g>, Vec3<'g>),
+    /// The outside of a cone: half angle, axis from the apex into the cone.
+    Cone(Expr<'g>, Vec3<'g>),
+    /// The inside of a cone: half angle, axis from the apex to the opening.
+    Funnel(Expr<'g>, Vec3<'g>),
+    /// A surface given by its points.
+    Sheet(Sheet<'g>),
+}
+
+/// Points of a surface as expressions of two coordinates, in body axes from its place.
+pub struct Sheet<'g> {
+    /// The point.
+    pub at: Vec3<'g>,
+    /// Its derivatives; their cross product points to what rolls.
+    pub tangents: [Vec3<'g>; 2],
+}
+
+/// A surface where it is.
+pub struct Surface<'g> {
+    /// Its centre, apex or a point of it.
+    pub home: Placed<'g>,
+    /// Its form.
+    pub form: Form<'g>,
+}
+
+/// The surfaces with their arguments.
+pub const FORMS: [(&str, &[&str]); 11] = [
+    ("circle", &["radius", "axis"]),
+    ("torus", &["radius", "tube_radius", "axis"]),
+    ("sphere", &["radius"]),
+    ("ellipsoid", &["a", "b", "c"]),
+    ("plane", &["normal"]),
+    ("bowl", &["radius"]),
+    ("cylinder", &["radius", "axis"]),
+    ("tube", &["radius", "axis"]),
+    ("cone", &["half_angle", "axis"]),
+    ("funnel", &["half_angle", "axis"]),
+    ("surface", &["u", "w", "point"]),
+];
+
+impl<'g> Builder<'_, 'g> {
+    /// `body.form(arguments)`; `example` is how a pair is written.
+    pub fn surface(&self, e: &syntax::Expr, example: &str, cx: &mut Diagnostics) -> Option<Surface<'g>> {
+        let ExprKind::Method(base, word, arguments) = &e.kind else {
+            let error = cx.error(e.place.clone(), "expected a surface");
+            match e.name() {
+                Some(GROUND) => error.help("write `ground.plane(z)`"),
+                Some(name) => {
+                    error.help(format!("write `{name}.circle(radius, y)`, `{name}.sphere(radius)`, …"))
+                }
+                None => error.help(example),
+            };
+            return None;
+        };
+        let Some((_, names)) = FORMS.iter().find(|(known, _)| *known == word.text) else {
+            let error = cx.error(word.place.clone(), format!("unknown surface `{}`", word.text));
+            error.suggest(&word.text, FORMS.iter().map(|(word, _)| *word));
+            if error.is_bare() {
+                let list: Vec<String> = FORMS.iter().map(|(word, _)| format!("`{word}`")).collect();
+                error.help(format!("the surfaces are {}", all_of(&list)));
+            }
+            return None;
+        };
+        let home = self.scope.place(base, cx);
+        if arguments.len() != names.len() {
+            let usage = format!("this surface is written `{}({})`", word.text, names.join(", "));
+            cx.error(word.place.clone(), usage)
+                .help("lengths are in m, angles in rad, axes in those of the body");
+            return None;
+        }
+        if let ("surface", [u, w, point]) = (word.text.as_str(), arguments.as_slice()) {
+            let home = home?;
+            let form = Form::Sheet(self.sheet(&home, [u, w, point], cx)?);
+            return Some(Surface { home, form });
+        }
+        let (mut numbers, mut axis) = (Vec::new(), None);
+        for (argument, name) in arguments.iter().zip(*names) {
+            let view = View::new(Level::Constant, None);
+            match *name {
+                "axis" | "normal" => {
+                    axis = self.scope.with_view(view, |s| s.unit_vector(argument, false, cx));
+                }
+                _ => {
+                    let value = self.scope.with_view(view, |s| s.scalar(argument, cx))?;
+                    check_size(name, argument, value, cx);
+                    numbers.push(value);
+                }
+            }
+        }
+        let form = match (word.text.as_str(), numbers.as_slice(), axis) {
+            ("circle", [r], Some(n)) => Form::Circle(*r, n),
+            ("torus", [r, tube], Some(n)) => Form::Torus(*r, *tube, n),
+            ("sphere", [r], _) => Form::Sphere(*r),
+            ("ellipsoid", [a, b, c], _) => Form::Ellipsoid([*a, *b, *c]),
+            ("plane", _, Some(n)) => Form::Plane(n),
+            ("bowl", [r], _) => Form::Bowl(*r),
+            ("cylinder", [r], Some(n)) => Form::Cylinder(*r, n),
+            ("tube", [r], Some(n)) => Form::Tube(*r, n),
+            ("cone", [angle], Some(n)) => Form::Cone(*angle, n),
+            ("funnel", [angle], Some(n)) => Form::Funnel(*angle, n),
+            _ => return None,
+        };
+        Some(Surface { home: home?, form })
+    }
+}
+
+/// Reports a length that is not positive, and a half angle that is not between zero and a right one.
+fn check_size(name: &str, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) {
+    let Some(n) = value.value() else { return };
+    if name == "half_angle" {
+        if n <= 0.0 || n >= FRAC_PI_2 {
+            cx.error(e.place.clone(), format!("this half angle is not between 0 and π/2: it is {n}"))
+                .help("it is the angle between the axis and the surface, rad");
+        }
+    } else if n <= 0.0 {
+        cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"))
+            .help("the axis and the side of a surface are said by its form");
+    }
+}

@@ -1,0 +1,314 @@
+//! Mass and inertia of bodies: solids, matrices, and whether a real body can have them.
+
+use super::expression::{Scope, Value};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::{Expr, Mat3, Sym3, Vec3};
+use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
+
+/// The solids with the names of their arguments.
+pub const SOLIDS: [(&str, &[&str]); 14] = [
+    ("rod", &["mass", "length", "axis"]),
+    ("ring", &["mass", "radius", "axis"]),
+    ("disk", &["mass", "radius", "axis"]),
+    ("cylinder", &["mass", "radius", "height", "axis"]),
+    ("tube", &["mass", "inner radius", "outer radius", "height", "axis"]),
+    ("cone", &["mass", "radius", "height", "axis"]),
+    ("capsule", &["mass", "radius", "height", "axis"]),
+    ("sphere", &["mass", "radius"]),
+    ("shell", &["mass", "radius"]),
+    ("cuboid", &["mass", "x length", "y length", "z length"]),
+    ("box", &["mass", "x length", "y length", "z length"]),
+    ("plate", &["mass", "x length", "y length"]),
+    ("ellipsoid", &["mass", "x radius", "y radius", "z radius"]),
+    ("diagonal", &["xx", "yy", "zz"]),
+];
+
+/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
+const NOTHING: f64 = 1e-18;
+
+/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten nanometres.
+const SMALLEST: f64 = 1e-16;
+
+/// Relative tolerance of the checks: published figures are rounded.
+const TOLERANCE: f64 = 1e-6;
+
+impl<'g> Scope<'_, 'g> {
+    /// An inertia about the centre of mass, in body axes.
+    pub fn inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        match &e.kind {
+            ExprKind::Number(0.0) => Some(Sym3::zero(self.graph)),
+            ExprKind::Array(_) => self.symmetric(e, cx),
+            ExprKind::Binary(BinaryOp::Add, a, b, _) => {
+                let (a, b) = (self.inertia(a, cx), self.inertia(b, cx));
+                Some(a? + b?)
+            }
+            ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
+                let (inertia, rotation) = (self.inertia(inner, cx), self.rotation(steps, cx));
+                Some(rotation?.sym_to_parent(inertia?))
+            }
+            ExprKind::Method(_, method, _) => {
+                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of an inertia", method.text))
+                    .suggest(&method.text, ["rotated"]);
+                None
+            }
+            ExprKind::Call(solid, arguments) => self.solid(solid, arguments, cx),
+            kind => {
+                let found = match kind {
+                    ExprKind::Tuple(_) => ", found a list",
+                    ExprKind::Number(_) => ", found a number",
+                    _ => "",
+                };
+                let error = cx.error(e.place.clone(), format!("expected an inertia{found}"));
+                match kind {
+                    ExprKind::Tuple(items) if items.len() == 3 => {
+                        let items: Vec<String> = items.iter().map(syntax::Expr::spelt).collect();
+                        error.help(format!("write `diagonal({})`", items.join(", ")));
+                    }
+                    ExprKind::Number(n) => {
+                        error.help(format!("write `diagonal({n}, {n}, {n})` for one moment about all axes"));
+                    }
+                    ExprKind::Binary(..) if e.parts().iter().any(|part| is_solid(part)) => {
+                        error.help("solids are added with `+`; twice a solid has twice the mass");
+                    }
+                    ExprKind::Binary(..) | ExprKind::Name(_) | ExprKind::Neg(_) => {
+                        error.help("write `diagonal(i, i, i)` for one moment `i` about all axes; in a plane only the one about its normal counts");
+                    }
+                    _ => {}
+                }
+                error.help(
+                    "write a solid such as `rod(m, l, y)` or `sphere(m, r)`, `diagonal(xx, yy, zz)`, or a 3×3 matrix",
+                );
+                None
+            }
+        }
+    }
+
+    fn symmetric(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        let m = self.matrix(e, cx)?;
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            if m.0[i][j] != m.0[j][i] {
+                cx.error(e.place.clone(), "an inertia matrix is symmetric").help(format!(
+                    "entries ({}, {}) and ({}, {}) differ",
+                    i + 1,
+                    j + 1,
+                    j + 1,
+                    i + 1
+                ));
+                return None;
+            }
+        }
+        Some(Sym3::from_upper(&m))
+    }
+
+    fn solid(&self, solid: &Name, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        let text = solid.text.as_str();
+        let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == text) else {
+            let known = SOLIDS.iter().map(|(name, _)| *name);
+            let known: Vec<&str> = known.collect();
+            let error = cx.error(solid.place.clone(), format!("unknown solid `{text}`"));
+            words::point(error, words::SOLIDS, text, &known);
+            let meant = words::meant(words::SOLIDS, text, &known);
+            if let Some((solid, names)) = SOLIDS.iter().find(|(name, _)| Some(*name) == meant) {
+                error.help(format!("it is written `{solid}({})`", names.join(", ")));
+            }
+            if error.is_bare() {
+                error.help("the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`");
+            }
+            return None;
+        };
+        if arguments.len() != names.len() {
+            cx.error(solid.place.clone(), format!("`{text}` takes {} arguments", names.len()))
+                .help(format!("write `{text}({})`", names.join(", ")));
+            return None;
+        }
+        let has_axis = names.last() == Some(&"axis");
+        if self.confused(solid, names, arguments, cx) {
+            return None;
+        }
+        let mut numbers = Vec::new();
+        let mut complete = true;
+        for argument in &arguments[..arguments.len() - usize::from(has_axis)] {
+            match self.scalar(argument, cx) {
+                Some(s) => {
+                    complete &= self.check_not_negative(s, argument, cx);
+                    numbers.push(s);
+                }
+                None => complete = false,
+            }
+        }
+        let axis = match arguments.last() {
+            Some(axis) if has_axis => Some(self.unit_vector(axis, false, cx)?),
+            _ => None,
+        };
+        complete.then(|| self.solid_inertia(text, &numbers, axis))
+    }
+
+    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely the
+    /// arguments stand in another order.
+    fn confused(
+        &self,
+        solid: &Name,
+        names: &[&str],
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> bool {
+        for (name, argument) in names.iter().zip(arguments) {
+            let mut silent = Diagnostics::unread();
+            let found = match (self.value(argument, &mut silent), *name == "axis") {
+                (Some(Value::Vector(_)), false) => "a vector",
+                (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
+                _ => continue,
+            };
+            cx.error(
+                argument.place.clone(),
+                format!("expected the {name} of the {}, found {found}", solid.text),
+            )
+            .help(format!("write `{}({})`", solid.text, names.join(", ")));
+            return true;
+        }
+        false
+    }
+
+    fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
+        match s.value() {
+            Some(n) if n < 0.0 => {
+                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"))
+                    .help("masses, sizes and moments are zero or more");
+                false
+            }
+            _ => true,
+        }
+    }
+
+    /// Moments of inertia of homogeneous solids about their centres of mass (any table of mechanics).
+    fn solid_inertia(&self, solid: &str, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
+        let g = self.graph;
+        let square = |k: usize| n[k].square();
+        let about = |axial: Expr<'g>, transverse: Expr<'g>| match axis {
+            Some(axis) => axisymmetric(axial, transverse, axis),
+            None => Sym3::scalar(axial),
+        };
+        let diagonal = |d: [Expr<'g>; 3]| Sym3 { diagonal: d, off: [g.zero(); 3] };
+        match solid {
+            "rod" => about(g.zero(), n[0] * square(1) * (1.0 / 12.0)),
+            "ring" => about(n[0] * square(1), n[0] * square(1) * 0.5),
+            "disk" => about(n[0] * square(1) * 0.5, n[0] * square(1) * 0.25),
+            "cylinder" => about(n[0] * square(1) * 0.5, n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0))),
+            "tube" => {
+                let radii = square(1) + square(2);
+                about(n[0] * radii * 0.5, n[0] * (radii * 0.25 + square(3) * (1.0 / 12.0)))
+            }
+            "cone" => about(n[0] * square(1) * 0.3, n[0] * (square(1) * 0.15 + square(2) * 0.0375)),
+            "capsule" => self.capsule(n, axis),
+            "sphere" => Sym3::scalar(n[0] * square(1) * 0.4),
+            "shell" => Sym3::scalar(n[0] * square(1) * (2.0 / 3.0)),
+            "cuboid" | "box" | "ellipsoid" => {
+                let factor = if solid == "ellipsoid" { 0.2 } else { 1.0 / 12.0 };
+                let m = n[0] * factor;
+                diagonal([
+                    m * (square(2) + square(3)),
+                    m * (square(1) + square(3)),
+                    m * (square(1) + square(2)),
+                ])
+            }
+            "plate" => {
+                let m = n[0] * (1.0 / 12.0);
+                diagonal([m * square(2), m * square(1), m * (square(1) + square(2))])
+            }
+            "diagonal" => diagonal([n[0], n[1], n[2]]),
+            _ => Sym3::zero(g),
+        }
+    }
+
+    /// A cylinder of the given height between two half balls.
+    fn capsule(&self, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
+        let (m, r, h) = (n[0], n[1], n[2]);
+        // Volumes over π r²: h of the cylinder, 4 r / 3 of the two halves of the ball.
+        let ball = r * (4.0 / 3.0);
+        let (m_cylinder, m_ball) = (m * h / (h + ball), m * ball / (h + ball));
+        let axial = m_cylinder * r.square() * 0.5 + m_ball * r.square() * 0.4;
+        let transverse = m_cylinder * (r.square() * 0.25 + h.square() * (1.0 / 12.0))
+            + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
+        axis.map_or(Sym3::zero(self.graph), |axis| axisymmetric(axial, transverse, axis))
+    }
+}
+
+/// True for a solid with its arguments.
+fn is_solid(e: &syntax::Expr) -> bool {
+    matches!(&e.kind, ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, _)| *solid == word.text))
+}
+
+/// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.
+fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
+    if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
+        let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
+        return Sym3 { diagonal, off: [axial.zero(); 3] };
+    }
+    let extra = axial - transverse;
+    Sym3::from_upper(&Mat3::from_fn(|i, j| {
+        let term = extra * n[i] * n[j];
+        if i == j { transverse + term } else { term }
+    }))
+}
+
+/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to take it anyway.
+pub fn check_inertia(
+    body: &str,
+    mass: Option<f64>,
+    inertia: &Sym3<'_>,
+    place: &Place,
+    hint: &str,
+    cx: &mut Diagnostics,
+) {
+    let Some(m) = inertia.full().values() else { return };
+    let moments = principal_moments(m);
+    let scale = moments[2].abs().max(moments[0].abs());
+    let list = moments.map(brief).join(", ");
+    if scale <= NOTHING.max(SMALLEST * mass.unwrap_or(0.0)) {
+        return;
+    }
+    if moments[0] < -TOLERANCE * scale {
+        cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
+            .help(format!("its principal moments are {list}"))
+            .help(hint);
+    } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
+        cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
+            .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
+            .help(hint);
+    }
+}
+
+/// A number with about five digits.
+fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
+    match rounded.abs() {
+        size if size == 0.0 || (1e-3..1e6).contains(&size) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+/// Eigenvalues of a symmetric matrix in ascending order (Jacobi rotations).
+fn principal_moments(mut a: [[f64; 3]; 3]) -> [f64; 3] {
+    for _ in 0..32 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+            let c = 1.0 / t.hypot(1.0);
+            let s = t * c;
+            for k in 0..3 {
+                let (x, y) = (a[k][p], a[k][q]);
+                (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+            }
+            for k in 0..3 {
+                let (x, y) = (a[p][k], a[q][k]);
+                (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+            }
+        }
+    }
+    let mut moments = [a[0][0], a[1][1], a[2][2]];
+    moments.sort_by(f64::total_cmp);
+    moments
+}

@@ -1,0 +1,272 @@
+//! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of simple
+//! ones with massless frames between.
+
+use super::expression::Scope;
+use crate::diag::{Diagnostics, Place};
+use crate::expr::eval::eval_one;
+use crate::expr::sample::{always, sample};
+use crate::expr::{Expr, Graph, Vec3};
+use crate::mechanism::Coordinate;
+use crate::syntax::{self, Joint, JointKind};
+
+/// One motion of a joint.
+pub enum Elementary<'g> {
+    /// Rotation about an axis.
+    Turn(Vec3<'g>),
+    /// Translation along an axis.
+    Slide(Vec3<'g>),
+    /// Rotation about an axis with the given advance per radian.
+    Helix(Vec3<'g>, Expr<'g>),
+    /// All rotations.
+    Ball,
+    /// All motions.
+    Free,
+}
+
+/// Names of the entries of `q` and `v` of a joint; empty for the joint's own name.
+pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static str], &'static [&'static str]) {
+    const BALL: [&str; 4] = ["qx", "qy", "qz", "qw"];
+    const FREE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+    const STAGE: [&str; 3] = ["x", "y", "z"];
+    let same = |names: &'static [&'static str]| (names, names);
+    match kind {
+        JointKind::Pin | JointKind::Sleeve | JointKind::Screw => same(&[""]),
+        JointKind::Collar | JointKind::Slot => same(&["slide", "turn"]),
+        JointKind::Universal => same(&["first", "second"]),
+        JointKind::Planar => same(&["x", "y", "angle"]),
+        JointKind::Stage => same(&STAGE[..along.clamp(2, 3)]),
+        JointKind::Ball => (&BALL, &["wx", "wy", "wz"]),
+        JointKind::Free => (&FREE, &["vx", "vy", "vz", "wx", "wy", "wz"]),
+        JointKind::Weld => (&[], &[]),
+    }
+}
+
+/// The full name of a coordinate.
+pub fn full_name(joint: &str, coordinate: &str) -> String {
+    if coordinate.is_empty() { joint.to_string() } else { format!("{joint}.{coordinate}") }
+}
+
+impl<'g> Scope<'_, 'g> {
+    /// The motions of a joint in order from parent to child.
+    pub fn motions(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
+        use Elementary::{Slide, Turn};
+        let about = self.axes(joint, &joint.about, cx);
+        let along = self.axes(joint, &joint.along, cx);
+        let (about, along) = (about?, along?);
+        let place = &joint.name.place;
+        match joint.kind {
+            JointKind::Pin => Some(vec![Turn(one(&about, "about", "a Pin", place, cx)?)]),
+            JointKind::Sleeve => Some(vec![Slide(one(&along, "along", "a Sleeve", place, cx)?)]),
+            JointKind::Screw => self.screw(joint, &about, &along, cx),
+            JointKind::Collar => {
+                let axis = either(&about, &along, "a Collar", place, cx)?;
+                Some(vec![Slide(axis), Turn(axis)])
+            }
+            JointKind::Slot => {
+                let slide = one(&along, "along", "a Slot", place, cx);
+                let turn = one(&about, "about", "a Slot", place, cx);
+                Some(vec![Slide(slide?), Turn(turn?)])
+            }
+            JointKind::Universal => {
+                let axes = several(&about, 2..=2, "about", "a Universal", place, cx)?;
+                check_independent(axes, "a Universal", joint.about.get(1), cx)?;
+                Some(axes.iter().map(|a| Turn(*a)).collect())
+            }
+            JointKind::Planar => self.planar(&about, &along, place, cx),
+            JointKind::Stage => {
+                let axes = several(&along, 2..=3, "along", "a Stage", place, cx)?;
+                check_independent(axes, "a Stage", joint.along.last(), cx)?;
+                Some(axes.iter().map(|a| Slide(*a)).collect())
+            }
+            JointKind::Ball => Some(vec![Elementary::Ball]),
+            JointKind::Free => Some(vec![Elementary::Free]),
+            JointKind::Weld => Some(Vec::new()),
+        }
+    }
+
+    fn axes(&self, joint: &Joint, axes: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Vec<Vec3<'g>>> {
+        let found: Vec<_> = axes.iter().map(|a| self.unit_vector(a, joint.normalise_axis, cx)).collect();
+        found.into_iter().collect()
+    }
+
+    fn screw(
+        &self,
+        joint: &Joint,
+        about: &[Vec3<'g>],
+        along: &[Vec3<'g>],
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Elementary<'g>>> {
+        let axis = either(about, along, "a Screw", &joint.name.place, cx);
+        let pitch = match (&joint.pitch, &joint.lead) {
+            (Some(pitch), None) => self.scalar(pitch, cx),
+            (None, Some(lead)) => self.scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
+            _ => {
+                let and = if joint.pitch.is_some() { ", not both" } else { "" };
+                cx.error(joint.name.place.clone(), format!("a Screw has a `pitch` or a `lead`{and}"))
+                    .help("`pitch` is the advance per radian, `lead` the advance per turn");
+                None
+            }
+        };
+        Some(vec![Elementary::Helix(axis?, pitch?)])
+    }
+
+    /// Two slides in the plane, then a turn about its normal.
+    fn planar(
+        &self,
+        about: &[Vec3<'g>],
+        along: &[Vec3<'g>],
+        place: &Place,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Elementary<'g>>> {
+        let (first, second) = match (about, along) {
+            (_, [first, second]) => (*first, *second),
+            ([normal], []) => match in_plane(*normal) {
+                Some(directions) => directions,
+                None => {
+                    cx.error(
+                        place.clone(),
+                        "a normal that depends on parameters does not say the directions in the plane",
+                    )
+                    .help("write `along = (first, second)` instead of `about`");
+                    return None;
+                }
+            },
+            _ => {
+                cx.error(place.clone(), "a Planar joint has a normal or two directions")
+                    .help("write `about = z`, or `along = (x, y)`");
+                return None;
+            }
+        };
+        let normal = first.cross(second);
+        if !vanishes(first.dot(second)) {
+            cx.error(place.clone(), "the two directions of a Planar joint are not orthogonal");
+            return None;
+        }
+        if let [given] = about
+            && !(*given - normal).0.iter().all(|c| vanishes(*c))
+        {
+            cx.error(place.clone(), "`about` is not the normal of the two directions in `along`")
+                .help("leave one of them out");
+            return None;
+        }
+        // The given normal is exact, the product is rounded.
+        let normal = about.first().copied().unwrap_or(normal);
+        Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
+    }
+}
+
+/// Motions of a joint whose own have a mistake.
+pub fn somehow<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
+    use Elementary::{Slide, Turn};
+    let axis = |k: usize| {
+        let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
+        n.rotate_left(k);
+        Vec3::numbers(graph, n)
+    };
+    match joint.kind {
+        JointKind::Pin | JointKind::Screw => vec![Turn(axis(0))],
+        JointKind::Sleeve => vec![Slide(axis(0))],
+        JointKind::Collar | JointKind::Slot => vec![Slide(axis(0)), Turn(axis(1))],
+        JointKind::Universal => vec![Turn(axis(0)), Turn(axis(1))],
+        JointKind::Planar => vec![Slide(axis(0)), Slide(axis(1)), Turn(axis(2))],
+        JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(axis(k))).collect(),
+        JointKind::Ball => vec![Elementary::Ball],
+        JointKind::Free => vec![Elementary::Free],
+        JointKind::Weld => Vec::new(),
+    }
+}
+
+/// True if an expression is zero for all values of the parameters, within rounding.
+fn vanishes(e: Expr<'_>) -> bool {
+    (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
+}
+
+/// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
+/// other normal the first is orthogonal to the coordinate axis that the normal is farthest from.
+pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
+    let graph = normal[0].graph();
+    let n = normal.values()?;
+    if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {
+        return Some((Vec3::axis(graph, (k + 1) % 3), Vec3::axis(graph, (k + 2) % 3)));
+    }
+    let far = (0..3).min_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))?;
+    let raw = normal.cross(Vec3::axis(graph, far));
+    let first = raw.map(|c| c / raw.norm());
+    Some((first, normal.cross(first)))
+}
+
+fn one<'g>(
+    axes: &[Vec3<'g>],
+    key: &str,
+    what: &str,
+    place: &Place,
+    cx: &mut Diagnostics,
+) -> Option<Vec3<'g>> {
+    several(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
+}
+
+fn several<'a, 'g>(
+    axes: &'a [Vec3<'g>],
+    count: std::ops::RangeInclusive<usize>,
+    key: &str,
+    what: &str,
+    place: &Place,
+    cx: &mut Diagnostics,
+) -> Option<&'a [Vec3<'g>]> {
+    if count.contains(&axes.len()) {
+        return Some(axes);
+    }
+    let (number, example) = match (count.start(), count.end()) {
+        (1, 1) => ("one axis", "z"),
+        (2, 2) => ("two axes", "(x, y)"),
+        _ => ("two or three axes", "(x, y)"),
+    };
+    let message = match axes.len() {
+        0 => format!("missing `{key}`: {what} has {number}"),
+        n => format!("{what} has {number} in `{key}`, found {n}"),
+    };
+    cx.error(place.clone(), message).help(format!("write `{key} = {example}`"));
+    None
+}
+
+/// Reports axes that are parallel, or three in a plane: one of the coordinates would do what the others do.
+fn check_independent(
+    axes: &[Vec3<'_>],
+    what: &str,
+    last: Option<&syntax::Expr>,
+    cx: &mut Diagnostics,
+) -> Option<()> {
+    let dependent = match axes {
+        [a, b] => a.cross(*b).0.iter().all(|c| always(*c, 0.0)),
+        [a, b, c] => always(a.cross(*b).dot(*c), 0.0),
+        _ => false,
+    };
+    if let Some(last) = last.filter(|_| dependent) {
+        cx.error(last.place.clone(), format!("the axes of {what} are not independent"))
+            .help("the last one adds nothing to the others; choose another direction");
+        return None;
+    }
+    Some(())
+}
+
+fn either<'g>(
+    about: &[Vec3<'g>],
+    along: &[Vec3<'g>],
+    what: &str,
+    place: &Place,
+    cx: &mut Diagnostics,
+) -> Option<Vec3<'g>> {
+    match (about, along) {
+        ([axis], []) | ([], [axis]) => Some(*axis),
+        ([a], [b]) if a == b => Some(*a),
+        _ => {
+            cx.error(place.clone(), format!("{what} has one axis")).help("write `about = z`");
+            None
+        }
+    }
+}
+
+/// A coordinate of its own.
+pub fn own_coordinate(q: usize, v: usize) -> Coordinate {
+    Coordinate { q, v, ratio: 1.0, offset: 0.0 }
+}

@@ -1,0 +1,122 @@
+//! Masses: those of bodies and particles go to the links that carry them.
+
+use super::build::Builder;
+use super::figures::Range;
+use super::inertia::check_inertia;
+use super::world::Placed;
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Sym3, Vec3};
+use crate::mechanism::{Inertia, LinkId, Pose};
+use crate::syntax::{Body, Inertias, Particle};
+
+/// Mass, centre of mass in body axes, inertia about it.
+pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the masses of all bodies and particles to their links.
+    pub fn add_masses(&mut self, cx: &mut Diagnostics) {
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            // What a file fixes to the ground enters no equation, whatever figures it has.
+            let is_fixed = matches!(self.places[k], Some((None, _)));
+            let from_file = body.name.place.file.is_some();
+            let mut silent = Diagnostics::new();
+            let inertia = self.body_inertia(body, if is_fixed && from_file { &mut silent } else { cx });
+            self.masses.push(inertia);
+            if let Some(inertia) = inertia
+                && let Some((Some(link), pose)) = self.places[k].clone()
+            {
+                self.attach(link, &pose, inertia);
+            }
+        }
+        for particle in &self.description.particles {
+            self.add_particle(particle, cx);
+        }
+    }
+
+    /// Mass, centre of mass and central inertia of a body.
+    fn body_inertia(&self, body: &Body, cx: &mut Diagnostics) -> Option<MassProperties<'g>> {
+        let graph = self.scope.graph;
+        let name = &body.name.text;
+        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
+        let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
+        let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
+        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
+            && m < 0.0
+        {
+            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
+                .help("a mass is zero or more, kg; gravity has the sign");
+        }
+        let range = Range::of(&self.description.scalar);
+        let mut sound = true;
+        if let (Some(e), Some(m)) = (&body.mass, mass) {
+            sound &= range.check_mass(m, &e.place, cx);
+        }
+        if let (Some(e), Some(com)) = (&body.com, com) {
+            sound &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
+        }
+        if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
+            sound = sound && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
+        }
+        if !sound {
+            return None;
+        }
+        if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
+            && self.description.inertias == Inertias::Check
+        {
+            let hint = match e.place.file {
+                Some(_) => {
+                    "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+                }
+                None => "to take it as it is, write `#[mechanism(…, inertia = trust)]`",
+            };
+            check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
+        }
+        Some((mass?, com?, inertia?))
+    }
+
+    /// Adds the mass of what has this pose on a link to that of the link.
+    fn attach(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
+        let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
+        let sum = &mut self.model.links[link.0].inertia;
+        *sum = sum.plus(&added);
+    }
+
+    /// Figures may be finite and their products not.
+    pub fn check_finite(&self, cx: &mut Diagnostics) {
+        if !cx.is_empty() {
+            return;
+        }
+        let range = Range::of(&self.description.scalar);
+        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.most);
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            let Some((Some(link), _)) = &self.places[k] else { continue };
+            let i = &self.model.links[link.0].inertia;
+            let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
+            if all.into_iter().any(infinite) {
+                let name = &body.name;
+                cx.error(name.place.clone(), format!("the figures of `{}` are too large", name.text))
+                    .help("mass times the square of the distance from the joint leaves no room for products");
+                return;
+            }
+        }
+    }
+
+    fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
+        let graph = self.scope.graph;
+        let mass = self.scope.scalar(&particle.mass, cx);
+        if let Some(mass) = mass {
+            Range::of(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
+        }
+        if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
+            cx.error(
+                particle.mass.place.clone(),
+                format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
+            )
+            .help("a point without mass is a `Point`");
+        }
+        let placed = self.scope.world.borrow().places.get(&particle.name.text).cloned();
+        if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
+            self.attach(link, &pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! What can be said of a mechanism that has a mistake: enough for the signatures of what would have been generated, so
+//! that one mistake is not reported again wherever the mechanism is used. Reads what the user wrote and checks nothing.
+
+use super::carriers::expressions;
+use super::joint::{coordinate_names, full_name};
+use crate::diag::Diagnostics;
+use crate::mechanism::Uses;
+use crate::syntax::{
+    Action, ActionKind, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind,
+    Law,
+};
+use std::collections::BTreeSet;
+
+/// A guess at the interface of a mechanism.
+pub struct Outline {
+    /// Name of every entry of `q`.
+    pub configuration: Vec<String>,
+    /// Name of every entry of `v`.
+    pub velocities: Vec<String>,
+    /// Name of every entry of `u`.
+    pub inputs: Vec<String>,
+    /// Names of the frames.
+    pub frames: Vec<String>,
+    /// Names of the bodies that move by themselves.
+    pub bodies: Vec<String>,
+    /// Functions take time first.
+    pub time: bool,
+    /// Inputs act by way of the velocity.
+    pub velocity_inputs: bool,
+    /// Joints close loops, or constraints are declared.
+    pub constrained: bool,
+    /// Some of those are contacts that slip.
+    pub slipping: bool,
+    /// The outputs, in order.
+    pub outputs: Vec<OutlinedOutput>,
+}
+
+/// A guess at an output.
+pub struct OutlinedOutput {
+    /// Its name.
+    pub name: String,
+    /// How many components it has.
+    pub size: usize,
+    /// What it depends on.
+    pub uses: Uses,
+}
+
+/// Outlines a description that may be wrong.
+pub fn outline(d: &Description) -> Outline {
+    let (configuration, velocities, inputs) = entries(d);
+    let names = |e| names_of(d, e);
+    let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
+    // A definition that nothing uses adds nothing.
+    let used =
+        expressions(d).into_iter().filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
+    Outline {
+        time: used.chain(rotations).any(|e| names(e).contains("t")),
+        velocity_inputs: d.actions.iter().any(|action| {
+            laws(action).any(|e| {
+                let uses = uses(d, e);
+                uses.inputs && (uses.velocities || names(e).contains("speed"))
+            })
+        }),
+        constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
+        slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
+        outputs: d.outputs.iter().map(|output| outlined(d, output)).collect(),
+        frames: frames(d),
+        bodies: bodies(d),
+        configuration,
+        velocities,
+        inputs,
+    }
+}
+
+/// Names of the entries of `q`, `v` and `u`.
+fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
+    let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
+    let closing = super::tree::closing(d);
+    let solved = super::closed_form::find(d, &closing, &mut Diagnostics::new());
+    for j in 0..=d.joints.len() {
+        let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
+        let free: Vec<String> = free.collect();
+        q.extend(free.iter().cloned());
+        v.extend(free);
+        let own = closing.get(j) == Some(&false) && solved.iter().all(|e| !e.sides.contains(&j));
+        let holds = |joint: &&Joint| joint.mimic.is_none() && own;
+        let Some(joint) = d.joints.get(j).filter(holds) else { continue };
+        let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
+        q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
+        v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
+        u.extend(joint.driven.then(|| joint.name.text.clone()));
+    }
+    u.extend(d.inputs.iter().map(|i| i.text.clone()));
+    (q, v, u)
+}
+
+/// Names of everything that has a frame, in the order of the model.
+fn frames(d: &Description) -> Vec<String> {
+    let bodies = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
+    let names = bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone());
+    d.ground_frame.then(|| GROUND.to_string()).into_iter().chain(names).collect()
+}
+
+/// Names of the bodies and particles that are not welded to others.
+fn bodies(d: &Description) -> Vec<String> {
+    let particles = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
+    let welded = |name: &str| {
+        d.joints.iter().any(|joint| joint.kind == JointKind::Weld && joint.child.body.text == name)
+    };
+    let all = d.bodies.iter().map(|b| &b.name).chain(particles).map(|name| name.text.clone());
+    all.filter(|name| !welded(name)).collect()
+}
+
+fn outlined(d: &Description, output: &Definition) -> OutlinedOutput {
+    OutlinedOutput {
+        name: output.name.text.clone(),
+        size: if output.vector { 3 } else { 1 },
+        uses: uses(d, &output.value),
+    }
+}
+
+/// The value or law of a force element.
+fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
+    let law = match &action.kind {
+        ActionKind::Spring { law, .. } | ActionKind::Dashpot { law } => {
+            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = law;
+            Some(e)
+        }
+        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.as_ref(),
+        _ => None,
+    };
+    law.into_iter()
+}
+
+/// What an expression depends on, as its words tell.
+fn uses(d: &Description, e: &Expr) -> Uses {
+    let mut uses = Uses::default();
+    for part in with_definitions(d, e) {
+        match &part.kind {
+            ExprKind::Call(function, _) => match function.text.as_str() {
+                "v" | "omega" | "rate" => uses.velocities = true,
+                "a" | "alpha" => uses.accelerations = true,
+                "reaction_force" | "reaction_torque" => {
+                    (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
+                }
+                _ => {}
+            },
+            ExprKind::Name(name) => uses.inputs |= d.inputs.iter().any(|input| input.text == *name),
+            _ => {}
+        }
+    }
+    uses
+}
+
+/// Every name in an expression.
+fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
+    with_definitions(d, e).into_iter().filter_map(Expr::name).collect()
+}
+
+/// The parts of an expression and of the definitions that it names.
+fn with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
+    let mut parts = e.parts();
+    let mut open: Vec<&Definition> = d.definitions.iter().collect();
+    let mut at = 0;
+    while let Some(part) = parts.get(at) {
+        at += 1;
+        let Some(name) = part.name() else { continue };
+        if let Some(k) = open.iter().position(|definition| definition.name.text == name) {
+            parts.extend(open.swap_remove(k).value.parts());
+        }
+    }
+    parts
+}

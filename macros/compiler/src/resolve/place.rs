@@ -1,0 +1,405 @@
+//! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is already
+//! placed. What moves by coordinates or time other than a joint's becomes a link of its own.
+
+use super::build::Builder;
+use super::carriers::carries;
+use super::tree::{GROUND, Order};
+use super::world::{Level, Placed, PlacedKind, View};
+use crate::diag::{Diagnostics, Place, all_of};
+use crate::expr::{Rotation, Vec3};
+use crate::kinematics::{joint, symbols_in};
+use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose, Quantity};
+use crate::syntax::{Expr, ExprKind, Name, words};
+
+/// Something to be placed: an index into its list.
+#[derive(Clone, Copy)]
+enum Item {
+    /// By `Order`: joint, child.
+    Joint(usize),
+    Frame(usize),
+    Point(usize),
+    Body(usize),
+    Particle(usize),
+}
+
+impl<'a, 'g> Builder<'a, 'g> {
+    /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are circular.
+    pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
+        let d = self.description;
+        for (j, child) in &order.joints {
+            if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
+                let (name, joint) = (&body.name, &d.joints[*j].name);
+                cx.error(name.place.clone(), format!("`{}` is placed twice", name.text))
+                    .note(format!("the joint `{}` places it as well", joint.text))
+                    .help("a body is placed by a joint, or by `at` and `frame`");
+            }
+        }
+        let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
+        waiting.extend((0..d.frames.len()).map(Item::Frame));
+        waiting.extend((0..d.points.len()).map(Item::Point));
+        let placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
+        waiting.extend((0..d.bodies.len()).filter(placed_body).map(Item::Body));
+        waiting.extend((0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(Item::Particle));
+        while !waiting.is_empty() {
+            let before = waiting.len();
+            let mut rest = Vec::new();
+            for item in waiting {
+                if self.is_ready(item, order) {
+                    self.place_item(item, order, cx);
+                } else {
+                    rest.push(item);
+                }
+            }
+            if rest.len() == before {
+                self.report_waiting(&rest, order, cx);
+                self.place_somehow(&rest, order);
+                return;
+            }
+            waiting = rest;
+        }
+    }
+
+    /// The names and expressions that an item stands on.
+    fn needs(&self, item: Item, order: &Order) -> Vec<String> {
+        let d = self.description;
+        let mut names = Vec::new();
+        let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
+        match item {
+            Item::Joint(k) => {
+                let j = order.joints[k].0;
+                // What is solved for needs the other side of its loop as well.
+                let sides = self.embedding(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
+                names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
+            }
+            Item::Frame(k) => {
+                let f = &d.frames[k];
+                collect_names(&f.start, &mut names);
+                f.rotations.iter().for_each(|e| collect_names(e, &mut names));
+            }
+            Item::Point(k) => {
+                expression(&d.points[k].on);
+                expression(&d.points[k].at);
+            }
+            Item::Body(k) => {
+                expression(&d.bodies[k].at);
+                expression(&d.bodies[k].frame);
+            }
+            Item::Particle(k) => expression(&d.particles[k].at),
+        }
+        names
+    }
+
+    fn is_ready(&self, item: Item, order: &Order) -> bool {
+        let world = self.scope.world.borrow();
+        self.needs(item, order)
+            .iter()
+            .all(|name| !self.placeable.contains(name) || world.places.contains_key(name))
+    }
+
+    fn item_name(&self, item: Item, order: &Order) -> &'a Name {
+        let d = self.description;
+        match item {
+            Item::Joint(k) => &d.joints[order.joints[k].0].name,
+            Item::Frame(k) => &d.frames[k].name,
+            Item::Point(k) => &d.points[k].name,
+            Item::Body(k) => &d.bodies[k].name,
+            Item::Particle(k) => &d.particles[k].name,
+        }
+    }
+
+    fn report_waiting(&self, rest: &[Item], order: &Order, cx: &mut Diagnostics) {
+        // After another mistake things wait for what failed; that has been said. Joints are read all the same, so that
+        // their own mistakes are reported at once.
+        if !cx.is_empty() {
+            for item in rest {
+                if let Item::Joint(k) = item {
+                    self.check_joint(&self.description.joints[order.joints[*k].0], cx);
+                }
+            }
+            return;
+        }
+        // From one to what it waits for, until it comes round again.
+        let next = |at: usize| {
+            let needs = self.needs(rest[at], order);
+            (0..rest.len()).find(|k| needs.contains(&self.provides(rest[*k], order)))
+        };
+        let mut path: Vec<usize> = vec![0];
+        while let Some(k) = path.last().and_then(|at| next(*at)) {
+            if let Some(begin) = path.iter().position(|seen| *seen == k) {
+                path.drain(..begin);
+                break;
+            }
+            path.push(k);
+        }
+        path.sort_unstable();
+        let names: Vec<&Name> = path.iter().map(|k| self.item_name(rest[*k], order)).collect();
+        let Some((first, others)) = names.split_first() else { return };
+        let error = cx.error(first.place.clone(), format!("`{}` is placed by way of itself", first.text));
+        if !others.is_empty() {
+            let list: Vec<String> = others.iter().map(|name| format!("`{}`", name.text)).collect();
+            error.note(format!("it goes round by {}", all_of(&list)));
+        }
+        error
+            .help("its definition is circular: start from the ground or from a body that is held by a joint");
+    }
+
+    /// The name of the place that an item provides.
+    fn provides(&self, item: Item, order: &Order) -> String {
+        match item {
+            Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
+            _ => self.item_name(item, order).text.clone(),
+        }
+    }
+
+    /// Places what waits in vain, so that what depends on it is read as well.
+    fn place_somehow(&mut self, rest: &[Item], order: &Order) {
+        for item in rest {
+            let name = self.provides(*item, order);
+            let (link, pose) = self.settle(None, self.somewhere(true));
+            let (kind, held) = match item {
+                Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
+                Item::Body(k) => (PlacedKind::Body, Some(*k)),
+                Item::Frame(_) => (PlacedKind::Frame, None),
+                Item::Point(_) | Item::Particle(_) => (PlacedKind::Point, None),
+            };
+            if let Some(k) = held {
+                self.places[k] = Some((link, pose.clone()));
+            }
+            self.remember(&name, link, pose, kind);
+        }
+    }
+
+    fn place_item(&mut self, item: Item, order: &Order, cx: &mut Diagnostics) {
+        let d = self.description;
+        match item {
+            Item::Joint(k) => {
+                let (j, child) = order.joints[k];
+                self.place_joint(j, child, cx);
+            }
+            Item::Frame(k) => {
+                let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
+            }
+            Item::Point(k) => {
+                let p = &d.points[k];
+                let home = match &p.on {
+                    Some(on) => self.scope.place(on, cx),
+                    None => Some(self.ground()),
+                };
+                let place = home.and_then(|home| match &p.at {
+                    Some(at) => self.offset(home, at, false, cx),
+                    None => Some((home.link, home.pose)),
+                });
+                let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&p.name.text, link, pose, PlacedKind::Point);
+            }
+            Item::Body(k) => self.place_body(k, cx),
+            Item::Particle(k) => {
+                let p = &d.particles[k];
+                let Some(at) = &p.at else { return };
+                let free = !carries(d, &p.name.text);
+                let (link, pose) = self.spot(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.settle(link, pose);
+                self.remember(&p.name.text, link, pose, PlacedKind::Point);
+            }
+        }
+    }
+
+    fn ground(&self) -> Placed<'g> {
+        Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedKind::Body }
+    }
+
+    /// Axes of a frame, at the origin of what it starts from.
+    fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let frame = &self.description.frames[k];
+        let start = self.axes_of(&frame.start, cx);
+        let view = View::new(Level::Placement, None);
+        let rotation = self.scope.with_view(view, |scope| scope.rotation(&frame.rotations, cx));
+        let (start, rotation) = (start?, rotation?);
+        let pose =
+            Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
+        Some((start.link, pose))
+    }
+
+    /// A body or a frame by name.
+    fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+        let ExprKind::Name(name) = &e.kind else {
+            cx.error(e.place.clone(), "expected a body or a frame")
+                .help("write `#[frame(ground, z(angle))]`");
+            return None;
+        };
+        if name == GROUND {
+            return Some(self.ground());
+        }
+        let world = self.scope.world.borrow();
+        match world.places.get(name) {
+            Some(p) if p.kind != PlacedKind::Point => Some(p.clone()),
+            Some(_) => {
+                cx.error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
+                    .help("name a body or a frame");
+                None
+            }
+            None => {
+                if !self.scope.is_news(name, cx) {
+                    return None;
+                }
+                let known: Vec<&str> = world.places.keys().map(String::as_str).chain([GROUND]).collect();
+                let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
+                words::point(error, words::BODIES, name, &known);
+                if error.is_bare() {
+                    error.help("a frame starts with the axes of a body or another frame: `#[frame(ground, z(angle))]`");
+                }
+                None
+            }
+        }
+    }
+
+    fn place_body(&mut self, k: usize, cx: &mut Diagnostics) {
+        let body = &self.description.bodies[k];
+        let axes = match &body.frame {
+            Some(frame) => self.axes_of(frame, cx),
+            None => Some(self.ground()),
+        };
+        let origin = match &body.at {
+            Some(at) => self.spot(at, true, cx),
+            None => axes.as_ref().map(|a| (a.link, a.pose.clone())),
+        };
+        let (link, pose) = match (axes, origin) {
+            (Some(axes), Some((link, mut pose))) => {
+                // The axes in those of the link that the origin is given in.
+                pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
+                (link, pose)
+            }
+            _ => (None, self.somewhere(true)),
+        };
+        let (link, pose) = self.settle(link, pose);
+        self.places[k] = Some((link, pose.clone()));
+        self.remember(&body.name.text, link, pose, PlacedKind::Body);
+    }
+
+    /// Orientation of one link in another.
+    fn rotation_between(&self, of: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
+        let world = self.scope.world.borrow();
+        let to_ground = |mut at: Option<LinkId>| {
+            let mut steps = Vec::new();
+            while let Some(l) = at {
+                steps.push(world.joints[l.0].rotation.clone());
+                at = world.joints[l.0].parent;
+            }
+            steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.then(step))
+        };
+        if of == link {
+            return Rotation::identity(self.scope.graph);
+        }
+        to_ground(of).inverse().then(&to_ground(link))
+    }
+
+    /// A place by name, `place.at(vector)`, or a vector from the ground's origin; `free` as in `offset`.
+    fn spot(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
+        match &e.kind {
+            ExprKind::Name(name) if placeable(name) => {
+                let place = self.scope.place(e, cx)?;
+                Some((place.link, place.pose))
+            }
+            ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+                let home = self.scope.place(base, cx)?;
+                self.offset(home, &arguments[0], free, cx)
+            }
+            ExprKind::Method(_, method, _) => {
+                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a place", method.text))
+                    .suggest(&method.text, ["at"]);
+                None
+            }
+            _ => self.offset(self.ground(), e, free, cx),
+        }
+    }
+
+    /// A place at a vector from another one, with its axes. If they do not matter (`free`) it may get others.
+    fn offset(
+        &self,
+        home: Placed<'g>,
+        at: &Expr,
+        free: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let view = View::new(Level::Placement, Some((home.link, home.pose.clone())));
+        let terms = self.scope.with_view(view, |scope| scope.terms(at, cx))?;
+        let world = self.scope.world.borrow();
+        let zero = Vec3::zero(self.scope.graph);
+        // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
+        if let [(axes, v)] = terms.as_slice()
+            && free
+            && home.pose.translation.is_zero()
+            && *axes != home.link
+            && self.is_concentric(*axes, home.link)
+        {
+            return Some((*axes, Pose { rotation: Rotation::identity(self.scope.graph), translation: *v }));
+        }
+        let translation = home.pose.translation + world.resolve(&terms, home.link, zero);
+        Some((home.link, Pose { rotation: home.pose.rotation, translation }))
+    }
+
+    /// True if a link's origin stays at the origin of one of its ancestors.
+    fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
+        let world = self.scope.world.borrow();
+        let mut at = link;
+        while at != ancestor {
+            let Some(l) = at else { return false };
+            if !world.joints[l.0].translation.is_zero() {
+                return false;
+            }
+            at = world.joints[l.0].parent;
+        }
+        true
+    }
+
+    /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
+    pub fn settle(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
+        let matrix = pose.rotation.matrix();
+        let entries: Vec<_> = matrix.0.iter().flatten().chain(&pose.translation.0).copied().collect();
+        let moves = symbols_in(&entries)
+            .into_iter()
+            .any(|s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time));
+        if !moves {
+            return (link, pose);
+        }
+        let id = self.add_link(Link {
+            parent: link,
+            placement: pose,
+            motion: Motion::Placed,
+            inertia: Inertia::zero(self.scope.graph),
+        });
+        (Some(id), Pose::identity(self.scope.graph))
+    }
+
+    /// Adds a link and its kinematics.
+    pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
+        let kinematics = joint(self.model.space(), &link);
+        self.scope.world.borrow_mut().joints.push(kinematics);
+        self.model.links.push(link);
+        LinkId(self.model.links.len() - 1)
+    }
+
+    /// Makes a place known by its name.
+    pub fn remember(&self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
+        self.scope.world.borrow_mut().places.insert(name.to_string(), Placed { link, pose, kind });
+    }
+
+    /// The parent of a joint: a body, or a point.
+    pub fn joint_parent(&self, name: &Name, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+        if name.text == GROUND {
+            return Some((None, Pose::identity(self.scope.graph)));
+        }
+        let place: Place = name.place.clone();
+        let e = Expr { kind: ExprKind::Name(name.text.clone()), place };
+        self.scope.place(&e, cx).map(|p| (p.link, p.pose))
+    }
+}
+
+/// Every name in an expression, with the bases of members and methods.
+fn collect_names(e: &Expr, names: &mut Vec<String>) {
+    names.extend(e.parts().into_iter().filter_map(Expr::name).map(str::to_string));
+}

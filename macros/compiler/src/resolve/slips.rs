@@ -1,0 +1,153 @@
+//! What is most likely meant by an expression that has no value: angles in degrees, members and methods of other
+//! languages, arrays that are no matrices.
+
+use super::expression::{Scope, is_function};
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::syntax::{self, ExprKind, Name, words};
+
+impl Scope<'_, '_> {
+    /// Says what to write for a method, which expressions do not have.
+    pub fn report_method(&self, e: &syntax::Expr, method: &Name, cx: &mut Diagnostics) {
+        let text = method.text.as_str();
+        let base = match &e.kind {
+            ExprKind::Method(base, ..) => base.spelt(),
+            _ => String::new(),
+        };
+        let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
+        let is_coordinate = self.world.borrow().coordinates.iter().any(|(name, ..)| *name == base);
+        if is_coordinate && matches!(text, "dot" | "rate" | "diff" | "velocity" | "speed" | "dt") {
+            error.help(format!("write `rate({base})`"));
+        } else if is_function(text) {
+            error.help(format!("write `{text}(…)`"));
+        } else if matches!(text, "powi" | "powf" | "powu") {
+            error.help("write `pow(a, n)`");
+        } else if !words::explain(error, words::FUNCTIONS, text, &[]) {
+            error.help(
+                "functions stand before what they take, as in `sin(angle)`; `body.at(vector)` is a place",
+            );
+        }
+    }
+
+    /// Says what to write for a member that a joint does not have.
+    pub fn report_joint_member(
+        &self,
+        joint: &str,
+        inner: &syntax::Expr,
+        member: &Name,
+        cx: &mut Diagnostics,
+    ) -> bool {
+        let own =
+            |name: &str| name == joint || name.strip_prefix(joint).is_some_and(|end| end.starts_with('.'));
+        let world = self.world.borrow();
+        let coordinates: Vec<&str> =
+            world.coordinates.iter().map(|(name, ..)| name.as_str()).filter(|name| own(name)).collect();
+        match coordinates.as_slice() {
+            [] => return false,
+            [one] => {
+                let value = ["angle", "position", "q", "value", "displacement", "x", "pos", "coordinate"];
+                let help = match value.contains(&member.text.as_str()) {
+                    true => format!("write `{one}` for its coordinate"),
+                    false => format!("write `rate({one})` for its rate, `{one}` for its coordinate"),
+                };
+                cx.error(inner.place.clone(), format!("`{joint}` is a joint and has no axes")).help(help);
+            }
+            several => {
+                let message = format!("`{joint}` has no coordinate `{}`", member.text);
+                let full = format!("{joint}.{}", member.text);
+                cx.error(member.place.clone(), message).suggest(&full, several.iter().copied());
+            }
+        }
+        true
+    }
+}
+
+/// Reports a wrong number of arguments.
+pub fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option<T> {
+    let plural = if count == 1 { "" } else { "s" };
+    let text = function.text.as_str();
+    let help = match text {
+        "atan" => "of two arguments is `atan2(y, x)`: did you mean `atan2`?".to_string(),
+        "dot" => "write `dot(a, b)`; the rate of a coordinate is `rate(coordinate)`".to_string(),
+        "atan2" => "write `atan2(y, x)`".to_string(),
+        "pow" => "write `pow(a, n)`".to_string(),
+        "degrees" => "write `degrees(90)`".to_string(),
+        "norm" | "unit" => format!("write `{text}(v)`"),
+        _ if count == 1 => format!("write `{text}(a)`"),
+        _ => format!("write `{text}(a, b)`"),
+    };
+    cx.error(function.place.clone(), format!("`{text}` takes {count} argument{plural}")).help(help);
+    None
+}
+
+/// What a vector looks like.
+pub const VECTOR: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
+
+/// What a matrix looks like.
+pub const MATRIX: &str = "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
+
+/// Why a function has no value at a number.
+pub const DOMAIN: &str = "its argument is a number here: mend that";
+
+/// Largest plain number that is taken for an angle, rad: a full turn, with room for the digits of 2 π.
+const FULL_TURN: f64 = 6.3;
+
+/// An angle given in degrees, rad. Right angles are exact: 90/180 is, and so is its product with π.
+pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
+    match angle.value() {
+        Some(n) => angle.num(n / 180.0 * std::f64::consts::PI),
+        None => angle * (std::f64::consts::PI / 180.0),
+    }
+}
+
+/// Reports a plain number beyond a full turn where an angle stands. Those of files are not written by hand.
+pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
+    let Some(n) = e.literal().filter(|n| n.abs() > FULL_TURN && e.place.file.is_none()) else { return true };
+    cx.error(e.place.clone(), format!("an angle of {n} rad is more than a full turn")).help(format!(
+        "angles are in radians: write `degrees({n})`, or `1 * {n}` if that many radians are meant"
+    ));
+    false
+}
+
+/// True for what may be a rotation: a call, or a matrix.
+pub fn is_rotation(step: &syntax::Expr) -> bool {
+    match &step.kind {
+        ExprKind::Call(word, arguments) => match word.text.as_str() {
+            "x" | "y" | "z" => arguments.len() == 1,
+            "eigenaxis" => arguments.len() == 2,
+            "quaternion" => arguments.len() == 4,
+            _ => false,
+        },
+        ExprKind::Array(_) => true,
+        _ => false,
+    }
+}
+
+/// Reports what is no rotation.
+pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
+    let error = cx.error(step.place.clone(), "expected a rotation");
+    if let ExprKind::Call(word, _) = &step.kind {
+        words::explain(error, words::ROTATIONS, &word.text, &["x", "y", "z", "eigenaxis", "quaternion"]);
+    }
+    error.help(
+        "write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`",
+    );
+}
+
+/// Reports an array that is no matrix.
+pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
+    let ExprKind::Array(items) = &e.kind else {
+        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX);
+        return;
+    };
+    let is_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
+    let what = if items.iter().any(is_row) { "rows" } else { "numbers" };
+    let count = if items.len() == 3 { "three".to_string() } else { items.len().to_string() };
+    let error = cx.error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
+    match (what, items.as_slice()) {
+        ("numbers", [a, b, c]) => {
+            error.help(format!("write `diagonal({}, {}, {})`", a.spelt(), b.spelt(), c.spelt()))
+        }
+        _ => error.help(MATRIX),
+    };
+}

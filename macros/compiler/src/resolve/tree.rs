@@ -1,0 +1,213 @@
+//! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
+
+use super::expression::Scope;
+use crate::diag::{Diagnostics, Place};
+pub use crate::syntax::GROUND;
+use crate::syntax::{Description, Expr, ExprKind, Name, words};
+use std::collections::BTreeMap;
+
+/// Index into bodies and jointed particles together.
+pub type BodyIndex = usize;
+
+/// What a joint can hold: a body, or a particle without a place of its own.
+pub struct Held<'a> {
+    /// Its name.
+    pub name: &'a Name,
+}
+
+/// The joints in an order in which every parent is placed before its children, with the bodies that they hold, and the
+/// joints that close loops.
+pub struct Order {
+    /// Joint, child.
+    pub joints: Vec<(usize, BodyIndex)>,
+    /// Joints whose child has its place already.
+    pub closing: Vec<usize>,
+}
+
+/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and those that
+/// would let it hang from itself. All others hold their child: they are the spanning tree.
+pub fn closing(description: &Description) -> Vec<bool> {
+    let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
+    for point in &description.points {
+        if let Some(base) = point.on.as_ref().and_then(base_name) {
+            parents.insert(&point.name.text, base);
+        }
+    }
+    for particle in &description.particles {
+        if let Some(at) = &particle.at {
+            parents.insert(&particle.name.text, base_name(at).unwrap_or(GROUND));
+        }
+    }
+    let mut closing = Vec::with_capacity(description.joints.len());
+    for joint in &description.joints {
+        let (parent, child) = (joint.parent.body.text.as_str(), joint.child.body.text.as_str());
+        let known = child == GROUND
+            || parents.contains_key(child)
+            || description.points.iter().any(|p| p.name.text == child);
+        let closes = known || (parent != child && carries(&parents, child, parent));
+        if !closes {
+            parents.insert(child, parent);
+        }
+        closing.push(closes);
+    }
+    closing
+}
+
+/// True if one thing hangs from another.
+fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
+    let mut at = Some(carried);
+    (0..=parents.len()).any(|_| {
+        let here = at;
+        at = here.and_then(|name| parents.get(name).copied());
+        here == Some(carrier)
+    })
+}
+
+/// The name that `body.at(vector)` starts with.
+fn base_name(e: &Expr) -> Option<&str> {
+    match &e.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Method(base, ..) => base_name(base),
+        _ => None,
+    }
+}
+
+/// Finds the tree of the joints.
+pub fn find_tree(
+    description: &Description,
+    held: &[Held<'_>],
+    scope: &Scope<'_, '_>,
+    cx: &mut Diagnostics,
+) -> Option<Order> {
+    let index = |name: &Name, cx: &mut Diagnostics| -> Result<Option<BodyIndex>, ()> {
+        let is_point = description.points.iter().any(|p| p.name.text == name.text)
+            || description.particles.iter().any(|p| p.at.is_some() && p.name.text == name.text);
+        if name.text == GROUND || is_point {
+            return Ok(None);
+        }
+        match held.iter().position(|h| h.name.text == name.text) {
+            Some(k) => Ok(Some(k)),
+            None => {
+                unknown_body(name, held, scope, cx);
+                Err(())
+            }
+        }
+    };
+    let mut is_held = vec![false; held.len()];
+    let (mut ends, mut loops) = (Vec::new(), Vec::new());
+    let mut sound = true;
+    let closing = closing(description);
+    for (j, joint) in description.joints.iter().enumerate() {
+        let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
+        let (Ok(parent), Ok(child)) = (parent, child) else {
+            sound = false;
+            continue;
+        };
+        let name = &joint.child.body;
+        if joint.parent.body.text == name.text {
+            sound = false;
+            // A body called ground was reported.
+            if held.iter().any(|h| h.name.text == GROUND) {
+                continue;
+            }
+            cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text))
+                .help("a joint is between two bodies, or the ground and a body");
+            continue;
+        }
+        match child {
+            Some(child) if !closing[j] => {
+                is_held[child] = true;
+                ends.push((j, parent, child));
+            }
+            _ => loops.push(j),
+        }
+    }
+    if !sound {
+        return None;
+    }
+    let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
+    for (k, body) in held.iter().enumerate() {
+        if !is_held[k] && !is_placed(k) {
+            if !description.partial {
+                report_unheld(description, body.name, &loops, cx);
+            }
+            sound = false;
+        }
+    }
+    let roots: Vec<BodyIndex> = (0..held.len()).filter(|k| is_placed(*k)).collect();
+    let order = sort(&ends, held.len(), &roots);
+    sound.then_some(Order { joints: order, closing: loops })
+}
+
+/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from itself.
+fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
+    let name = &body.text;
+    let joints = || loops.iter().map(|j| &description.joints[*j]);
+    if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
+        cx.error(
+            joint.name.place.clone(),
+            format!("`{name}` hangs from itself: its joints form a cycle that the ground is not part of"),
+        )
+        .help(format!("let one of them begin at the ground, as in `ground -> {name}`"));
+    } else if let Some(joint) = joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
+    {
+        cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
+            .help(format!("turn the joint around, `ground -> {name}`, or hold `{name}` by another one"));
+    } else {
+        cx.error(body.place.clone(), format!("nothing holds `{name}`"))
+            .help(format!("add a joint `ground -> {name}`, a Free one if it moves freely"));
+    }
+}
+
+/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration order; what
+/// is not reached is left out.
+fn sort(
+    ends: &[(usize, Option<BodyIndex>, BodyIndex)],
+    bodies: usize,
+    roots: &[BodyIndex],
+) -> Vec<(usize, BodyIndex)> {
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); bodies + 1];
+    for (k, (_, parent, _)) in ends.iter().enumerate() {
+        children[parent.map_or(bodies, |p| p)].push(k);
+    }
+    let mut order = Vec::new();
+    let mut todo: Vec<usize> = roots.iter().rev().flat_map(|r| children[*r].iter().rev()).copied().collect();
+    todo.extend(children[bodies].iter().rev());
+    while let Some(k) = todo.pop() {
+        let (joint, _, child) = ends[k];
+        order.push((joint, child));
+        todo.extend(children[child].iter().rev());
+    }
+    order
+}
+
+fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+    let place: Place = name.place.clone();
+    if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
+        cx.error(place, format!("`{}` is {what}, not a body", name.text))
+            .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
+        return;
+    }
+    if scope.frames.contains(&name.text) {
+        cx.error(place, format!("`{}` is a frame, which has axes but no place", name.text))
+            .help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
+        return;
+    }
+    if scope.bodies.contains(&name.text) {
+        cx.error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
+            .help("leave its `at` out, or join the body");
+        return;
+    }
+    let known: Vec<&str> = held.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
+    if !scope.is_news(&name.text, cx) {
+        return;
+    }
+    let error = cx.error(place, format!("unknown body `{}`", name.text));
+    match crate::diag::nearest(&name.text, &known) {
+        Some(_) => drop(error.suggest(&name.text, known)),
+        None => words::point(error, words::BODIES, &name.text, &known),
+    }
+    if error.is_bare() {
+        error.help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));
+    }
+}

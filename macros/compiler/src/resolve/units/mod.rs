@@ -1,0 +1,244 @@
+//! Units, inferred: the dimension of every parameter, coordinate, input and output follows from where it stands, by
+//! unification over exponents of length, mass and time; angles are plain numbers. Runs on what the user wrote, since
+//! values are simplified and know no places.
+
+mod infer;
+mod owner;
+mod places;
+mod ratio;
+mod report;
+mod si;
+mod unify;
+mod value;
+mod walk;
+
+use crate::diag::Diagnostics;
+use crate::mechanism::{Chart, Constraint, Coordinate, Measure, Model, Units};
+use crate::syntax::{Definition, Description, Expr, ExprKind};
+use infer::{Inference, Meaning, Origin, Reason};
+use places::{Places, Task};
+use std::collections::BTreeSet;
+use unify::{Dimension, Variable};
+use value::Value;
+
+/// How deep definitions of definitions are looked into.
+const MOST_ROUNDS: usize = 8;
+
+/// The coordinates that expressions can name: true for an angle.
+pub type Coordinates = [(String, Coordinate, bool)];
+
+/// Infers the units of a checked description and reports what cannot have one.
+pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: &mut Diagnostics) -> Units {
+    let mut inference = Inference::new(d);
+    let mut pinned = vec![None; d.parameters.len()];
+    for (k, e) in &d.units {
+        let Some((dimension, text)) = si::read(e, cx) else { continue };
+        let origin = Origin { reason: Reason::Unit, at: e, like: None };
+        inference.equate(&Dimension::variable(*k), &dimension, origin);
+        if let Some(slot) = pinned.get_mut(*k) {
+            *slot = Some(text);
+        }
+    }
+    name_everything(d, coordinates, &mut inference);
+    let mut places = places::collect(d, &mut inference);
+    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
+    for (output, v) in d.outputs.iter().zip(&outputs) {
+        let (dimension, locals) = (Dimension::variable(*v), Vec::new());
+        places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
+    }
+    let sides = std::mem::take(&mut places.sides);
+    solve(places, &mut inference);
+    if inference.gave_up {
+        inference.mismatches.clear();
+    }
+    report::report(d, &mut inference, cx);
+    inference.grant();
+    let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
+    for (k, pinned) in pinned.into_iter().enumerate() {
+        units.parameters.push(pinned.unwrap_or_else(|| shown(&mut inference, &Dimension::variable(k), k)));
+    }
+    for (output, v) in d.outputs.iter().zip(outputs) {
+        let unit = shown(&mut inference, &Dimension::variable(v), v);
+        let energy = !output.vector && unit == "N·m";
+        units.outputs.push(if energy { "J".to_string() } else { unit });
+    }
+    units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();
+    units
+}
+
+/// Gives coordinates, inputs and definitions their dimensions, as far as they are known.
+fn name_everything(d: &Description, coordinates: &Coordinates, inference: &mut Inference<'_>) {
+    for (name, _, angle) in coordinates {
+        let dimension = if *angle { si::PLAIN } else { si::LENGTH };
+        inference.names.insert(name.clone(), Meaning::Moving(dimension));
+    }
+    let free = d.coordinates.iter().map(|c| &c.name);
+    for name in free.chain(&d.inputs) {
+        let dimension = Dimension::variable(inference.system.variable());
+        inference.names.insert(name.text.clone(), Meaning::Moving(dimension));
+    }
+    // Which definitions owe their units to parameters: as many rounds as they are nested, within reason.
+    let mut named: BTreeSet<&str> = d.parameters.iter().map(|p| p.text.as_str()).collect();
+    let mut others: Vec<&Definition> = d.definitions.iter().collect();
+    for _ in 0..MOST_ROUNDS {
+        let (found, rest): (Vec<&Definition>, Vec<&Definition>) =
+            others.iter().partition(|d| mentions(&d.value, &named));
+        named = found.iter().map(|d| d.name.text.as_str()).collect();
+        for name in &named {
+            inference.name_unknown(name, true);
+        }
+        others = rest;
+        if found.is_empty() {
+            break;
+        }
+    }
+    for definition in others {
+        inference.name_unknown(&definition.name.text, false);
+    }
+}
+
+/// True if an expression names one of these.
+fn mentions(e: &Expr, names: &BTreeSet<&str>) -> bool {
+    e.parts().into_iter().filter_map(Expr::name).any(|name| names.contains(name))
+}
+
+/// Walks all places; those first that say the dimension of one thing, so that the others are measured by them.
+fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
+    let (simple, others): (Vec<Task<'a>>, Vec<Task<'a>>) =
+        places.tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference));
+    let mut points = Some(places.points);
+    for task in simple.into_iter().map(Some).chain([None]).chain(others.into_iter().map(Some)) {
+        let Some(task) = task else {
+            points.take().into_iter().flatten().for_each(|e| inference.point(e));
+            continue;
+        };
+        inference.locals = task.locals;
+        let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
+        // A definition that is a number is a plain one, unless its uses demand a unit.
+        if !matches!(value, Value::Quantity { .. }) {
+            inference.wish(task.dimension);
+        }
+        inference.locals.clear();
+    }
+}
+
+/// True for a product with one named factor.
+fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
+    let mut at = e;
+    let mut named = 0;
+    loop {
+        let (factor, rest) = match &at.kind {
+            ExprKind::Neg(inner) => (None, Some(&**inner)),
+            ExprKind::Binary(crate::syntax::BinaryOp::Mul | crate::syntax::BinaryOp::Div, left, right, _) => {
+                (Some(&**right), Some(&**left))
+            }
+            _ => (Some(at), None),
+        };
+        match factor.map(|f| &f.kind) {
+            None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
+            Some(ExprKind::Name(name)) => named += usize::from(inference.names.contains_key(name)),
+            Some(_) => return false,
+        }
+        match rest {
+            Some(rest) => at = rest,
+            None => return named == 1,
+        }
+    }
+}
+
+/// How a dimension is written: as where it stands alone, or as everywhere.
+fn shown(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
+    let known = inference.system.resolve(dimension).filter(Dimension::is_known);
+    match (known, inference.hints.get(&v)) {
+        (None, _) => "any".to_string(),
+        _ if inference.gave_up => "any".to_string(),
+        (Some(_), Some(hint)) => hint.clone(),
+        (Some(dimension), None) => si::unit(&dimension),
+    }
+}
+
+/// Units of the entries of `q`, `v` and `u`.
+fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
+    let mut units = Units::default();
+    let (q, v) = (&mut units.configuration, &mut units.velocities);
+    let push = |list: &mut Vec<String>, unit: &str, n| list.extend(std::iter::repeat_n(unit.to_string(), n));
+    for chart in &model.charts {
+        match *chart {
+            Chart::Ball(..) => {
+                push(q, "1", 4);
+                push(v, "rad/s", 3);
+            }
+            Chart::Free(..) => {
+                push(q, "m", 3);
+                push(q, "1", 4);
+                push(v, "m/s", 3);
+                push(v, "rad/s", 3);
+            }
+            Chart::Plain(k, _) => {
+                let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
+                let (unit, rate) = match inference.names.get(model.configuration.get(k).map_or("", |n| n)) {
+                    Some(Meaning::Moving(dimension)) if !angle => of_coordinate(dimension.clone(), inference),
+                    _ => ("rad".to_string(), "rad/s".to_string()),
+                };
+                push(q, &unit, 1);
+                push(v, &rate, 1);
+            }
+        }
+    }
+    for (name, _) in &model.inputs {
+        let dimension = match inference.names.get(name) {
+            Some(Meaning::Moving(dimension)) => dimension.clone(),
+            _ => si::PLAIN,
+        };
+        units.inputs.push(of_input(&dimension, inference));
+    }
+    units
+}
+
+/// Units of a coordinate and of its rate.
+fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
+    let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
+    let unit = shown(inference, &dimension, v);
+    let rate = match unit.as_str() {
+        "any" => "any".to_string(),
+        "rad" => "rad/s".to_string(),
+        _ => {
+            let rate = dimension.over(&si::TIME).and_then(|rate| inference.system.resolve(&rate));
+            rate.map_or("any".to_string(), |rate| si::unit(&rate))
+        }
+    };
+    (unit, rate)
+}
+
+/// Units of a constraint and of its multiplier, whose product with the rate is a power.
+fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
+    let configurations = c.residual.is_some();
+    let (length, angle, work) = match configurations {
+        true => (si::LENGTH, si::PLAIN, si::ENERGY),
+        false => (si::SPEED, si::RATE, si::POWER),
+    };
+    let dimension = match c.measure {
+        Measure::Length => Some(length),
+        Measure::Angle => Some(angle.clone()),
+        Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
+    };
+    let known = dimension.filter(|d| d.is_known() && !inference.gave_up);
+    let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.over(&d)?))) else {
+        return ["any".to_string(), "any".to_string()];
+    };
+    let unit = match (dimension == angle, configurations) {
+        (true, true) => "rad".to_string(),
+        (true, false) => "rad/s".to_string(),
+        _ => si::unit(&dimension),
+    };
+    [unit, si::unit(&multiplier)]
+}
+
+/// The unit of an input: that of a joint's motor is the motor's.
+fn of_input(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
+    match dimension.unknown.first() {
+        Some((v, _)) => shown(inference, dimension, *v),
+        None if dimension.is_plain() => "N·m".to_string(),
+        None => "N".to_string(),
+    }
+}

@@ -1,0 +1,129 @@
+//! Which field an expression belongs to, for notes on what else a mistake has to do with.
+
+use crate::resolve::inertia::SOLIDS;
+use crate::syntax::{ActionKind, Description, Expr, ExprKind, Law, Target};
+
+/// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not known.
+pub fn place_of(d: &Description, e: &Expr) -> String {
+    let inside = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
+    let found = fields(d).into_iter().find(|(.., whole)| inside(whole));
+    match found {
+        Some(("", field, _)) => format!(" in `{field}`"),
+        Some((argument, field, _)) => format!(" in `{argument}` of `{field}`"),
+        None => String::new(),
+    }
+}
+
+/// The solid that an expression is an argument of, with its arguments' names.
+pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
+    let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
+    inertias.flat_map(Expr::parts).find_map(|call| {
+        let ExprKind::Call(word, arguments) = &call.kind else { return None };
+        let (solid, names) = SOLIDS.iter().find(|(solid, _)| *solid == word.text)?;
+        let holds = arguments.iter().any(|a| a.parts().into_iter().any(|part| std::ptr::eq(part, e)));
+        holds.then(|| (call, format!("{solid}({})", names.join(", "))))
+    })
+}
+
+type Found<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
+
+/// Every expression with its argument and its field.
+fn fields(d: &Description) -> Found<'_> {
+    let mut all: Found<'_> = Vec::new();
+    all.extend(d.gravity.iter().map(|e| ("gravity", d.name.text.as_str(), e)));
+    for (k, unit) in &d.units {
+        all.extend(d.parameters.get(*k).map(|p| ("unit", p.text.as_str(), unit)));
+    }
+    for body in &d.bodies {
+        let name = body.name.text.as_str();
+        let parts = [("mass", &body.mass), ("com", &body.com), ("inertia", &body.inertia), ("at", &body.at)];
+        all.extend(parts.into_iter().filter_map(|(word, e)| Some((word, name, e.as_ref()?))));
+    }
+    for particle in &d.particles {
+        let name = particle.name.text.as_str();
+        all.push(("mass", name, &particle.mass));
+        all.extend(particle.at.iter().map(|e| ("at", name, e)));
+    }
+    for joint in &d.joints {
+        let name = joint.name.text.as_str();
+        let ends = [&joint.parent, &joint.child];
+        all.extend(ends.iter().flat_map(|end| end.at.iter().map(|e| ("at", name, e))));
+        all.extend(ends.iter().flat_map(|end| end.rotated.iter().map(|e| ("rotated", name, e))));
+        all.extend(joint.about.iter().map(|e| ("about", name, e)));
+        all.extend(joint.along.iter().map(|e| ("along", name, e)));
+        all.extend(joint.pitch.iter().map(|e| ("pitch", name, e)));
+        all.extend(joint.lead.iter().map(|e| ("lead", name, e)));
+    }
+    for action in &d.actions {
+        let name = action.name.text.as_str();
+        let (Target::On(first) | Target::Between(first, _)) = &action.on;
+        all.push(("on", name, first));
+        if let Target::Between(_, second) = &action.on {
+            all.push(("between", name, second));
+        }
+        all.extend(of_action(&action.kind).into_iter().map(|(word, e)| (word, name, e)));
+    }
+    for point in &d.points {
+        all.extend(point.at.iter().map(|e| ("at", point.name.text.as_str(), e)));
+    }
+    for frame in &d.frames {
+        all.extend(frame.rotations.iter().map(|e| ("", frame.name.text.as_str(), e)));
+    }
+    let definitions = d.definitions.iter().chain(&d.outputs).map(|d| (&d.name, &d.value));
+    let energies = d.energies.iter().chain(&d.dissipations).map(|(name, e)| (name, e));
+    all.extend(definitions.chain(energies).map(|(name, e)| ("", name.text.as_str(), e)));
+    for constraint in &d.constraints {
+        let sides = [Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten();
+        all.extend(sides.map(|e| ("", constraint.name.text.as_str(), e)));
+        all.extend(
+            constraint.friction.iter().map(|f| ("friction", constraint.name.text.as_str(), &f.coefficient)),
+        );
+        let speed = constraint.friction.iter().filter_map(|f| f.speed.as_ref());
+        all.extend(speed.map(|e| ("speed", constraint.name.text.as_str(), e)));
+    }
+    all
+}
+
+/// The expressions of a force element, with their arguments.
+fn of_action(kind: &ActionKind) -> Vec<(&'static str, &Expr)> {
+    let law = |law: &'_ Law, linear: &'static str| match law {
+        Law::Linear(_) => linear,
+        Law::Force(_) => "force",
+        Law::Energy(_) => "energy",
+    };
+    match kind {
+        ActionKind::Spring { law: given, free } => {
+            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
+            let free = free.iter().map(|(e, angle)| (if *angle { "free_angle" } else { "free_length" }, e));
+            [(law(given, "stiffness"), e)].into_iter().chain(free).collect()
+        }
+        ActionKind::Dashpot { law: given } => {
+            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
+            vec![(law(given, "damping"), e)]
+        }
+        ActionKind::Inerter { inertance } => vec![("inertance", inertance)],
+        ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
+            let others = [
+                ("stiction", stiction),
+                ("stribeck_speed", stribeck_speed),
+                ("viscous", viscous),
+                ("speed", speed),
+            ];
+            let others = others.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?)));
+            [("coulomb", coulomb)].into_iter().chain(others).collect()
+        }
+        ActionKind::Gravity { constant, mu } => {
+            let both = [("constant", constant), ("mu", mu)];
+            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+        }
+        ActionKind::Attraction { strength } => vec![("strength", strength)],
+        ActionKind::Force { along: direction, value } => {
+            let both = [("along", direction), ("value", value)];
+            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+        }
+        ActionKind::Torque { about: direction, value } => {
+            let both = [("about", direction), ("value", value)];
+            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+        }
+    }
+}

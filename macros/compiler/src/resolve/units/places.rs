@@ -1,0 +1,338 @@
+//! The places of a description where expressions stand, each with the dimension that it gives to what stands there.
+
+use super::infer::{Inference, Meaning};
+use super::ratio::Ratio;
+use super::si::{
+    ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED,
+    STRENGTH, TIME,
+};
+use super::unify::Dimension;
+use crate::resolve::contact::FORMS;
+use crate::resolve::inertia::SOLIDS;
+use crate::syntax::{
+    Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
+    Target,
+};
+
+/// An expression with the dimension of its place.
+pub struct Task<'a> {
+    /// The expression.
+    pub e: &'a Expr,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// How the unit is written at this place; empty if as everywhere.
+    pub unit: &'static str,
+    /// Names that the place has of its own.
+    pub locals: Vec<(&'static str, Dimension)>,
+}
+
+/// All places, as they are collected.
+pub struct Places<'a> {
+    /// The expressions.
+    pub tasks: Vec<Task<'a>>,
+    /// Ends of force elements, which may be placed by vectors.
+    pub points: Vec<&'a Expr>,
+    /// By declared constraint: what its sides are. Nothing of rolling pairs.
+    pub sides: Vec<Dimension>,
+}
+
+/// What a force element works on.
+struct Work {
+    /// Dimension of the coordinate or the distance.
+    coordinate: Dimension,
+    /// Units of force, stiffness, damping and inertance there.
+    units: [&'static str; 4],
+}
+
+const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
+const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
+
+/// Collects the places of a description. What comes from a file is all numbers.
+pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<'a> {
+    let mut places = Places { tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
+    // Definitions have unknowns of their own, which come with their names; where they are used comes after.
+    for definition in &d.definitions {
+        if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
+            places.add(&definition.value, &Dimension::variable(*v), "");
+        }
+    }
+    places.all(&d.gravity, &ACCELERATION, "m/s²");
+    places.all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
+    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
+    for particle in &d.particles {
+        places.add(&particle.mass, &MASS, "kg");
+        particle.at.iter().for_each(|at| places.spot(at));
+    }
+    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.joint(j));
+    for frame in &d.frames {
+        places.rotations(&frame.rotations);
+    }
+    for point in &d.points {
+        places.points.extend(&point.on);
+        places.all(&point.at, &LENGTH, "m");
+    }
+    for action in &d.actions {
+        places.action(action, inference);
+    }
+    for constraint in &d.constraints {
+        places.constraint(constraint, inference);
+    }
+    for (_, e) in &d.energies {
+        places.add(e, &ENERGY, "J");
+    }
+    for (_, e) in &d.dissipations {
+        places.add(e, &POWER, "W");
+    }
+    places
+}
+
+impl<'a> Places<'a> {
+    fn add(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
+        self.tasks.push(Task { e, dimension: dimension.clone(), unit, locals: Vec::new() });
+    }
+
+    fn all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
+        e.into_iter().for_each(|e| self.add(e, dimension, unit));
+    }
+
+    fn body(&mut self, body: &'a Body) {
+        self.all(&body.mass, &MASS, "kg");
+        self.all(&body.com, &LENGTH, "m");
+        body.inertia.iter().for_each(|e| self.inertia(e));
+        body.at.iter().for_each(|e| self.spot(e));
+    }
+
+    /// `rod(m, l, y).rotated(…) + [[…], …]`
+    fn inertia(&mut self, e: &'a Expr) {
+        match &e.kind {
+            ExprKind::Array(rows) => {
+                for row in rows {
+                    if let ExprKind::Array(entries) = &row.kind {
+                        self.all(entries, &INERTIA, "kg·m²");
+                    }
+                }
+            }
+            ExprKind::Binary(_, a, b, _) => {
+                self.inertia(a);
+                self.inertia(b);
+            }
+            ExprKind::Method(inner, _, steps) => {
+                self.inertia(inner);
+                self.rotations(steps);
+            }
+            ExprKind::Call(solid, arguments) => {
+                let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == solid.text) else { return };
+                for (argument, name) in arguments.iter().zip(*names) {
+                    match *name {
+                        "mass" => self.add(argument, &MASS, "kg"),
+                        "axis" => self.add(argument, &PLAIN, "1"),
+                        "xx" | "yy" | "zz" => self.add(argument, &INERTIA, "kg·m²"),
+                        _ => self.add(argument, &LENGTH, "m"),
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// `z(angle)`, `eigenaxis(n, angle)`, a matrix.
+    fn rotations(&mut self, steps: &'a [Expr]) {
+        for step in steps {
+            match &step.kind {
+                ExprKind::Call(_, arguments) => {
+                    let (angle, axis) =
+                        arguments.split_last().map_or((None, arguments.as_slice()), |(a, n)| (Some(a), n));
+                    self.all(axis, &PLAIN, "1");
+                    self.all(angle, &PLAIN, "rad");
+                }
+                ExprKind::Array(rows) => {
+                    for row in rows {
+                        if let ExprKind::Array(entries) = &row.kind {
+                            self.all(entries, &PLAIN, "1");
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A place by name, `place.at(vector)`, or a vector from the ground's origin.
+    fn spot(&mut self, e: &'a Expr) {
+        match &e.kind {
+            ExprKind::Method(..) => self.points.push(e),
+            // The name of a place has no dimension of its own.
+            _ => self.add(e, &LENGTH, "m"),
+        }
+    }
+
+    fn endpoint(&mut self, end: &'a Endpoint) {
+        self.all(&end.at, &LENGTH, "m");
+        self.rotations(&end.rotated);
+    }
+
+    fn joint(&mut self, joint: &'a Joint) {
+        self.endpoint(&joint.parent);
+        self.endpoint(&joint.child);
+        self.all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
+        self.all(&joint.pitch, &LENGTH, "m/rad");
+        self.all(&joint.lead, &LENGTH, "m");
+    }
+
+    fn action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
+        let on = match &action.on {
+            Target::Between(a, b) => {
+                self.points.extend([a, b]);
+                None
+            }
+            Target::On(e) => {
+                let coordinate = coordinate(e, inference);
+                if coordinate.is_none() {
+                    self.points.push(e);
+                }
+                coordinate
+            }
+        };
+        let on_point = on.is_none();
+        let units = match &on {
+            Some(d) if d.is_plain() => ABOUT,
+            Some(d) if !d.is_known() => [""; 4],
+            _ => ALONG,
+        };
+        let work = Work { coordinate: on.unwrap_or(LENGTH), units };
+        let force = match action.kind {
+            ActionKind::Torque { .. } if on_point => Some(ENERGY),
+            ActionKind::Force { .. } if on_point => Some(FORCE),
+            _ => ENERGY.over(&work.coordinate),
+        };
+        if let Some(force) = force {
+            self.element(action, &work, &force, inference);
+        }
+    }
+
+    fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {
+        let [n, stiffness, damping, inertance] = work.units;
+        let q = &work.coordinate;
+        let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
+        let speed = || q.over(&TIME);
+        match &action.kind {
+            ActionKind::Spring { law, free } => {
+                let locals = vec![("stretch", q.clone()), ("length", q.clone())];
+                self.law(law, (per(0), stiffness), (force, n), locals);
+                self.all(free.iter().map(|(e, _)| e), q, if q.is_plain() { "rad" } else { "" });
+            }
+            ActionKind::Dashpot { law } => {
+                let locals = speed().map(|speed| ("speed", speed)).into_iter().collect();
+                self.law(law, (per(1), damping), (force, n), locals);
+            }
+            ActionKind::Inerter { inertance: e } => self.maybe(Some(e), per(2), inertance),
+            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed: regular } => {
+                self.all([coulomb].into_iter().chain(stiction), force, n);
+                self.maybe(stribeck_speed.iter().chain(regular), speed(), "");
+                self.maybe(viscous, per(1), damping);
+            }
+            ActionKind::Gravity { constant, mu } => {
+                self.all(constant, &GRAVITATION, "");
+                self.all(mu, &ATTRACTION, "");
+            }
+            ActionKind::Attraction { strength } => self.add(strength, &STRENGTH, ""),
+            ActionKind::Force { along: direction, value }
+            | ActionKind::Torque { about: direction, value } => {
+                let unit = match &action.kind {
+                    ActionKind::Torque { .. } => "N·m",
+                    _ => "N",
+                };
+                self.all(value, force, unit);
+                if value.is_none() {
+                    self.input(action, direction.as_ref(), force, inference);
+                }
+            }
+        }
+    }
+
+    /// Both sides are alike, whatever they are; surfaces have arguments of their own.
+    fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+        let side = Dimension::variable(inference.system.variable());
+        self.sides.push(side.clone());
+        if !matches!(constraint.kind, ConstraintKind::Rolling | ConstraintKind::Slipping) {
+            self.add(&constraint.value, &side, "");
+            self.all(&constraint.other, &side, "");
+            return;
+        }
+        if let Some(friction) = &constraint.friction {
+            self.add(&friction.coefficient, &PLAIN, "1");
+            self.all(&friction.speed, &SPEED, "m/s");
+        }
+        let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
+        for surface in pair {
+            let ExprKind::Method(home, word, arguments) = &surface.kind else { continue };
+            self.points.push(home);
+            let Some((_, names)) = FORMS.iter().find(|(name, _)| *name == word.text) else { continue };
+            for (argument, name) in arguments.iter().zip(*names) {
+                match *name {
+                    "axis" | "normal" => self.add(argument, &PLAIN, "1"),
+                    "half_angle" => self.add(argument, &PLAIN, "rad"),
+                    "u" | "w" => {}
+                    _ => self.add(argument, &LENGTH, "m"),
+                }
+            }
+        }
+    }
+
+    fn maybe(
+        &mut self,
+        e: impl IntoIterator<Item = &'a Expr>,
+        dimension: Option<Dimension>,
+        unit: &'static str,
+    ) {
+        if let Some(dimension) = dimension {
+            self.all(e, &dimension, unit);
+        }
+    }
+
+    /// A law: its coefficient, its force or its energy.
+    fn law(
+        &mut self,
+        law: &'a Law,
+        (coefficient, unit): (Option<Dimension>, &'static str),
+        (force, force_unit): (&Dimension, &'static str),
+        locals: Vec<(&'static str, Dimension)>,
+    ) {
+        match law {
+            Law::Linear(e) => self.maybe(Some(e), coefficient, unit),
+            Law::Force(e) => self.tasks.push(Task { e, dimension: force.clone(), unit: force_unit, locals }),
+            Law::Energy(e) => self.tasks.push(Task { e, dimension: ENERGY, unit: "J", locals }),
+        }
+    }
+
+    /// An input times its direction is a force.
+    fn input(
+        &mut self,
+        action: &'a Action,
+        direction: Option<&'a Expr>,
+        force: &Dimension,
+        inference: &mut Inference<'a>,
+    ) {
+        let Some(Meaning::Moving(input)) = inference.names.get(&action.name.text) else { return };
+        let Some(rest) = force.over(input) else { return };
+        // A bare direction has no unit.
+        inference.wish(rest.clone());
+        self.all(direction, &rest, "");
+    }
+}
+
+/// The dimension of the coordinate that an element acts on; none if it acts on a body or a point.
+fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
+    let meaning = match &e.kind {
+        ExprKind::Name(name) => inference.names.get(name),
+        ExprKind::Field(joint, member) => match &joint.kind {
+            ExprKind::Name(joint) => inference.names.get(&format!("{joint}.{}", member.text)),
+            _ => None,
+        },
+        _ => None,
+    };
+    match meaning {
+        Some(Meaning::Moving(dimension)) => Some(dimension.clone()),
+        _ => None,
+    }
+}

@@ -1,0 +1,123 @@
+//! Limbs that are alike: subtrees on one link, or on the ground, with the same joints in the same order.
+
+use crate::expr::lanes::MOST;
+use crate::kinematics::Joint;
+use crate::mechanism::{Model, Motion};
+use std::collections::BTreeMap;
+
+/// Limbs that are alike.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// How many there are.
+    pub limbs: usize,
+    /// The links of each lane that correspond to each other; those of the first limb in the model's order. The last limb
+    /// stands in several lanes if there are more of these than limbs: their number is a power of two.
+    pub rows: Vec<Vec<usize>>,
+}
+
+/// What limbs are compared by: the kinds of their joints, link by link.
+struct Shapes {
+    children: Vec<Vec<usize>>,
+    /// By link; equal for subtrees of the same shape, zero for what has no place in a limb.
+    shape: Vec<usize>,
+}
+
+/// Groups of alike limbs. No link is in two of them.
+pub fn find(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
+    let shapes = Shapes::of(model, joints);
+    let mut groups = Vec::new();
+    let mut taken = vec![false; joints.len()];
+    let roots: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].parent.is_none()).collect();
+    shapes.groups(joints, &roots, &mut groups, &mut taken);
+    for k in 0..joints.len() {
+        if !taken[k] {
+            shapes.groups(joints, &shapes.children[k], &mut groups, &mut taken);
+        }
+    }
+    groups
+}
+
+impl Shapes {
+    fn of(model: &Model<'_>, joints: &[Joint<'_>]) -> Shapes {
+        let mut children = vec![Vec::new(); joints.len()];
+        for (k, joint) in joints.iter().enumerate() {
+            if let Some(parent) = joint.parent {
+                children[parent.0].push(k);
+            }
+        }
+        let mut known: BTreeMap<(usize, Vec<usize>), usize> = BTreeMap::new();
+        let mut shape = vec![0; joints.len()];
+        for k in (0..joints.len()).rev() {
+            let mut below: Vec<usize> = children[k].iter().map(|c| shape[*c]).collect();
+            below.sort_unstable();
+            let Some(kind) = kind(&model.links[k].motion).filter(|_| !below.contains(&0)) else { continue };
+            let next = known.len() + 1;
+            shape[k] = *known.entry((kind, below)).or_insert(next);
+        }
+        Shapes { children, shape }
+    }
+
+    /// The groups among the children of one link.
+    fn groups(&self, joints: &[Joint<'_>], among: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
+        let mut left: Vec<usize> = among.iter().copied().filter(|k| self.shape[*k] != 0).collect();
+        while let Some(&first) = left.first() {
+            let mut roots: Vec<usize> =
+                left.iter().copied().filter(|k| self.shape[*k] == self.shape[first]).take(MOST).collect();
+            left.retain(|k| !roots.contains(k));
+            roots.retain(|k| is_apart(joints, *k));
+            if roots.len() < 2 {
+                continue;
+            }
+            let mut rows = Vec::new();
+            let limbs = roots.len();
+            roots.resize(limbs.next_power_of_two(), roots[limbs - 1]);
+            self.rows(roots, &mut rows);
+            rows.iter().flatten().for_each(|k| taken[*k] = true);
+            groups.push(Group { limbs, rows });
+        }
+    }
+
+    /// Corresponding links of subtrees of one shape, parents before their children.
+    fn rows(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
+        let mut todo = vec![roots];
+        while let Some(row) = todo.pop() {
+            let mut left: Vec<Vec<usize>> = row.iter().map(|k| self.children[*k].clone()).collect();
+            let next = self.children[row[0]].iter().map(|child| {
+                let alike = left.iter_mut().filter_map(|list| {
+                    let at = list.iter().position(|c| self.shape[*c] == self.shape[*child])?;
+                    Some(list.remove(at))
+                });
+                alike.collect()
+            });
+            let next: Vec<Vec<usize>> = next.collect();
+            todo.extend(next.into_iter().rev());
+            rows.push(row);
+        }
+    }
+}
+
+/// True if no coordinate of a limb moves anything else.
+fn is_apart(joints: &[Joint<'_>], root: usize) -> bool {
+    let mut inside = vec![false; joints.len()];
+    inside[root] = true;
+    for k in root + 1..joints.len() {
+        inside[k] = joints[k].parent.is_some_and(|p| inside[p.0]);
+    }
+    let velocities = |is: bool| {
+        let some = joints.iter().zip(&inside).filter(move |(_, inside)| **inside == is);
+        some.flat_map(|(joint, _)| joint.dofs.iter().map(|d| d.index))
+    };
+    let own: Vec<usize> = velocities(true).collect();
+    !velocities(false).any(|index| own.contains(&index))
+}
+
+/// Joints of one kind have the same number of degrees of freedom.
+fn kind(motion: &Motion<'_>) -> Option<usize> {
+    match motion {
+        Motion::Turn { .. } => Some(1),
+        Motion::Slide { .. } => Some(2),
+        Motion::Helix { .. } => Some(3),
+        Motion::Ball { .. } => Some(4),
+        Motion::Free { .. } | Motion::Placed => None,
+    }
+}

@@ -1,0 +1,239 @@
+//! Alike limbs as the lanes of one: legs, arms, fingers with the same joints. The mechanism that is left has one limb
+//! for each group; what differs between its lanes are constants and inputs. The algorithms run over it as over any other,
+//! and where a limb hands something to the link that it hangs from, they take the sum of the lanes.
+
+use super::find::Group;
+use super::merge::Merge;
+use super::velocities::{Place, Velocity, configuration, paired};
+use crate::expr::{Expr, Rotation, Vec3};
+use crate::kinematics::{Dof, Joint, Spatial};
+use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity};
+
+/// A mechanism with one limb for each group of alike ones.
+pub struct Limbs<'g> {
+    /// The mechanism, without springs and the like; its `v` are numbered by the limbs.
+    pub model: Model<'g>,
+    /// Its joints.
+    pub joints: Vec<Joint<'g>>,
+    velocities: Vec<Velocity>,
+    /// By velocity of the whole mechanism.
+    places: Vec<Place>,
+    /// Forces of springs, dashpots and the like, by velocity here.
+    passive_forces: Vec<Expr<'g>>,
+}
+
+impl<'g> Limbs<'g> {
+    /// The mechanism with its alike limbs as lanes. `passive_forces` gives those of the mechanism, by velocity. `None` if
+    /// there are no groups, or limbs are alike in shape alone.
+    pub fn of(
+        model: &Model<'g>,
+        joints: &[Joint<'g>],
+        groups: &[Group],
+        passive_forces: impl FnOnce() -> Vec<Expr<'g>>,
+    ) -> Option<Limbs<'g>> {
+        if groups.is_empty() || !model.inertances.is_empty() {
+            return None;
+        }
+        let rows = rows(joints.len(), groups);
+        let merge = &mut Merge::new(model.graph);
+        pair_coordinates(model, &rows, merge);
+        let (velocities, places) = paired(model, joints, &rows)?;
+        let mut limbs = Limbs {
+            model: without_forces(model),
+            joints: Vec::new(),
+            velocities,
+            places,
+            passive_forces: Vec::new(),
+        };
+        limbs.model.links.clear();
+        let mut numbers = vec![LinkId(0); joints.len()];
+        for row in rows.iter().filter(|row| !row.is_empty()) {
+            row.iter().for_each(|k| numbers[*k] = LinkId(limbs.joints.len()));
+            let parent = joints[row[0]].parent.map(|p| numbers[p.0]);
+            let links: Vec<&Link<'g>> = row.iter().map(|k| &model.links[*k]).collect();
+            let mut joint = limbs.joint(&row.iter().map(|k| &joints[*k]).collect::<Vec<_>>(), merge)?;
+            joint.parent = parent;
+            let group = groups.iter().find(|group| group.rows.first() == Some(row));
+            joint.limbs = group.map_or(1, |group| group.limbs);
+            limbs.joints.push(joint);
+            let link = limbs.link(&links, parent, merge)?;
+            limbs.model.links.push(link);
+        }
+        limbs.passive_forces = limbs.gathered(&passive_forces(), merge)?;
+        limbs.model.velocities.truncate(limbs.velocities.len());
+        Some(limbs)
+    }
+
+    fn joint(&self, lanes: &[&Joint<'g>], merge: &mut Merge<'g>) -> Option<Joint<'g>> {
+        let first = *lanes.first()?;
+        let mut dofs = Vec::new();
+        for (d, dof) in first.dofs.iter().enumerate() {
+            let index = self.places[dof.index].index;
+            if lanes.len() == 1 {
+                dofs.push(Dof { index, ..dof.clone() });
+                continue;
+            }
+            let signs = &self.velocities[index].signs;
+            let of_lanes = lanes.iter().zip(signs).map(|(joint, sign)| {
+                let dof = joint.dofs.get(d)?;
+                (dof.ratio == first.dofs[d].ratio).then(|| dof.subspace.times(self.model.graph.num(*sign)))
+            });
+            let subspaces: Vec<Spatial<'g>> = of_lanes.collect::<Option<_>>()?;
+            dofs.push(Dof { index, ratio: dof.ratio, subspace: merged_spatial(&subspaces, merge)? });
+        }
+        if lanes.len() == 1 {
+            return Some(Joint { dofs, ..first.clone() });
+        }
+        let rotations: Vec<&Rotation<'g>> = lanes.iter().map(|j| &j.rotation).collect();
+        let translations: Vec<Vec3<'g>> = lanes.iter().map(|j| j.translation).collect();
+        Some(Joint {
+            parent: None,
+            rotation: Rotation::side_by_side(&rotations, &mut |e| merge.lanes(e))?,
+            translation: merged_vector(&translations, merge)?,
+            dofs,
+            drift: None,
+            limbs: 1,
+        })
+    }
+
+    fn link(&self, lanes: &[&Link<'g>], parent: Option<LinkId>, merge: &mut Merge<'g>) -> Option<Link<'g>> {
+        let first = *lanes.first()?;
+        let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
+        let mut motion = first.motion.clone();
+        let place = |c: &mut Coordinate| c.v = self.places[c.v].index;
+        match &mut motion {
+            Motion::Turn { coordinate, .. }
+            | Motion::Slide { coordinate, .. }
+            | Motion::Helix { coordinate, .. } => place(coordinate),
+            Motion::Ball { v, .. } | Motion::Free { v, .. } => *v = self.places[*v].index,
+            Motion::Placed => {}
+        }
+        Some(Link {
+            parent,
+            placement: first.placement.clone(),
+            motion,
+            inertia: merged_inertia(&inertias, merge)?,
+        })
+    }
+
+    /// One expression for each velocity here, from those of the whole mechanism.
+    fn gathered(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
+        let g = self.model.graph;
+        let gather = |velocity: &Velocity| {
+            let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
+            Some(g.lane_constants(&velocity.signs) * merge.lanes(&lanes)?)
+        };
+        self.velocities.iter().map(gather).collect()
+    }
+
+    /// Symbols of a kind, one expression for each velocity here.
+    pub fn symbols(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+        let g = self.model.graph;
+        let gather = |velocity: &Velocity| {
+            let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
+            g.lane_constants(&velocity.signs) * g.lane_symbols(&symbols)
+        };
+        self.velocities.iter().map(gather).collect()
+    }
+
+    /// Forces of springs, dashpots and the like.
+    pub fn passive_forces(&self) -> &[Expr<'g>] {
+        &self.passive_forces
+    }
+
+    /// One expression for each velocity of the whole mechanism, from those here.
+    pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let g = self.model.graph;
+        let scatter = |place: &Place| match place.lane {
+            Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
+            None => values[place.index],
+        };
+        self.places.iter().map(scatter).collect()
+    }
+
+    /// By velocity of the whole mechanism: whether it stands for itself here, and is one of those marked here.
+    pub fn alone_and(&self, marked: &[bool]) -> Vec<bool> {
+        self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
+    }
+
+    /// The matrix of the whole mechanism, by rows, from that of the velocities here.
+    pub fn scattered_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let g = self.model.graph;
+        let signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
+        let mut whole = Vec::with_capacity(self.places.len() * self.places.len());
+        for &Place { index: i, lane: row } in &self.places {
+            for &Place { index: j, lane: column } in &self.places {
+                let entry = matrix[i][j];
+                whole.push(match (row, column) {
+                    (None, None) => entry,
+                    (Some(a), Some(b)) if a != b => g.zero(),
+                    (Some(k), None) => (signs(i) * entry).lane(k),
+                    (None, Some(k)) => (signs(j) * entry).lane(k),
+                    (Some(k), Some(_)) => (signs(i) * signs(j) * entry).lane(k),
+                });
+            }
+        }
+        whole
+    }
+}
+
+/// By link: those that become one with it, itself first; none for those that are not the first.
+fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = (0..links).map(|k| vec![k]).collect();
+    for row in groups.iter().flat_map(|group| &group.rows) {
+        row.iter().for_each(|k| rows[*k].clear());
+        rows[row[0]].clone_from(row);
+    }
+    rows
+}
+
+/// Tells which entries of `q` become the lanes of one.
+fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
+    for row in rows.iter().filter(|row| row.len() > 1) {
+        let entries = |k: &usize| configuration(&model.links[*k].motion);
+        for i in 0..entries(&row[0]).len() {
+            let symbol = |k: &usize| entries(k).nth(i).map(|q| Quantity::Configuration(q).symbol());
+            merge.pair_symbols(row.iter().filter_map(symbol).collect());
+        }
+    }
+}
+
+/// A mechanism without springs and the like.
+fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
+    let mut model = model.clone();
+    model.springs.clear();
+    model.dashpots.clear();
+    model.frictions.clear();
+    model.potentials.clear();
+    model.dissipations.clear();
+    model.loads.clear();
+    model.passive = None;
+    model
+}
+
+fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut Merge<'g>) -> Option<Vec3<'g>> {
+    let mut vector = *lanes.first()?;
+    for k in 0..3 {
+        vector.0[k] = merge.lanes(&lanes.iter().map(|v| v[k]).collect::<Vec<_>>())?;
+    }
+    Some(vector)
+}
+
+fn merged_spatial<'g>(lanes: &[Spatial<'g>], merge: &mut Merge<'g>) -> Option<Spatial<'g>> {
+    let linear: Vec<Vec3<'g>> = lanes.iter().map(|s| s.linear).collect();
+    let angular: Vec<Vec3<'g>> = lanes.iter().map(|s| s.angular).collect();
+    Some(Spatial { linear: merged_vector(&linear, merge)?, angular: merged_vector(&angular, merge)? })
+}
+
+fn merged_inertia<'g>(lanes: &[Inertia<'g>], merge: &mut Merge<'g>) -> Option<Inertia<'g>> {
+    let mut inertia = *lanes.first()?;
+    let mut each =
+        |of: &dyn Fn(&Inertia<'g>) -> Expr<'g>| merge.lanes(&lanes.iter().map(of).collect::<Vec<_>>());
+    inertia.mass = each(&|i| i.mass)?;
+    for k in 0..3 {
+        inertia.moment.0[k] = each(&|i| i.moment[k])?;
+        inertia.tensor.diagonal[k] = each(&|i| i.tensor.diagonal[k])?;
+        inertia.tensor.off[k] = each(&|i| i.tensor.off[k])?;
+    }
+    Some(inertia)
+}

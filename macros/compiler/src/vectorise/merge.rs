@@ -1,0 +1,325 @@
+//! Expressions of several limbs as the lanes of one. What is made is right for any pairing of operands: every lane has
+//! the value of its own expression. Depth and steps are bounded: expressions come from users, and what is too deep or
+//! takes too long has no lanes.
+
+use crate::expr::replace::replace;
+use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
+use crate::kinematics::symbols_in;
+use crate::mechanism::Quantity;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How deep operands are compared to find out which go together.
+const DEPTH: u8 = 8;
+
+/// Most operations one in another. Each takes stack, which compilers and their plug-ins have little of.
+const DEEPEST: usize = 64;
+
+/// Most steps of one mechanism, of about a tenth of a microsecond each in an unoptimised build.
+const STEPS: usize = 2_000_000;
+
+/// Makes lanes of expressions; what was made once is kept.
+pub struct Merge<'g> {
+    graph: &'g Graph,
+    known: BTreeMap<Vec<Id>, Option<Id>>,
+    /// With signs, true for minus.
+    signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
+    /// Symbols that are the lanes of one.
+    partners: Vec<Vec<Symbol>>,
+    /// How deep the expression is that is looked at.
+    depth: usize,
+    /// How many steps are left.
+    steps: usize,
+}
+
+impl<'g> Merge<'g> {
+    /// For the expressions of a graph.
+    pub fn new(graph: &'g Graph) -> Merge<'g> {
+        Merge {
+            graph,
+            known: BTreeMap::new(),
+            signed: BTreeMap::new(),
+            partners: Vec::new(),
+            depth: 0,
+            steps: STEPS,
+        }
+    }
+
+    /// Says which symbols are the lanes of one.
+    pub fn pair_symbols(&mut self, lanes: Vec<Symbol>) {
+        self.partners.push(lanes);
+    }
+
+    /// What takes the place of an expression of one lane in another lane, where it is not counted: with the symbols of that
+    /// lane, so that they are gathered once. As it is if it has symbols of other lanes too, of which there would be several
+    /// alike, or may be infinite there: not even zero times that would be zero.
+    fn in_lane(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
+        let partners = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
+        let is_own = |s: &Symbol| partners(*s).is_none_or(|list| list.get(from) == Some(s));
+        if !symbols_in(&[e]).iter().all(is_own) || !is_finite(e) {
+            return e;
+        }
+        replace(e, &|s| partners(s)?.get(to).map(|s| self.graph.symbol(*s)))
+    }
+
+    /// Takes steps off what is left; `None` when nothing is.
+    fn spend(&mut self, steps: usize) -> Option<()> {
+        self.steps = self.steps.checked_sub(steps)?;
+        Some(())
+    }
+
+    /// What is made one level deeper; `None` if that is too deep.
+    fn deeper(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
+        if self.depth == DEEPEST {
+            return None;
+        }
+        self.depth += 1;
+        let made = make(self);
+        self.depth -= 1;
+        made
+    }
+
+    /// The expression with these lanes; what is the same in all lanes has none. `None` if they are built differently.
+    pub fn lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
+        let first = *lanes.first()?;
+        if lanes.iter().all(|e| *e == first) {
+            return Some(first);
+        }
+        if let Some(values) = lanes.iter().map(|e| e.value()).collect::<Option<Vec<_>>>() {
+            return Some(self.graph.lane_constants(&values));
+        }
+        let ids: Vec<Id> = lanes.iter().map(|e| e.id()).collect();
+        if let Some(known) = self.known.get(&ids) {
+            return known.map(|id| self.graph.expr(id));
+        }
+        self.spend(ids.len())?;
+        let found = self.deeper(|merge| merge.build(lanes));
+        self.known.insert(ids, found.map(Expr::id));
+        found
+    }
+
+    fn build(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
+        // Offsets and factors that differ, or are missing in some lanes, are constants of the lanes.
+        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
+        let moving = lanes.iter().position(|e| e.value().is_none())?;
+        for lane in 0..parts.len() {
+            if lanes[lane].value().is_some() {
+                // Nothing there moves, so that nothing of what takes its place counts.
+                parts[lane].2 = self.in_lane(parts[moving].2, moving, lane);
+            }
+        }
+        if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
+            return self.affine(&parts);
+        }
+        let at = |id: Id| self.graph.expr(id);
+        match lanes.first()?.node() {
+            Node::Symbol(_) => {
+                let symbol = |e: &Expr<'g>| match e.node() {
+                    Node::Symbol(s) => Some(s),
+                    _ => None,
+                };
+                let symbols: Option<Vec<_>> = lanes.iter().map(symbol).collect();
+                Some(self.graph.lane_symbols(&symbols?))
+            }
+            Node::Call(f, _) => {
+                let argument = |e: &Expr<'g>| match e.node() {
+                    Node::Call(g, a) if g == f => Some(at(a)),
+                    _ => None,
+                };
+                let arguments: Option<Vec<_>> = lanes.iter().map(argument).collect();
+                Some(self.lanes(&arguments?)?.call(f))
+            }
+            Node::Add(..) | Node::Sub(..) => {
+                let (a, b) = self.paired(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?)?;
+                Some(self.lanes(&a)? + self.lanes(&b)?)
+            }
+            Node::Mul(..) => {
+                let (a, b) = self.paired(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?)?;
+                Some(self.lanes(&a)? * self.lanes(&b)?)
+            }
+            Node::Div(..) => {
+                let parts = |e: &Expr<'g>| match e.node() {
+                    Node::Div(a, b) => Some((at(a), at(b))),
+                    _ => None,
+                };
+                let (a, b): (Vec<_>, Vec<_>) =
+                    lanes.iter().map(parts).collect::<Option<Vec<_>>>()?.into_iter().unzip();
+                Some(self.lanes(&a)? / self.lanes(&b)?)
+            }
+            _ => None,
+        }
+    }
+
+    /// Offsets, factors and rests as lanes.
+    fn affine(&mut self, parts: &[(f64, f64, Expr<'g>)]) -> Option<Expr<'g>> {
+        let offsets: Vec<f64> = parts.iter().map(|part| part.0).collect();
+        let factors: Vec<f64> = parts.iter().map(|part| part.1).collect();
+        let rests: Vec<Expr<'g>> = parts.iter().map(|part| part.2).collect();
+        let scaled = match factors.iter().all(|c| c.abs() == 1.0) {
+            true => self.signed(&rests, &factors)?,
+            false => self.graph.lane_constants(&factors) * self.lanes(&rests)?,
+        };
+        Some(self.graph.lane_constants(&offsets) + scaled)
+    }
+
+    /// Expressions with signs. Where these differ the constants of the expressions take them, if there are enough.
+    fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+        let sign = *signs.first()?;
+        if signs.iter().all(|s| *s == sign) {
+            let all = self.lanes(lanes)?;
+            return Some(if sign < 0.0 { -all } else { all });
+        }
+        let key: Vec<(Id, bool)> = lanes.iter().zip(signs).map(|(e, sign)| (e.id(), *sign < 0.0)).collect();
+        if let Some(known) = self.signed.get(&key) {
+            return known.map(|id| self.graph.expr(id));
+        }
+        self.spend(key.len())?;
+        let found = self.deeper(|merge| merge.build_signed(lanes, signs));
+        self.signed.insert(key, found.map(Expr::id));
+        found
+    }
+
+    fn build_signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+        let first = *lanes.first()?;
+        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
+        if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
+            for (part, sign) in parts.iter_mut().zip(signs) {
+                (part.0, part.1) = (part.0 * sign, part.1 * sign);
+            }
+            return self.affine(&parts);
+        }
+        if absorbs(first, DEPTH) {
+            let all = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
+                lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>()
+            };
+            if let Some(operands) = all(terms) {
+                let (a, b) = self.paired(operands)?;
+                return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
+            }
+            if let Some(operands) = all(factors) {
+                let (a, b) = self.paired(operands)?;
+                return match absorbs(*a.first()?, DEPTH) {
+                    true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
+                    false => Some(self.lanes(&a)? * self.signed(&b, signs)?),
+                };
+            }
+        }
+        Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
+    }
+
+    /// First and second operands of a commutative operation in all lanes, exchanged where that brings like to like.
+    fn paired(&mut self, mut operands: Vec<(Expr<'g>, Expr<'g>)>) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+        let (a, b) = *operands.first()?;
+        for (x, y) in &mut operands {
+            let straight = self.alike(a, *x, DEPTH)? && self.alike(b, *y, DEPTH)?;
+            if !straight && self.alike(a, *y, DEPTH)? && self.alike(b, *x, DEPTH)? {
+                std::mem::swap(x, y);
+            }
+        }
+        Some(operands.into_iter().unzip())
+    }
+
+    /// Whether two expressions are built alike, as far as one looks. `None` when no steps are left.
+    fn alike(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
+        self.spend(1)?;
+        let ((.., a), (.., b)) = (affine(a), affine(b));
+        if a == b || depth == 0 || a.value().is_some() || b.value().is_some() {
+            return Some(true);
+        }
+        let mut same = |x: Id, y: Id| self.alike(a.graph().expr(x), a.graph().expr(y), depth - 1);
+        Some(match (a.node(), b.node()) {
+            (Node::Symbol(s), Node::Symbol(t)) => {
+                std::mem::discriminant(&Quantity::of(s)) == std::mem::discriminant(&Quantity::of(t))
+            }
+            (Node::Neg(x), Node::Neg(y)) => same(x, y)?,
+            (Node::Call(f, x), Node::Call(g, y)) => f == g && same(x, y)?,
+            (Node::Add(x, y) | Node::Sub(x, y), Node::Add(u, v) | Node::Sub(u, v))
+            | (Node::Mul(x, y), Node::Mul(u, v)) => {
+                (same(x, u)? && same(y, v)?) || (same(x, v)? && same(y, u)?)
+            }
+            (Node::Div(x, y), Node::Div(u, v)) => same(x, u)? && same(y, v)?,
+            _ => false,
+        })
+    }
+}
+
+/// The terms of a sum or difference.
+fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+    let at = |id: Id| e.graph().expr(id);
+    match e.node() {
+        Node::Add(a, b) => Some((at(a), at(b))),
+        Node::Sub(a, b) => Some((at(a), -at(b))),
+        _ => None,
+    }
+}
+
+/// The factors of a product.
+fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+    let at = |id: Id| e.graph().expr(id);
+    match e.node() {
+        Node::Mul(a, b) => Some((at(a), at(b))),
+        _ => None,
+    }
+}
+
+/// True if another sign costs nothing: constants take it. Looks so deep.
+fn absorbs(e: Expr<'_>, depth: u8) -> bool {
+    let (offset, factor, rest) = affine(e);
+    if offset != 0.0 || factor.abs() != 1.0 || e.value().is_some() {
+        return true;
+    }
+    let Some(depth) = depth.checked_sub(1) else { return false };
+    match (terms(rest), factors(rest)) {
+        (Some((a, b)), _) => absorbs(a, depth) && absorbs(b, depth),
+        (_, Some((a, b))) => absorbs(a, depth) || absorbs(b, depth),
+        _ => false,
+    }
+}
+
+/// Offset, factor and rest: an expression as `offset + factor × rest`, as far as constants go.
+fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
+    let at = |id: Id| e.graph().expr(id);
+    let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
+    loop {
+        let value = |id: Id| at(id).value();
+        match rest.node() {
+            Node::Const(c) => return (offset + factor * c, 0.0, rest),
+            Node::Neg(a) => (factor, rest) = (-factor, at(a)),
+            Node::Mul(a, b) => match value(a) {
+                Some(c) => (factor, rest) = (factor * c, at(b)),
+                None => return (offset, factor, rest),
+            },
+            Node::Add(a, b) | Node::Sub(a, b) => {
+                let sign = if matches!(rest.node(), Node::Sub(..)) { -1.0 } else { 1.0 };
+                (offset, factor, rest) = match (value(a), value(b)) {
+                    (Some(c), _) => (offset + factor * c, factor * sign, at(b)),
+                    (_, Some(c)) => (offset + factor * sign * c, factor, at(a)),
+                    _ => return (offset, factor, rest),
+                };
+            }
+            _ => return (offset, factor, rest),
+        }
+    }
+}
+
+/// True for an expression that is finite wherever its symbols are, short of numbers that are too large.
+fn is_finite(e: Expr<'_>) -> bool {
+    let graph = e.graph();
+    let (mut todo, mut seen) = (vec![e.id()], BTreeSet::new());
+    while let Some(id) = todo.pop() {
+        let node = graph.node(id);
+        match node {
+            Node::Const(_)
+            | Node::Symbol(_)
+            | Node::Neg(_)
+            | Node::Add(..)
+            | Node::Sub(..)
+            | Node::Mul(..)
+            | Node::Call(Function::Sin | Function::Cos, _) => {}
+            _ => return false,
+        }
+        if seen.insert(id) {
+            node.operands(|a| todo.push(a));
+        }
+    }
+    true
+}

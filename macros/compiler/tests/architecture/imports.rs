@@ -1,0 +1,390 @@
+//! The files of the crate and which of them need which: what `use` and paths in the code name, followed through re-exports
+//! to the file that defines it. A file that only declares modules and passes names on needs nothing.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The path of a module from the crate's root.
+type Module = Vec<String>;
+
+/// A source file.
+struct File {
+    path: PathBuf,
+    module: Module,
+    /// Words and signs of its code, without comments, strings, unit tests and imports.
+    tokens: Vec<String>,
+    /// What it defines.
+    items: BTreeSet<String>,
+    /// What it imports: name here (`*` for all names), path as written, whether it is passed on.
+    imports: Vec<(String, Vec<String>, bool)>,
+    /// Methods that it gives to types: the type and the method.
+    methods: Vec<(String, String)>,
+}
+
+/// The files of the crate with what each needs.
+pub struct Imports {
+    files: Vec<File>,
+    by_module: BTreeMap<Module, usize>,
+}
+
+impl Imports {
+    /// Reads all files below a folder.
+    pub fn of(source: &Path) -> Imports {
+        let mut files = Vec::new();
+        let mut todo = vec![source.to_path_buf()];
+        while let Some(folder) = todo.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    todo.push(path);
+                } else if path.extension().is_some_and(|end| end == "rs") && !is_test(&path) {
+                    files.push(File::read(source, path));
+                }
+            }
+        }
+        files.sort_by(|a, b| a.path.cmp(&b.path));
+        let by_module = files.iter().enumerate().map(|(k, file)| (file.module.clone(), k)).collect();
+        Imports { files, by_module }
+    }
+
+    /// A file's path below the folder.
+    pub fn name(&self, file: usize) -> String {
+        self.files[file].path.to_string_lossy().into_owned()
+    }
+
+    /// By file, the files that it needs.
+    pub fn graph(&self) -> Vec<BTreeSet<usize>> {
+        (0..self.files.len()).map(|k| self.needs(k)).collect()
+    }
+
+    /// By file, the files that it needs, with those whose methods it calls. Methods count whose type is defined in another
+    /// file, and whose name no other method has.
+    pub fn graph_with_methods(&self) -> Vec<BTreeSet<usize>> {
+        let mut definitions: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
+        for (k, file) in self.files.iter().enumerate() {
+            for (of, method) in &file.methods {
+                definitions.entry(method).or_default().push((k, of));
+            }
+        }
+        let apart = |(k, of): &(usize, &str)| !self.files[*k].items.contains(*of);
+        let known: BTreeMap<&str, usize> = definitions
+            .into_iter()
+            .filter_map(|(method, places)| match places.as_slice() {
+                [one] if apart(one) => Some((method, one.0)),
+                _ => None,
+            })
+            .collect();
+        let mut graph = self.graph();
+        for (k, file) in self.files.iter().enumerate() {
+            for pair in file.tokens.windows(2).filter(|pair| pair[0] == "." || pair[0] == "::") {
+                graph[k].extend(known.get(pair[1].as_str()).filter(|at| **at != k));
+            }
+        }
+        graph
+    }
+
+    fn needs(&self, k: usize) -> BTreeSet<usize> {
+        let file = &self.files[k];
+        let mut found = BTreeSet::new();
+        for (name, path, passes_on) in &file.imports {
+            if !passes_on || file.tokens.contains(name) {
+                found.extend(self.defining(&file.module, path));
+            }
+        }
+        let mut at = 0;
+        while at < file.tokens.len() {
+            let path = path_at(&file.tokens, at);
+            at += (2 * path.len()).saturating_sub(1).max(1);
+            if path.len() > 1 {
+                found.extend(self.defining(&file.module, &path));
+            }
+        }
+        found.remove(&k);
+        found
+    }
+
+    /// The file that defines what a path in a module means; none for modules themselves and for what is not of this crate.
+    fn defining(&self, from: &[String], path: &[String]) -> Option<usize> {
+        let mut module = from.to_vec();
+        let mut rest = path;
+        while let [first, others @ ..] = rest {
+            match first.as_str() {
+                "crate" => module.clear(),
+                "super" => drop(module.pop()),
+                "self" => {}
+                _ => break,
+            }
+            rest = others;
+        }
+        self.look_up(&module, rest, 0)
+    }
+
+    fn look_up(&self, module: &[String], path: &[String], depth: usize) -> Option<usize> {
+        let [first, rest @ ..] = path else { return None };
+        let child: Module = module.iter().chain([first]).cloned().collect();
+        if self.by_module.contains_key(&child) {
+            return self.look_up(&child, rest, depth);
+        }
+        let own = *self.by_module.get(module)?;
+        let file = &self.files[own];
+        if file.items.contains(first) {
+            return Some(own);
+        }
+        if depth > 8 {
+            return None;
+        }
+        let follow = |target: &[String], rest: &[String]| {
+            let whole: Vec<String> = target.iter().chain(rest).cloned().collect();
+            self.defining_at(module, &whole, depth + 1)
+        };
+        let named = file.imports.iter().find(|(name, ..)| name == first);
+        if let Some((_, target, _)) = named {
+            return follow(target, rest);
+        }
+        file.imports.iter().filter(|(name, ..)| name == "*").find_map(|(_, target, _)| follow(target, path))
+    }
+
+    fn defining_at(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
+        let outside = !matches!(path[0].as_str(), "crate" | "super" | "self")
+            && !self.by_module.contains_key(&from.iter().chain([&path[0]]).cloned().collect::<Module>());
+        if outside {
+            return None;
+        }
+        let mut module = from.to_vec();
+        let mut rest = path;
+        while let [first, others @ ..] = rest {
+            match first.as_str() {
+                "crate" => module.clear(),
+                "super" => drop(module.pop()),
+                "self" => {}
+                _ => break,
+            }
+            rest = others;
+        }
+        self.look_up(&module, rest, depth)
+    }
+}
+
+/// The circles of a graph: files that need each other, directly or by way of others, the largest first.
+pub fn circles(graph: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
+    let reached: Vec<BTreeSet<usize>> = (0..graph.len())
+        .map(|k| {
+            let (mut seen, mut todo) = (BTreeSet::new(), vec![k]);
+            while let Some(at) = todo.pop() {
+                todo.extend(graph[at].iter().copied().filter(|next| seen.insert(*next)));
+            }
+            seen
+        })
+        .collect();
+    let mut all: Vec<Vec<usize>> = Vec::new();
+    for k in 0..graph.len() {
+        let circle: Vec<usize> =
+            (0..graph.len()).filter(|j| reached[k].contains(j) && reached[*j].contains(&k)).collect();
+        if circle.len() > 1 && circle[0] == k {
+            all.push(circle);
+        }
+    }
+    all.sort_by_key(|circle| std::cmp::Reverse(circle.len()));
+    all
+}
+
+fn is_test(path: &Path) -> bool {
+    path.components().any(|c| c.as_os_str() == "tests") || path.ends_with("tests.rs")
+}
+
+impl File {
+    fn read(source: &Path, path: PathBuf) -> File {
+        let text = fs::read_to_string(&path).unwrap();
+        let path = path.strip_prefix(source).unwrap().to_path_buf();
+        let mut module: Module = path
+            .with_extension("")
+            .components()
+            .map(|c| c.as_os_str().to_string_lossy().into_owned())
+            .collect();
+        module.pop_if(|last| last == "mod" || last == "lib");
+        let mut file = File::parse(&text);
+        (file.path, file.module) = (path, module);
+        file
+    }
+
+    /// Takes the text of a file apart.
+    fn parse(text: &str) -> File {
+        let all = words(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
+        let mut file = File {
+            path: PathBuf::new(),
+            module: Vec::new(),
+            tokens: Vec::new(),
+            items: BTreeSet::new(),
+            imports: Vec::new(),
+            methods: Vec::new(),
+        };
+        let (mut at, mut depth, mut of) = (0, 0_usize, None);
+        while at < all.len() {
+            match all[at].as_str() {
+                "use" => {
+                    let end = at + all[at..].iter().position(|t| t == ";").unwrap();
+                    let passes_on = at > 0 && matches!(all[at - 1].as_str(), "pub" | ")");
+                    let mut list = Vec::new();
+                    tree(&all[at + 1..end], &mut 0, &[], &mut list);
+                    file.imports.extend(list.into_iter().map(|(name, path)| (name, path, passes_on)));
+                    at = end + 1;
+                    continue;
+                }
+                "struct" | "enum" | "trait" | "type" | "const" | "static" | "fn" => {
+                    if let Some(name) = all.get(at + 1) {
+                        file.items.insert(name.clone());
+                        let method = all[at] == "fn" && depth == 1;
+                        file.methods.extend(of.clone().filter(|_| method).map(|of| (of, name.clone())));
+                    }
+                }
+                "impl" if depth == 0 => {
+                    let end = at + all[at..].iter().position(|t| t == "{").unwrap();
+                    of = implemented(&all[at + 1..end]);
+                }
+                "{" => depth += 1,
+                "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            file.tokens.push(all[at].clone());
+            at += 1;
+        }
+        file
+    }
+}
+
+/// The type that methods are given to; none for those of traits.
+fn implemented(head: &[String]) -> Option<String> {
+    if head.iter().any(|t| t == "for") {
+        return None;
+    }
+    let mut depth = 0;
+    head.iter().find_map(|t| match t.as_str() {
+        "<" => {
+            depth += 1;
+            None
+        }
+        ">" => {
+            depth -= 1;
+            None
+        }
+        name if depth == 0 && name.starts_with(char::is_alphabetic) => Some(name.to_string()),
+        _ => None,
+    })
+}
+
+/// The leaves of an import: name here, path.
+fn tree(tokens: &[String], at: &mut usize, before: &[String], list: &mut Vec<(String, Vec<String>)>) {
+    let mut path = before.to_vec();
+    while let Some(token) = tokens.get(*at) {
+        *at += 1;
+        match token.as_str() {
+            "::" => {}
+            "{" => {
+                while tokens.get(*at).is_some_and(|t| t != "}") {
+                    tree(tokens, at, &path, list);
+                }
+                *at += 1;
+                while tokens.get(*at).is_some_and(|t| t == ",") {
+                    *at += 1;
+                }
+                return;
+            }
+            "," => break,
+            "}" => {
+                *at -= 1;
+                break;
+            }
+            "as" => {
+                list.push((tokens[*at].clone(), path));
+                *at += 1;
+                while tokens.get(*at).is_some_and(|t| t == ",") {
+                    *at += 1;
+                }
+                return;
+            }
+            "self" if !path.is_empty() => {}
+            word => path.push(word.to_string()),
+        }
+    }
+    if path.last().is_some_and(|last| last == "*") {
+        path.pop();
+        list.push(("*".to_string(), path));
+    } else if let Some(last) = path.last() {
+        list.push((last.clone(), path.clone()));
+    }
+}
+
+/// The path that begins at a word: its words.
+fn path_at(tokens: &[String], mut at: usize) -> Vec<String> {
+    let is_word =
+        |t: Option<&String>| t.is_some_and(|t| t.starts_with(|c: char| c.is_alphabetic() || c == '_'));
+    let mut path = Vec::new();
+    while is_word(tokens.get(at)) {
+        path.push(tokens[at].clone());
+        if tokens.get(at + 1).is_none_or(|t| t != "::") || !is_word(tokens.get(at + 2)) {
+            break;
+        }
+        at += 2;
+    }
+    path
+}
+
+/// Words and signs of code; `::` is one sign. Comments, strings and characters are left out.
+fn words(text: &str) -> Vec<String> {
+    let c: Vec<char> = text.chars().collect();
+    let (mut at, mut found) = (0, Vec::new());
+    while at < c.len() {
+        let next = c.get(at + 1).copied();
+        match c[at] {
+            '/' if next == Some('/') => at += c[at..].iter().take_while(|c| **c != '\n').count(),
+            '"' => {
+                at += 1;
+                while at < c.len() && c[at] != '"' {
+                    at += 1 + usize::from(c[at] == '\\');
+                }
+                at += 1;
+            }
+            '\'' if next == Some('\\') => at += 3 + c[at + 3..].iter().take_while(|c| **c != '\'').count(),
+            '\'' if c.get(at + 2) == Some(&'\'') => at += 3,
+            ':' if next == Some(':') => {
+                found.push("::".to_string());
+                at += 2;
+            }
+            first if first.is_alphanumeric() || first == '_' => {
+                let word: String = c[at..].iter().take_while(|c| c.is_alphanumeric() || **c == '_').collect();
+                at += word.chars().count();
+                found.push(word);
+            }
+            sign => {
+                if !sign.is_whitespace() {
+                    found.push(sign.to_string());
+                }
+                at += 1;
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn files_are_read_as_rust_reads_them() {
+    let file = File::parse(
+        "use crate::a::{self, b::{C, d as e}}; pub use f::*; // use g;\nimpl<'a> X<'a> { fn y() { z::w(\"use h;\", ':') } }",
+    );
+    let imports: Vec<String> =
+        file.imports.iter().map(|(name, path, on)| format!("{name} {} {on}", path.join("::"))).collect();
+    assert_eq!(imports, ["a crate::a false", "C crate::a::b::C false", "e crate::a::b::d false", "* f true"]);
+    assert_eq!(file.methods, [("X".to_string(), "y".to_string())]);
+    let at = file.tokens.iter().position(|t| t == "z").unwrap();
+    assert_eq!(path_at(&file.tokens, at), ["z", "w"]);
+}
+
+#[test]
+fn circles_are_what_reaches_itself() {
+    let graph: Vec<BTreeSet<usize>> = [vec![1], vec![2], vec![0], vec![0, 4], vec![]]
+        .into_iter()
+        .map(|list: Vec<usize>| list.into_iter().collect())
+        .collect();
+    assert_eq!(circles(&graph), [[0, 1, 2]]);
+}

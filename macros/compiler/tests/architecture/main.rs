@@ -1,0 +1,176 @@
+//! Data flows one way: what a stage imports is what the README says.
+
+mod imports;
+
+use imports::{Imports, circles};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const INVARIANT: &str = "- Architecture invariant: ";
+
+/// By module, the modules that it may use, from the README's lines "`a` uses `b` and `c`; `d` uses `e`."
+fn invariants() -> BTreeMap<String, Vec<String>> {
+    let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
+    let clauses =
+        readme.lines().filter_map(|line| line.strip_prefix(INVARIANT)).flat_map(|line| line.split(';'));
+    let mut found = BTreeMap::new();
+    for clause in clauses.filter(|clause| clause.contains("` uses ")) {
+        let mut words = clause.split('`').skip(1).step_by(2).map(ToString::to_string);
+        let module = words.next().unwrap();
+        assert!(found.insert(module, words.collect()).is_none(), "two invariants for one module: {clause}");
+    }
+    found
+}
+
+/// The source files of the crate with the module that each belongs to; the pipeline itself may use all of them.
+fn sources() -> Vec<(String, PathBuf)> {
+    let source = Path::new(ROOT).join("src");
+    let mut files = Vec::new();
+    let mut todo = vec![source.clone()];
+    while let Some(folder) = todo.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                todo.push(path);
+            } else if path.extension().is_some_and(|end| end == "rs") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    let module = |path: &Path| {
+        let first = path.strip_prefix(&source).unwrap().components().next().unwrap();
+        Path::new(first.as_os_str()).file_stem().unwrap().to_string_lossy().into_owned()
+    };
+    files.into_iter().map(|path| (module(&path), path)).collect()
+}
+
+/// Code without comments and without the unit tests, which may use what they test with.
+fn code(path: &Path) -> String {
+    let is_test = path.components().any(|c| c.as_os_str() == "tests") || path.ends_with("tests.rs");
+    let text = if is_test { String::new() } else { fs::read_to_string(path).unwrap() };
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// The modules that a piece of code names: `crate::a::…`, `crate::{a, b::…}`.
+fn modules(code: &str) -> Vec<String> {
+    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut found = Vec::new();
+    for rest in code.split("crate::").skip(1) {
+        let Some(group) = rest.strip_prefix('{') else {
+            found.push(word(rest));
+            continue;
+        };
+        let mut depth = 0;
+        let mut start = true;
+        for (at, c) in group.char_indices() {
+            if start && depth == 0 && c.is_alphabetic() {
+                found.push(word(&group[at..]));
+                start = false;
+            }
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                ',' if depth == 0 => start = true,
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_stage_imports_only_what_stands_before_it() {
+    let invariants = invariants();
+    let mut violations = Vec::new();
+    for (module, path) in sources() {
+        if module == "lib" {
+            continue;
+        }
+        let Some(allowed) = invariants.get(&module) else {
+            violations.push(format!("the README says nothing of `{module}`"));
+            continue;
+        };
+        for used in modules(&code(&path)) {
+            if used != module && !allowed.contains(&used) {
+                violations.push(format!("{}: `{module}` uses `{used}`", path.display()));
+            }
+        }
+    }
+    assert!(violations.is_empty(), "{}", violations.join("\n"));
+}
+
+/// The stages in the order of the README's table.
+fn stages() -> Vec<String> {
+    let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
+    let table = readme.lines().skip_while(|line| !line.starts_with("| stage |")).skip(2);
+    let rows = table.map_while(|line| line.strip_prefix("| `"));
+    rows.filter_map(|row| row.split('`').next().map(ToString::to_string)).collect()
+}
+
+#[test]
+fn a_stage_uses_what_stands_above_it() {
+    let (stages, invariants) = (stages(), invariants());
+    assert!(invariants.keys().all(|stage| stages.contains(stage)), "missing in the table: {invariants:?}");
+    for (at, stage) in stages.iter().enumerate() {
+        for used in invariants.get(stage).into_iter().flatten() {
+            assert!(stages[..at].contains(used), "`{stage}` uses `{used}`, which does not stand above it");
+        }
+    }
+}
+
+/// Most files that may need each other.
+const MOST_IN_A_CIRCLE: usize = 13;
+
+#[test]
+fn circles_of_imports_are_small() {
+    let imports = Imports::of(&Path::new(ROOT).join("src"));
+    let shown = |circle: &Vec<usize>| {
+        let names: Vec<String> = circle.iter().map(|file| imports.name(*file)).collect();
+        format!("{}: {}", circle.len(), names.join(" "))
+    };
+    let all = circles(&imports.graph());
+    let list: Vec<String> = all.iter().map(shown).collect();
+    println!("circles of imports:\n{}", list.join("\n"));
+    let list: Vec<String> = circles(&imports.graph_with_methods()).iter().map(shown).collect();
+    println!("circles of imports and methods:\n{}", list.join("\n"));
+    assert!(all.iter().all(|circle| circle.len() <= MOST_IN_A_CIRCLE));
+}
+
+#[test]
+fn tokens_end_at_the_mechanism() {
+    for (module, path) in sources() {
+        let words: &[&str] = match module.as_str() {
+            "expr" | "mechanism" | "kinematics" | "passes" | "vectorise" | "mechanics" | "lower" => {
+                &["proc_macro2", "syn::", "quote!", "Span"]
+            }
+            "resolve" => &["syn::", "quote!"],
+            _ => continue,
+        };
+        let code = code(&path).replace("crate::syntax::", "");
+        for word in words {
+            assert!(!code.contains(word), "{}: `{word}` in `{module}`", path.display());
+        }
+    }
+}
+
+#[test]
+fn output_does_not_depend_on_the_order_of_a_hash_table() {
+    for (_, path) in sources() {
+        let code = code(&path);
+        for word in ["HashMap", "HashSet", "RandomState"] {
+            assert!(!code.contains(word), "{}: `{word}`", path.display());
+        }
+    }
+}
+
+#[test]
+fn imports_are_read_as_rust_reads_them() {
+    let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = crate::emit::f();";
+    assert_eq!(modules(code), ["diag", "expr", "mechanism", "lower", "emit"]);
+    assert_eq!(invariants()["import"], ["diag", "syntax"]);
+}
