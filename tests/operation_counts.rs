@@ -212,3 +212,23 @@ fn chains_placed_by_expressions() {
         assert!(found[6] < n * n * n / 3 + 6 * n * n, "forward dynamics of {n} particles: {}", found[6]);
     }
 }
+
+/// A mechanism below the size from which nothing is compared any more costs the compiler less than one twice as large.
+#[test]
+fn comparing_stays_cheaper_than_growing() {
+    let chain = |n: usize| {
+        let mut item = String::from("pub struct Chain {");
+        for k in 0..n {
+            let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.4 * z)", k - 1) };
+            item.push_str(&format!(
+                "#[body(mass = 2, com = 0.2 * z, inertia = diagonal(0.03, 0.04, 0.02))] b{k}: Body,
+                 #[joint({parent} -> b{k}, about = {})] j{k}: Pin,",
+                ["y", "x", "z"][k % 3]
+            ));
+        }
+        item.push('}');
+        item
+    };
+    let [one, two] = [16, 32].map(|n| programs_and_nodes("gravity = -9.81 * z", &chain(n), &MAIN).1);
+    assert!(4 * one < 3 * two, "16 spatial pins take {one} expressions, 32 take {two}");
+}

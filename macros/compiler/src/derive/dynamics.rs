@@ -5,7 +5,7 @@ use super::{Candidate, Specialisation, in_lanes};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
-use crate::machine::COMPARED_VELOCITIES;
+use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::{
     self, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
@@ -16,11 +16,15 @@ use crate::vectorise::{self, Limbs};
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
 const SIMILAR: usize = 8;
+/// The same of a mechanism with many operations, where one distribution of the masses is enough to tell.
+const SIMILAR_AT_FIRST: usize = 24;
 
 /// What dynamics is derived from.
 pub(super) struct Dynamics<'g> {
     /// The model's forms with frames of each kind that may be good, the best first.
     kinds: Vec<Forms<'g>>,
+    /// One algorithm of forward dynamics is taken without comparing.
+    is_large: bool,
     specialisation: Specialisation,
     mass_matrix: Program,
     inverse_dynamics: Program,
@@ -36,7 +40,8 @@ impl<'g> Dynamics<'g> {
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
         }
-        let most = all.first().map_or(0, |kind| kind.size + kind.size / SIMILAR);
+        let least = all.first().map_or(0, |kind| kind.size);
+        let most = least + least / SIMILAR;
         let (mut masses, mut recursions, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         for kind in all {
             masses.extend(kind.masses);
@@ -56,6 +61,7 @@ impl<'g> Dynamics<'g> {
             mass_matrix: specialisation.cheapest(masses.into_iter()).or_in_lanes(wide),
             inverse_dynamics: specialisation.cheapest(recursions.into_iter()).or_in_lanes(side_by_side),
             bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
+            is_large: model.nv() > COMPARED_VELOCITIES || least > COMPARED_OPERATIONS,
             kinds,
             specialisation,
         }
@@ -134,7 +140,7 @@ impl<'g> Dynamics<'g> {
     /// Articulated bodies or factorisation, whichever takes less time: the chains of the first are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> = self.kinds.iter().flat_map(Forms::articulated).collect();
-        let is_large = self.kinds.first().is_some_and(|forms| forms.nv() > COMPARED_VELOCITIES);
+        let is_large = self.is_large;
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
             true => Vec::new(),
             false => self.kinds.iter().flat_map(Forms::factorised).collect(),
@@ -171,7 +177,27 @@ impl<'g> Kind<'g> {
                 kinds.iter().map(|forms| passes::in_common_axes(forms)).collect();
             kinds.extend(common.into_iter().filter(|forms| !forms.is_empty()));
         }
-        kinds.into_iter().map(|forms| Kind::new(Forms::new(forms, passes, specialisation))).collect()
+        let mut found: Vec<Kind<'g>> = Vec::new();
+        for forms in kinds.into_iter().map(|forms| Forms::new(forms, passes, specialisation)) {
+            if found.first().is_none_or(|first| first.is_similar(&forms)) {
+                found.push(Kind::new(forms));
+            }
+        }
+        found
+    }
+
+    /// False for frames that cost more, as far as the first distribution of the masses tells; of a mechanism with few operations
+    /// all distributions are asked later.
+    fn is_similar(&self, forms: &Forms<'g>) -> bool {
+        let first = |masses: &[Candidate<'_>], recursions: &[Candidate<'_>]| {
+            Some(masses.first()?.size + recursions.first()?.size)
+        };
+        let own = first(&self.masses, &self.recursions).filter(|own| *own > COMPARED_OPERATIONS);
+        own.is_none_or(|own| {
+            let [masses, recursions] =
+                [forms.mass_matrices().take(1).collect(), forms.recursions(true).take(1).collect::<Vec<_>>()];
+            first(&masses, &recursions).is_none_or(|other| other <= own + own / SIMILAR_AT_FIRST)
+        })
     }
 
     fn new(forms: Forms<'g>) -> Kind<'g> {
@@ -264,10 +290,6 @@ impl<'g> Forms<'g> {
         let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.sized(list));
         let simd = self.specialisation.programs(simd).into_iter().min_by_key(|(_, program)| program.cost());
         self.bias = Bias { program, form, simd };
-    }
-
-    fn nv(&self) -> usize {
-        self.all.first().map_or(0, |form| form.model.nv())
     }
 
     /// Forms that serve all functions.
