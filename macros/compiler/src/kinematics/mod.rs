@@ -1,6 +1,8 @@
 //! Kinematics of a mechanism: joints and motion subspaces, velocities and accelerations, the rows of constraints in
 //! configurations, which of them are redundant, and how many degrees of freedom they leave. Knows no syntax.
 
+mod directions;
+pub mod jet;
 mod joint;
 mod links;
 pub mod mobility;
@@ -9,6 +11,7 @@ pub mod redundancy;
 mod rows;
 mod spatial;
 
+pub use directions::{AXES, in_plane, perpendicular, unit};
 pub use joint::{Dof, Drift, Joint, joint, joints};
 pub use links::{accelerations, change_axes, twists};
 pub use rates::{

@@ -1,4 +1,4 @@
-//! What joints transmit: in a mechanism with opened joints the forces that inverse dynamics asks for on their
+//! What joints transmit: in a mechanism with released joints the forces that inverse dynamics asks for on their
 //! coordinates, less those of the constraints and of the inputs; in a joint that closes a loop the forces of its
 //! multipliers. Where a loop is solved in closed form, its multipliers follow from the joints that are solved for: those
 //! transmit nothing in the direction of their own motion.
@@ -8,7 +8,7 @@ use super::{constraints, forces, rnea};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::{joints, symbols_in};
-use crate::mechanism::{Model, Opened, Quantity, SolvedSide};
+use crate::mechanism::{Model, Quantity, Released, SolvedSide};
 
 /// Components of a joint's reaction: force, torque.
 const SIX: usize = 6;
@@ -20,13 +20,13 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
 
 /// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let Some(opened) = &model.opened else { return e.to_vec() };
-    let (held, multipliers) = on_open_coordinates(model, opened);
+    let Some(released) = &model.released else { return e.to_vec() };
+    let (held, multipliers) = on_released_coordinates(model, released);
     let of = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::of(s) else { return None };
         let (joint, component) = (k / SIX, k % SIX);
-        let at = || opened.joints.iter().position(|j| *j == joint);
-        of_multipliers(model, opened, &multipliers, joint, component)
+        let at = || released.joints.iter().position(|j| *j == joint);
+        of_multipliers(model, released, &multipliers, joint, component)
             .or_else(|| Some(held[SIX * at()? + component]))
     };
     replace_all(e, &of)
@@ -35,13 +35,13 @@ pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
 /// The component of what a loop's joint transmits; `None` if it closes none.
 fn of_multipliers<'g>(
     model: &Model<'g>,
-    opened: &Opened<'g>,
+    released: &Released<'g>,
     multipliers: &[Expr<'g>],
     joint: usize,
     component: usize,
 ) -> Option<Expr<'g>> {
     let mut sum = None;
-    for (c, l) in opened.model.constraints.iter().zip(multipliers) {
+    for (c, l) in released.model.constraints.iter().zip(multipliers) {
         for part in c.transmits.iter().filter(|part| part.joint == joint) {
             let sum = sum.get_or_insert(model.graph.zero());
             if part.torque == (component >= 3) {
@@ -52,7 +52,7 @@ fn of_multipliers<'g>(
     sum.map(|e| replace_all(&[e], &|s| is_open(model, s).then(|| model.graph.zero()))[0])
 }
 
-/// Whether a symbol is a coordinate of an opened joint, or its rate.
+/// Whether a symbol is a coordinate of an released joint, or its rate.
 fn is_open(model: &Model<'_>, s: Symbol) -> bool {
     match Quantity::of(s) {
         Quantity::Configuration(k) => k >= model.nq(),
@@ -61,9 +61,9 @@ fn is_open(model: &Model<'_>, s: Symbol) -> bool {
     }
 }
 
-/// The forces that hold the coordinates of opened joints at zero, and the multipliers of all constraints.
-fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    let (g, open) = (model.graph, &opened.model);
+/// The forces that hold the coordinates of released joints at zero, and the multipliers of all constraints.
+fn on_released_coordinates<'g>(model: &Model<'g>, released: &Released<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let (g, open) = (model.graph, &released.model);
     let joints = joints(open);
     let closed = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
     let v: Vec<Expr<'g>> = (0..open.nv()).map(|k| closed(k, Quantity::Velocity(k))).collect();
@@ -80,7 +80,7 @@ fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> (Vec<Expr<
     let mut needed = closed(&forces_needed[model.nv()..]);
     let rows = constraints::jacobian(open).split_off(multipliers.len());
     let rows: Matrix<'g> = rows.iter().map(|row| closed(&row[model.nv()..])).collect();
-    let solved = closing_forces(opened, &needed, &rows);
+    let solved = closing_forces(released, &needed, &rows);
     for (row, l) in rows.iter().zip(&solved) {
         needed.iter_mut().zip(row).for_each(|(force, entry)| *force -= *entry * *l);
     }
@@ -90,15 +90,15 @@ fn on_open_coordinates<'g>(model: &Model<'g>, opened: &Opened<'g>) -> (Vec<Expr<
 
 /// The multipliers of the loops that are solved in closed form, two for each, from the forces `needed` on open coordinates
 /// and their share `rows` of them: nothing is left for the motions of the joints that are solved for.
-fn closing_forces<'g>(opened: &Opened<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
-    let g = opened.model.graph;
+fn closing_forces<'g>(released: &Released<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
+    let g = released.model.graph;
     let along = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
-        let at = opened.joints.iter().position(|j| *j == side.joint)?;
+        let at = released.joints.iter().position(|j| *j == side.joint)?;
         let first = SIX * at + if side.turns { 3 } else { 0 };
         Some((0..3).fold(g.zero(), |sum, k| sum + side.axis[k] * forces[first + k]))
     };
     let own = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
-        opened.model.solved.iter().filter_map(|side| along(side, forces)).collect()
+        released.model.solved.iter().filter_map(|side| along(side, forces)).collect()
     };
     // Equations by side, with their right sides last: pairs of rows and columns belong to a loop.
     let columns: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| own(row)).chain([own(needed)]).collect();

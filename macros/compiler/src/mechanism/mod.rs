@@ -18,7 +18,7 @@ pub use element::{CoulombFriction, Dashpot, Direction, Inertance, Input, Load, S
 pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;
 pub use link::{Chart, Coordinate, Link, LinkId, Motion, NamedFrame, Space};
-pub use model::{Model, Opened, OutputValue, Uses};
+pub use model::{Model, OutputValue, Released, Uses};
 pub use passive::PassiveForces;
 pub use pose::Pose;
 pub use quantity::Quantity;

@@ -77,15 +77,15 @@ pub struct Model<'g> {
     pub freedom: [usize; 2],
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
-    /// The same mechanism with the joints whose reactions outputs name opened: six coordinates for each after all others.
-    pub opened: Option<Rc<Opened<'g>>>,
+    /// The same mechanism with the joints whose reactions outputs name released: six coordinates for each after all others.
+    pub released: Option<Rc<Released<'g>>>,
     /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: Units,
 }
 
-/// A mechanism with opened joints: what holds their coordinates at zero is what they transmit.
+/// A mechanism with released joints: what holds their coordinates at zero is what they transmit.
 #[derive(Clone)]
-pub struct Opened<'g> {
+pub struct Released<'g> {
     /// The mechanism.
     pub model: Model<'g>,
     /// The joints in the order of their coordinates.

@@ -162,7 +162,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         freedom: _,
         inertances: _,
         outputs: _,
-        opened: _,
+        released: _,
         units: _,
     } = model;
     for frame in frames {

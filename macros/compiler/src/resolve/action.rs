@@ -1,12 +1,12 @@
 //! Force elements and inputs: what they act on, and with which parameters.
 
-use super::build::Builder;
-use super::tree::GROUND;
-use super::world::{Level, Placed, PlacedKind, View};
+use super::builder::Builder;
+use super::motion::Moving;
+use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
 use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Load, Pose, Spring};
-use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
+use crate::syntax::{Action, ActionKind, Expr, ExprKind, GROUND, Law, Target as On};
 
 /// What an element acts on.
 enum Target<'g> {
@@ -17,8 +17,36 @@ enum Target<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
+    /// Resolves force elements on coordinates, which need no places.
+    pub fn check_actions(&mut self, cx: &mut Diagnostics) {
+        for action in &self.description.actions {
+            let on_joint = match &action.on {
+                On::On(e) => match &e.kind {
+                    ExprKind::Name(name) => self.joint_coordinates(name).is_some(),
+                    ExprKind::Field(..) => true,
+                    _ => false,
+                },
+                On::Between(..) => false,
+            };
+            if on_joint && !needs_motion(action) {
+                self.add_action(action, cx);
+            }
+        }
+    }
+
+    /// Adds all force elements and inputs.
+    pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
+        // Inputs without an element of their own appear in expressions; the others are filled in by their elements.
+        for input in &self.description.inputs {
+            self.model.inputs.push((input.text.clone(), Input::Named));
+        }
+        for action in &self.description.actions {
+            self.add_action(action, cx);
+        }
+    }
+
     /// Adds one force element or input to the model.
-    pub fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
+    fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
         match (&action.kind, &action.on) {
             (ActionKind::Force { along, value: None }, On::On(on)) => {
                 let target = self.target(on, cx);
@@ -188,7 +216,7 @@ impl<'g> Builder<'_, 'g> {
 
     fn turn_by_gravity(&mut self, a: &Expr, b: &Expr, mu: crate::expr::Expr<'g>, cx: &mut Diagnostics) {
         let ExprKind::Name(name) = &b.kind else { return };
-        let Some(index) = self.held_index(name).filter(|k| *k < self.description.bodies.len()) else {
+        let Some(index) = self.jointed_index(name).filter(|k| *k < self.description.bodies.len()) else {
             return;
         };
         if let (Some(center), Some(body)) = (self.scope.place(a, cx), self.scope.place(b, cx)) {
@@ -242,8 +270,8 @@ impl<'g> Builder<'_, 'g> {
                     return;
                 }
                 let ground = Some((None, Pose::identity(self.scope.graph)));
-                let view = View::new(Level::Motion, ground);
-                if let Some(force) = self.scope.with_view(view, |scope| scope.scalar(value, cx)) {
+                let context = Context::new(Allowed::Motion, ground);
+                if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
                     let rate = self.coordinate_stretch(&c).rate;
                     self.model.loads.push(Load { rate, force, dissipative: false });
                 }
@@ -258,13 +286,13 @@ impl<'g> Builder<'_, 'g> {
             cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
             return;
         };
-        let view = View::new(Level::Motion, Some((place.link, place.pose.clone())));
-        let Some(terms) = self.scope.with_view(view, |scope| scope.terms(value, cx)) else { return };
-        let world = self.scope.world.borrow();
+        let context = Context::new(Allowed::Motion, Some((place.link, place.pose.clone())));
+        let Some(terms) = self.scope.in_context(context, |scope| scope.terms(value, cx)) else { return };
+        let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        let force = world.resolve(&terms, place.link, zero);
-        let twist = world.twists[link.0];
-        drop(world);
+        let force = kinematics.resolve(&terms, place.link, zero);
+        let twist = kinematics.twists[link.0];
+        drop(kinematics);
         let rate = match torque {
             true => twist.angular,
             false => twist.linear + twist.angular.cross(place.pose.translation),
@@ -324,8 +352,8 @@ impl<'g> Builder<'_, 'g> {
         if torque && !turns(on, place, cx) {
             return None;
         }
-        let view = View::new(Level::Constant, Some((place.link, place.pose.clone())));
-        let terms = self.scope.with_view(view, |scope| scope.terms(direction, cx))?;
+        let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
+        let terms = self.scope.in_context(context, |scope| scope.terms(direction, cx))?;
         let Some(link) = place.link else {
             cx.error(
                 on.place.clone(),
@@ -349,8 +377,8 @@ impl<'g> Builder<'_, 'g> {
         match &on.kind {
             ExprKind::Name(name) => {
                 if self.description.coordinates.iter().any(|c| c.name.text == *name) {
-                    let world = self.scope.world.borrow();
-                    let found = world.coordinates.iter().find(|(known, ..)| known == name);
+                    let kinematics = self.scope.kinematics.borrow();
+                    let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
                     return found.map(|(_, c, _)| Target::Coordinate(*c, None));
                 }
                 if let Some(joint) = self.joint_coordinates(name) {
@@ -388,7 +416,7 @@ impl<'g> Builder<'_, 'g> {
                     return None;
                 };
                 let Some(coordinates) = self.joint_coordinates(joint) else {
-                    if self.held_index(joint).is_some() {
+                    if self.jointed_index(joint).is_some() {
                         cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
                             .help(format!("write `on = {joint}` and give a direction, or name a joint"));
                         return None;
@@ -437,8 +465,8 @@ impl<'g> Builder<'_, 'g> {
     /// A coordinate of its own, by name.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
-        let world = self.scope.world.borrow();
-        let known = world.coordinates.iter().find(|(known, ..)| free && known == name);
+        let kinematics = self.scope.kinematics.borrow();
+        let known = kinematics.coordinates.iter().find(|(known, ..)| free && known == name);
         known.map(|(_, c, _)| *c)
     }
 
@@ -497,4 +525,15 @@ fn kind_word(kind: &ActionKind) -> &'static str {
         ActionKind::Force { .. } => "a Force",
         ActionKind::Torque { .. } => "a Torque",
     }
+}
+
+/// True for force elements that are not on a coordinate, or have a law or a value.
+pub fn needs_motion(action: &Action) -> bool {
+    let own = match &action.kind {
+        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
+        ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
+        ActionKind::Dashpot { law } => !matches!(law, Law::Linear(_)),
+        _ => false,
+    };
+    own || matches!(action.on, On::Between(..))
 }

@@ -1,7 +1,7 @@
 //! Directions: unit length is checked, and turning axes are brought onto coordinate axes where numbers allow.
 
-use super::expression::Scope;
-use crate::diag::{Diagnostics, Place};
+use super::scope::Scope;
+use crate::diag::Diagnostics;
 use crate::expr::sample::always;
 use crate::expr::{Graph, Mat3, Rotation, Vec3};
 use crate::syntax;
@@ -46,19 +46,6 @@ fn length(v: [f64; 3]) -> f64 {
 fn normalised(v: [f64; 3]) -> [f64; 3] {
     let norm = length(v);
     v.map(|c| c / norm)
-}
-
-/// True if numbers form a rotation matrix; matrices of parameters are sampled.
-pub fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
-    let product = m.transpose() * *m;
-    let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));
-    let orthogonal = (0..3).all(|i| (0..3).all(|j| always(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
-    if orthogonal && always(determinant, 1.0) {
-        return true;
-    }
-    cx.error(place.clone(), "this matrix is not a rotation")
-        .help("its columns are three orthogonal unit vectors that form a right-handed frame");
-    false
 }
 
 /// For a numeric axis off the coordinate axes: the coordinate axis nearest to it and the rotation that takes that one

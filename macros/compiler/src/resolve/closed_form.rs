@@ -2,27 +2,18 @@
 //! Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of two circles, or of a
 //! circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI); `branch` says which of two.
 
-use super::build::Builder;
-use super::constraint::perpendicular;
+use super::builder::Builder;
+use super::builder::ClosedFormLoop;
 use super::joint::Elementary;
-use super::reaction::OPEN;
-use super::tree::GROUND;
-use super::world::{Placed, PlacedKind};
+use super::reaction::RELEASED;
+use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::replace::replace_all;
 use crate::expr::sample::always;
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::kinematics::change_axes;
+use crate::kinematics::{change_axes, perpendicular};
 use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
-use crate::syntax::{Description, Endpoint, Joint, JointKind};
-
-/// A loop with the joints that are solved for.
-pub struct Embedded {
-    /// The joint that closes it.
-    pub closing: usize,
-    /// The joints that hold the parent and the child of it.
-    pub sides: [usize; 2],
-}
+use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
 /// A side of a loop where its joint is at zero, in the axes of the first side's joint.
 struct Side<'g> {
@@ -34,11 +25,14 @@ struct Side<'g> {
     slide: Option<Vec3<'g>>,
 }
 
+/// That the joints which loops are solved for are known. Comes of [`Builder::add_solved`] alone.
+pub struct Solved(());
+
 const HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
 
 /// The loops whose joints name a branch.
-pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Embedded> {
-    let mut found: Vec<Embedded> = Vec::new();
+pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
+    let mut found: Vec<ClosedFormLoop> = Vec::new();
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
         if !closing[j] {
@@ -62,7 +56,7 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Embe
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         match (joint.kind, sides) {
             (JointKind::Pin, [Some(a), Some(b)]) if a != b && pins > 0 => {
-                found.push(Embedded { closing: j, sides: [a, b] });
+                found.push(ClosedFormLoop { closing: j, sides: [a, b] });
             }
             _ => {
                 cx.error(branch.place.clone(), "this loop is not solved in closed form").help(HELP);
@@ -73,24 +67,20 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Embe
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The loop that solves for a joint.
-    pub fn embedding(&self, j: usize) -> Option<&Embedded> {
-        self.embedded.iter().find(|e| e.sides.contains(&j))
-    }
-
     /// Makes known which motions of which joints are solved for.
-    pub fn remember_solved(&mut self, cx: &mut Diagnostics) {
+    pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
         let side = |j: &usize| {
             let joint = &self.description.joints[*j];
             let (_, axis) = self.joint_frame(*j, cx)?;
             Some(SolvedSide { joint: *j, turns: joint.kind == JointKind::Pin, axis })
         };
-        self.model.solved = self.embedded.iter().flat_map(|e| e.sides.iter()).map_while(side).collect();
+        self.model.solved = self.solved_loops.iter().flat_map(|e| e.sides.iter()).map_while(side).collect();
+        Solved(())
     }
 
     /// The child's joint frame in the parent's frame: the joint at its solution.
-    pub fn embedded_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
-        let Embedded { closing, sides } = self.embedding(j)?;
+    pub fn solved_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
+        let ClosedFormLoop { closing, sides } = self.solving_loop(j)?;
         let joint = &self.description.joints[*closing];
         let branch = self.scope.scalar(joint.branch.as_ref()?, cx)?;
         let place = joint.branch.as_ref().map_or(&joint.name.place, |b| &b.place);
@@ -160,20 +150,20 @@ impl<'g> Builder<'_, 'g> {
         let closing = self.endpoint(end, cx)?.translation;
         let point = on_child.inverse().point(closing);
         let out = |v| self.seen_from(home, own.link, own.pose.rotation.to_parent(v));
-        let terms = self.scope.world.borrow().between(&own, home);
+        let terms = self.scope.kinematics.borrow().between(&own, home);
         let zero = Vec3::zero(self.scope.graph);
         let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(home, *link, *v));
         let slide = (joint.kind == JointKind::Sleeve).then(|| out(axis));
         Some(Side { base, point: out(point), slide })
     }
 
-    /// A vector in the axes of a link, in those of a frame. Joints that are opened count as closed: the solution is that of
+    /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the solution is that of
     /// the mechanism itself.
     fn seen_from(&self, home: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
-        let v = change_axes(&self.scope.world.borrow().joints, v, link, home.link);
+        let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, home.link);
         let v = home.pose.rotation.to_child(v);
-        let Some((joints, _)) = self.opening else { return v };
-        let own = self.model.nq() - OPEN * joints.len();
+        let Some((joints, _)) = self.releasing else { return v };
+        let own = self.model.nq() - RELEASED * joints.len();
         let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);
         let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
         closed.try_into().map_or(v, Vec3)

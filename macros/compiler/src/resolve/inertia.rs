@@ -1,6 +1,6 @@
 //! Mass and inertia of bodies: solids, matrices, and whether a real body can have them.
 
-use super::expression::{Scope, Value};
+use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind, Name, words};

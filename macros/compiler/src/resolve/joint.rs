@@ -1,11 +1,12 @@
 //! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of simple
 //! ones with massless frames between.
 
-use super::expression::Scope;
+use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Graph, Vec3};
+use crate::kinematics::in_plane;
 use crate::mechanism::Coordinate;
 use crate::syntax::{self, Joint, JointKind};
 
@@ -179,20 +180,6 @@ pub fn somehow<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
 /// True if an expression is zero for all values of the parameters, within rounding.
 fn vanishes(e: Expr<'_>) -> bool {
     (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
-}
-
-/// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
-/// other normal the first is orthogonal to the coordinate axis that the normal is farthest from.
-pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
-    let graph = normal[0].graph();
-    let n = normal.values()?;
-    if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {
-        return Some((Vec3::axis(graph, (k + 1) % 3), Vec3::axis(graph, (k + 2) % 3)));
-    }
-    let far = (0..3).min_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))?;
-    let raw = normal.cross(Vec3::axis(graph, far));
-    let first = raw.map(|c| c / raw.norm());
-    Some((first, normal.cross(first)))
 }
 
 fn one<'g>(

@@ -1,16 +1,14 @@
 //! Masses: those of bodies and particles go to the links that carry them.
 
-use super::build::Builder;
+use super::builder::Builder;
+use super::builder::MassProperties;
 use super::figures::Range;
 use super::inertia::check_inertia;
-use super::world::Placed;
+use super::scope::Placed;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::mechanism::{Inertia, LinkId, Pose};
 use crate::syntax::{Body, Inertias, Particle};
-
-/// Mass, centre of mass in body axes, inertia about it.
-pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
@@ -114,7 +112,7 @@ impl<'g> Builder<'_, 'g> {
             )
             .help("a point without mass is a `Point`");
         }
-        let placed = self.scope.world.borrow().places.get(&particle.name.text).cloned();
+        let placed = self.scope.kinematics.borrow().places.get(&particle.name.text).cloned();
         if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
             self.attach(link, &pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
         }

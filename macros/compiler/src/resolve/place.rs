@@ -1,15 +1,15 @@
 //! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is already
 //! placed. What moves by coordinates or time other than a joint's becomes a link of its own.
 
-use super::build::Builder;
+use super::builder::Builder;
 use super::carriers::carries;
-use super::tree::{GROUND, Order};
-use super::world::{Level, Placed, PlacedKind, View};
-use crate::diag::{Diagnostics, Place, all_of};
+use super::scope::{Allowed, Context, Placed, PlacedKind};
+use super::tree::Order;
+use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
-use crate::kinematics::{joint, symbols_in};
-use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose, Quantity};
-use crate::syntax::{Expr, ExprKind, Name, words};
+use crate::mechanism::NamedFrame;
+use crate::mechanism::{LinkId, Pose};
+use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
 /// Something to be placed: an index into its list.
 #[derive(Clone, Copy)]
@@ -23,6 +23,24 @@ enum Item {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
+    /// Names the frames of everything that is placed.
+    pub fn add_frames(&mut self) {
+        let d = self.description;
+        let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
+        let massive = massive.map(|name| (name, true));
+        if d.ground_frame {
+            let (name, pose) = (GROUND.to_string(), Pose::identity(self.scope.graph));
+            self.model.frames.push(NamedFrame { name, massive: false, link: None, pose });
+        }
+        let kinematics = self.scope.kinematics.borrow();
+        for (name, massive) in massive.chain(d.points.iter().map(|p| (&p.name, false))) {
+            if let Some(p) = kinematics.places.get(&name.text) {
+                let (name, link, pose) = (name.text.clone(), p.link, p.pose.clone());
+                self.model.frames.push(NamedFrame { name, massive, link, pose });
+            }
+        }
+    }
+
     /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
@@ -68,7 +86,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             Item::Joint(k) => {
                 let j = order.joints[k].0;
                 // What is solved for needs the other side of its loop as well.
-                let sides = self.embedding(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
+                let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
             Item::Frame(k) => {
@@ -90,10 +108,10 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     fn is_ready(&self, item: Item, order: &Order) -> bool {
-        let world = self.scope.world.borrow();
+        let kinematics = self.scope.kinematics.borrow();
         self.needs(item, order)
             .iter()
-            .all(|name| !self.placeable.contains(name) || world.places.contains_key(name))
+            .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
     }
 
     fn item_name(&self, item: Item, order: &Order) -> &'a Name {
@@ -155,7 +173,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn place_somehow(&mut self, rest: &[Item], order: &Order) {
         for item in rest {
             let name = self.provides(*item, order);
-            let (link, pose) = self.settle(None, self.somewhere(true));
+            let (link, pose) = self.link_if_moving(None, self.somewhere(true));
             let (kind, held) = match item {
                 Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
                 Item::Body(k) => (PlacedKind::Body, Some(*k)),
@@ -165,7 +183,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             if let Some(k) = held {
                 self.places[k] = Some((link, pose.clone()));
             }
-            self.remember(&name, link, pose, kind);
+            self.register(&name, link, pose, kind);
         }
     }
 
@@ -178,8 +196,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             Item::Frame(k) => {
                 let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.settle(link, pose);
-                self.remember(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
+                let (link, pose) = self.link_if_moving(link, pose);
+                self.register(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
             Item::Point(k) => {
                 let p = &d.points[k];
@@ -192,17 +210,18 @@ impl<'a, 'g> Builder<'a, 'g> {
                     None => Some((home.link, home.pose)),
                 });
                 let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.settle(link, pose);
-                self.remember(&p.name.text, link, pose, PlacedKind::Point);
+                let (link, pose) = self.link_if_moving(link, pose);
+                self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
             Item::Body(k) => self.place_body(k, cx),
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
                 let free = !carries(d, &p.name.text);
-                let (link, pose) = self.spot(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.settle(link, pose);
-                self.remember(&p.name.text, link, pose, PlacedKind::Point);
+                let (link, pose) =
+                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = self.link_if_moving(link, pose);
+                self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
     }
@@ -215,8 +234,8 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
-        let view = View::new(Level::Placement, None);
-        let rotation = self.scope.with_view(view, |scope| scope.rotation(&frame.rotations, cx));
+        let context = Context::new(Allowed::Placement, None);
+        let rotation = self.scope.in_context(context, |scope| scope.rotation(&frame.rotations, cx));
         let (start, rotation) = (start?, rotation?);
         let pose =
             Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
@@ -233,8 +252,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         if name == GROUND {
             return Some(self.ground());
         }
-        let world = self.scope.world.borrow();
-        match world.places.get(name) {
+        let kinematics = self.scope.kinematics.borrow();
+        match kinematics.places.get(name) {
             Some(p) if p.kind != PlacedKind::Point => Some(p.clone()),
             Some(_) => {
                 cx.error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
@@ -245,7 +264,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 if !self.scope.is_news(name, cx) {
                     return None;
                 }
-                let known: Vec<&str> = world.places.keys().map(String::as_str).chain([GROUND]).collect();
+                let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
                 words::point(error, words::BODIES, name, &known);
                 if error.is_bare() {
@@ -263,7 +282,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             None => Some(self.ground()),
         };
         let origin = match &body.at {
-            Some(at) => self.spot(at, true, cx),
+            Some(at) => self.place_at(at, true, cx),
             None => axes.as_ref().map(|a| (a.link, a.pose.clone())),
         };
         let (link, pose) = match (axes, origin) {
@@ -274,19 +293,19 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             _ => (None, self.somewhere(true)),
         };
-        let (link, pose) = self.settle(link, pose);
+        let (link, pose) = self.link_if_moving(link, pose);
         self.places[k] = Some((link, pose.clone()));
-        self.remember(&body.name.text, link, pose, PlacedKind::Body);
+        self.register(&body.name.text, link, pose, PlacedKind::Body);
     }
 
     /// Orientation of one link in another.
     fn rotation_between(&self, of: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
-        let world = self.scope.world.borrow();
+        let kinematics = self.scope.kinematics.borrow();
         let to_ground = |mut at: Option<LinkId>| {
             let mut steps = Vec::new();
             while let Some(l) = at {
-                steps.push(world.joints[l.0].rotation.clone());
-                at = world.joints[l.0].parent;
+                steps.push(kinematics.joints[l.0].rotation.clone());
+                at = kinematics.joints[l.0].parent;
             }
             steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.then(step))
         };
@@ -297,7 +316,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// A place by name, `place.at(vector)`, or a vector from the ground's origin; `free` as in `offset`.
-    fn spot(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+    fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
             ExprKind::Name(name) if placeable(name) => {
@@ -325,9 +344,9 @@ impl<'a, 'g> Builder<'a, 'g> {
         free: bool,
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let view = View::new(Level::Placement, Some((home.link, home.pose.clone())));
-        let terms = self.scope.with_view(view, |scope| scope.terms(at, cx))?;
-        let world = self.scope.world.borrow();
+        let context = Context::new(Allowed::Placement, Some((home.link, home.pose.clone())));
+        let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
+        let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
         // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
         if let [(axes, v)] = terms.as_slice()
@@ -338,64 +357,22 @@ impl<'a, 'g> Builder<'a, 'g> {
         {
             return Some((*axes, Pose { rotation: Rotation::identity(self.scope.graph), translation: *v }));
         }
-        let translation = home.pose.translation + world.resolve(&terms, home.link, zero);
+        let translation = home.pose.translation + kinematics.resolve(&terms, home.link, zero);
         Some((home.link, Pose { rotation: home.pose.rotation, translation }))
     }
 
     /// True if a link's origin stays at the origin of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
-        let world = self.scope.world.borrow();
+        let kinematics = self.scope.kinematics.borrow();
         let mut at = link;
         while at != ancestor {
             let Some(l) = at else { return false };
-            if !world.joints[l.0].translation.is_zero() {
+            if !kinematics.joints[l.0].translation.is_zero() {
                 return false;
             }
-            at = world.joints[l.0].parent;
+            at = kinematics.joints[l.0].parent;
         }
         true
-    }
-
-    /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
-    pub fn settle(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
-        let matrix = pose.rotation.matrix();
-        let entries: Vec<_> = matrix.0.iter().flatten().chain(&pose.translation.0).copied().collect();
-        let moves = symbols_in(&entries)
-            .into_iter()
-            .any(|s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time));
-        if !moves {
-            return (link, pose);
-        }
-        let id = self.add_link(Link {
-            parent: link,
-            placement: pose,
-            motion: Motion::Placed,
-            inertia: Inertia::zero(self.scope.graph),
-        });
-        (Some(id), Pose::identity(self.scope.graph))
-    }
-
-    /// Adds a link and its kinematics.
-    pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
-        let kinematics = joint(self.model.space(), &link);
-        self.scope.world.borrow_mut().joints.push(kinematics);
-        self.model.links.push(link);
-        LinkId(self.model.links.len() - 1)
-    }
-
-    /// Makes a place known by its name.
-    pub fn remember(&self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
-        self.scope.world.borrow_mut().places.insert(name.to_string(), Placed { link, pose, kind });
-    }
-
-    /// The parent of a joint: a body, or a point.
-    pub fn joint_parent(&self, name: &Name, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        if name.text == GROUND {
-            return Some((None, Pose::identity(self.scope.graph)));
-        }
-        let place: Place = name.place.clone();
-        let e = Expr { kind: ExprKind::Name(name.text.clone()), place };
-        self.scope.place(&e, cx).map(|p| (p.link, p.pose))
     }
 }
 

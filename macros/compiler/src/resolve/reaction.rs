@@ -1,29 +1,28 @@
 //! Forces and torques that joints transmit, for the outputs that name them: `reaction_force(joint)`,
-//! `reaction_torque(joint)`. A joint of the tree is opened: six motions of the child in the joint's frame on the parent are
+//! `reaction_torque(joint)`. A joint of the tree is released: six motions of the child in the joint's frame on the parent are
 //! added, and what holds them at zero is the reaction (Lanczos, *The Variational Principles of Mechanics*, 1970, § III.7).
 //! A joint that closes a loop transmits what the multipliers of its constraints do.
 
-use super::build::Builder;
-use super::expression::{Axes, Scope, Value};
+use super::builder::Builder;
 use super::joint::own_coordinate;
-use super::world::Level;
+use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{Chart, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
+use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::{self, ExprKind, Name};
 
-/// Coordinates of an opened joint: three along axes, three about them.
-pub const OPEN: usize = 6;
+/// Coordinates of an released joint: three along axes, three about them.
+pub const RELEASED: usize = 6;
 
-/// The joints to be opened: those whose reactions the outputs name, and with them those that loops are solved for in
+/// The joints to be released: those whose reactions the outputs name, and with them those that loops are solved for in
 /// closed form, whose forces tell what closes the loops.
-pub fn to_open(model: &Model<'_>) -> Vec<usize> {
+pub fn to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
         .filter_map(|s| match Quantity::of(s) {
-            Quantity::Reaction(k) => Some(k / OPEN),
+            Quantity::Reaction(k) => Some(k / RELEASED),
             _ => None,
         })
         .collect();
@@ -39,24 +38,11 @@ impl<'g> Builder<'_, 'g> {
     /// Makes the reactions of a joint known, which are resolved in the axes of a frame of a link.
     pub fn transmit(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
         let name = self.description.joints[j].name.text.clone();
-        self.scope.world.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
+        self.scope.kinematics.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
     }
 
-    /// Adds the coordinates of opened joints after all others.
-    pub fn number_open_coordinates(&mut self, joints: &[usize]) {
-        for j in joints {
-            let name = &self.description.joints[*j].name;
-            for k in 0..OPEN {
-                let (q, v) = (self.model.nq(), self.model.nv());
-                self.model.charts.push(Chart::Plain(q, v));
-                self.model.configuration.push(format!("{}.open{k}", name.text));
-                self.model.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));
-            }
-        }
-    }
-
-    /// The joint's frame on the parent, moved by the coordinates of the opened joint with the number `at`.
-    pub fn open(
+    /// The joint's frame on the parent, moved by the coordinates of the released joint with the number `at`.
+    pub fn release(
         &mut self,
         at: usize,
         count: usize,
@@ -64,8 +50,8 @@ impl<'g> Builder<'_, 'g> {
         mut pose: Pose<'g>,
     ) -> (Option<LinkId>, Pose<'g>) {
         let g = self.scope.graph;
-        let (q, v) = (self.model.nq() - OPEN * (count - at), self.model.nv() - OPEN * (count - at));
-        for k in 0..OPEN {
+        let (q, v) = (self.model.nq() - RELEASED * (count - at), self.model.nv() - RELEASED * (count - at));
+        for k in 0..RELEASED {
             let (axis, coordinate) = (Vec3::axis(g, k % 3), own_coordinate(q + k, v + k));
             let motion = match k {
                 0..3 => Motion::Slide { axis, coordinate },
@@ -88,8 +74,8 @@ impl<'g> Scope<'_, 'g> {
         arguments: &[syntax::Expr],
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let world = self.world.borrow();
-        let known = || world.transmissions.keys().map(String::as_str);
+        let kinematics = self.kinematics.borrow();
+        let known = || kinematics.transmissions.keys().map(String::as_str);
         let name = match arguments {
             [e] => match &e.kind {
                 ExprKind::Name(name) => name,
@@ -104,10 +90,10 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
         };
-        if !self.allowed(Level::Reaction, "a reaction", &function.place, cx) {
+        if !self.check_allowed(Allowed::Reaction, "a reaction", &function.place, cx) {
             return None;
         }
-        let Some((j, link, rotation)) = world.transmissions.get(name) else {
+        let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
             if self.is_news(name, cx) {
                 let error = cx.error(arguments[0].place.clone(), format!("unknown joint `{name}`"));
                 error.suggest(name, known());
@@ -117,7 +103,7 @@ impl<'g> Scope<'_, 'g> {
             }
             return None;
         };
-        let first = OPEN * j + if function.text == "reaction_torque" { 3 } else { 0 };
+        let first = RELEASED * j + if function.text == "reaction_torque" { 3 } else { 0 };
         let components = Vec3([0, 1, 2].map(|k| Quantity::Reaction(first + k).expr(self.graph)));
         Some(Value::Vector(vec![(Axes::Link(*link), rotation.to_parent(components))]))
     }

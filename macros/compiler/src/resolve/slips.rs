@@ -1,7 +1,8 @@
 //! What is most likely meant by an expression that has no value: angles in degrees, members and methods of other
 //! languages, arrays that are no matrices.
 
-use super::expression::{Scope, is_function};
+use super::functions::is_function;
+use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::syntax::{self, ExprKind, Name, words};
@@ -15,7 +16,7 @@ impl Scope<'_, '_> {
             _ => String::new(),
         };
         let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
-        let is_coordinate = self.world.borrow().coordinates.iter().any(|(name, ..)| *name == base);
+        let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
         if is_coordinate && matches!(text, "dot" | "rate" | "diff" | "velocity" | "speed" | "dt") {
             error.help(format!("write `rate({base})`"));
         } else if is_function(text) {
@@ -39,9 +40,9 @@ impl Scope<'_, '_> {
     ) -> bool {
         let own =
             |name: &str| name == joint || name.strip_prefix(joint).is_some_and(|end| end.starts_with('.'));
-        let world = self.world.borrow();
+        let kinematics = self.kinematics.borrow();
         let coordinates: Vec<&str> =
-            world.coordinates.iter().map(|(name, ..)| name.as_str()).filter(|name| own(name)).collect();
+            kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).filter(|name| own(name)).collect();
         match coordinates.as_slice() {
             [] => return false,
             [one] => {

@@ -1,9 +1,9 @@
 //! Force elements that are more than linear springs and dashpots on a coordinate: laws, elements between two points,
 //! gravity towards a point, energies, friction, forces with a value; and the outputs.
 
-use super::build::Builder;
-use super::expression::Value;
-use super::world::{Level, Placed, View};
+use super::builder::Builder;
+use super::constraint::Constrained;
+use super::scope::{Allowed, Context, Placed, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
 use crate::expr::eval::eval;
@@ -56,27 +56,27 @@ impl<'g> Builder<'_, 'g> {
                 .help("let the element act between points of different bodies");
             return None;
         }
-        let world = self.scope.world.borrow();
+        let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        let terms = world.between(&second, &first);
+        let terms = kinematics.between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);
-        let r = world.resolve(&terms, axes, zero);
+        let r = kinematics.resolve(&terms, axes, zero);
         if always_zero(r) {
             cx.error(b.place.clone(), "these two points are always at the same place")
                 .help("let the element act between points that move apart");
             return None;
         }
-        let mut v = world.velocity(&second);
-        v.extend(world.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
+        let mut v = kinematics.velocity(&second);
+        v.extend(kinematics.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
         if let Some(line) = constant_direction(r) {
             let e = Vec3::numbers(self.scope.graph, line);
-            let rate = e.dot(world.resolve(&v, axes, zero));
+            let rate = e.dot(kinematics.resolve(&v, axes, zero));
             let value = r.dot(e);
             return Some(Stretch { value, square: value.square(), rate, signed: true });
         }
         let length = r.length();
         let n = r.map(|c| c / length);
-        let rate = n.dot(world.resolve(&v, axes, zero));
+        let rate = n.dot(kinematics.resolve(&v, axes, zero));
         Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
@@ -88,14 +88,14 @@ impl<'g> Builder<'_, 'g> {
         let value = length - free;
         let symbol = Quantity::Given(0).symbol();
         let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
-        let view = View::new(Level::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
+        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
         let energy = match law {
             // Smooth where the points meet.
             Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
             Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
-            Law::Energy(e) => self.scope.with_view(view, |scope| scope.scalar(e, cx)),
+            Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
             Law::Force(e) => {
-                let force = self.scope.with_view(view, |scope| scope.scalar(e, cx));
+                let force = self.scope.in_context(context, |scope| scope.scalar(e, cx));
                 force.and_then(|force| self.integral(force, e, cx))
             }
         };
@@ -133,9 +133,9 @@ impl<'g> Builder<'_, 'g> {
         let force = match law {
             Law::Linear(c) => self.scope.scalar(c, cx).map(|c| c * stretch.rate),
             Law::Force(e) | Law::Energy(e) => {
-                let view = View::new(Level::Motion, Some((None, Pose::identity(g))))
+                let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))))
                     .with_locals(vec![("speed", stretch.rate)]);
-                self.scope.with_view(view, |scope| scope.scalar(e, cx))
+                self.scope.in_context(context, |scope| scope.scalar(e, cx))
             }
         };
         if let Some(force) = force {
@@ -218,10 +218,10 @@ impl<'g> Builder<'_, 'g> {
         let Some((_, _, central)) = self.masses.get(index).cloned().flatten() else { return };
         let tensor = body.pose.rotation.sym_to_parent(central);
         let zero = Vec3::zero(self.scope.graph);
-        let world = self.scope.world.borrow();
-        let terms = world.between(body, center);
-        let r = world.resolve(&terms, body.link, zero);
-        drop(world);
+        let kinematics = self.scope.kinematics.borrow();
+        let terms = kinematics.between(body, center);
+        let r = kinematics.resolve(&terms, body.link, zero);
+        drop(kinematics);
         let length = r.norm();
         let n = r.map(|c| c / length);
         let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];
@@ -241,17 +241,17 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Potential energies and dissipation functions given as expressions, and outputs.
-    pub fn add_expressions(&mut self, cx: &mut Diagnostics) {
+    pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         let ground = || Some((None, Pose::identity(self.scope.graph)));
         for (_, e) in &d.energies {
-            let view = View::new(Level::Placement, ground());
-            let energy = self.scope.with_view(view, |scope| scope.scalar(e, cx));
+            let context = Context::new(Allowed::Placement, ground());
+            let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             self.model.potentials.extend(energy);
         }
         for (_, e) in &d.dissipations {
-            let view = View::new(Level::Motion, ground());
-            let function = self.scope.with_view(view, |scope| scope.scalar(e, cx));
+            let context = Context::new(Allowed::Motion, ground());
+            let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             // Between bodies that are welded together it is zero, which is no mistake.
             if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
                 cx.error(e.place.clone(), "this contains no velocity, and has no effect")
@@ -266,18 +266,18 @@ impl<'g> Builder<'_, 'g> {
         }
         // Definitions that nothing uses are checked all the same.
         for definition in &d.definitions {
-            let view = View::new(Level::Reaction, ground());
+            let context = Context::new(Allowed::Reaction, ground());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
-            let _ = self.scope.with_view(view, |scope| scope.value(&e, cx));
+            let _ = self.scope.in_context(context, |scope| scope.value(&e, cx));
         }
     }
 
     fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let home = Some((None, Pose::identity(self.scope.graph)));
-        let view = View::new(Level::Reaction, home);
+        let context = Context::new(Allowed::Reaction, home);
         if !output.vector {
-            return match self.scope.with_view(view, |scope| scope.value(&output.value, cx))? {
+            return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
                 Value::Scalar(s) => Some(vec![s]),
                 Value::Vector(_) => {
                     cx.error(output.value.place.clone(), "expected a scalar, found a vector")
@@ -286,7 +286,7 @@ impl<'g> Builder<'_, 'g> {
                 }
             };
         }
-        let terms = self.scope.with_view(view, |scope| scope.terms(&output.value, cx));
+        let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
         let axes = match &output.resolved_in {
             None => Some((None, Pose::identity(self.scope.graph))),
             Some(e) => match &e.kind {
@@ -294,10 +294,10 @@ impl<'g> Builder<'_, 'g> {
                     Some((None, Pose::identity(self.scope.graph)))
                 }
                 ExprKind::Name(name) => {
-                    let world = self.scope.world.borrow();
-                    let found = world.places.get(name).map(|p| (p.link, p.pose.clone()));
+                    let kinematics = self.scope.kinematics.borrow();
+                    let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
                     if found.is_none() {
-                        let known: Vec<&str> = world.places.keys().map(String::as_str).collect();
+                        let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
                         cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
                     }
                     found
@@ -309,12 +309,12 @@ impl<'g> Builder<'_, 'g> {
             },
         };
         let (link, pose) = axes?;
-        let v = self.scope.world.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
+        let v = self.scope.kinematics.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
         Some(pose.rotation.to_child(v).0.to_vec())
     }
 
     /// Sets what the signatures of the generated functions depend on.
-    pub fn find_dependencies(&mut self) {
+    pub fn find_dependencies(&mut self, _: Constrained) {
         let m = &self.model;
         let mut all: Vec<Expr<'g>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
         all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));

@@ -1,19 +1,12 @@
 //! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
 
-use super::expression::Scope;
+use super::builder::BodyIndex;
+use super::builder::JointedBody;
+use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
-
-/// Index into bodies and jointed particles together.
-pub type BodyIndex = usize;
-
-/// What a joint can hold: a body, or a particle without a place of its own.
-pub struct Held<'a> {
-    /// Its name.
-    pub name: &'a Name,
-}
 
 /// The joints in an order in which every parent is placed before its children, with the bodies that they hold, and the
 /// joints that close loops.
@@ -75,7 +68,7 @@ fn base_name(e: &Expr) -> Option<&str> {
 /// Finds the tree of the joints.
 pub fn find_tree(
     description: &Description,
-    held: &[Held<'_>],
+    jointed: &[JointedBody<'_>],
     scope: &Scope<'_, '_>,
     cx: &mut Diagnostics,
 ) -> Option<Order> {
@@ -85,15 +78,15 @@ pub fn find_tree(
         if name.text == GROUND || is_point {
             return Ok(None);
         }
-        match held.iter().position(|h| h.name.text == name.text) {
+        match jointed.iter().position(|h| h.name.text == name.text) {
             Some(k) => Ok(Some(k)),
             None => {
-                unknown_body(name, held, scope, cx);
+                unknown_body(name, jointed, scope, cx);
                 Err(())
             }
         }
     };
-    let mut is_held = vec![false; held.len()];
+    let mut is_held = vec![false; jointed.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
     let mut sound = true;
     let closing = closing(description);
@@ -107,7 +100,7 @@ pub fn find_tree(
         if joint.parent.body.text == name.text {
             sound = false;
             // A body called ground was reported.
-            if held.iter().any(|h| h.name.text == GROUND) {
+            if jointed.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
             cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text))
@@ -126,7 +119,7 @@ pub fn find_tree(
         return None;
     }
     let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
-    for (k, body) in held.iter().enumerate() {
+    for (k, body) in jointed.iter().enumerate() {
         if !is_held[k] && !is_placed(k) {
             if !description.partial {
                 report_unheld(description, body.name, &loops, cx);
@@ -134,8 +127,8 @@ pub fn find_tree(
             sound = false;
         }
     }
-    let roots: Vec<BodyIndex> = (0..held.len()).filter(|k| is_placed(*k)).collect();
-    let order = sort(&ends, held.len(), &roots);
+    let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
+    let order = sort(&ends, jointed.len(), &roots);
     sound.then_some(Order { joints: order, closing: loops })
 }
 
@@ -181,7 +174,7 @@ fn sort(
     order
 }
 
-fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
     if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
@@ -198,7 +191,7 @@ fn unknown_body(name: &Name, held: &[Held<'_>], scope: &Scope<'_, '_>, cx: &mut 
             .help("leave its `at` out, or join the body");
         return;
     }
-    let known: Vec<&str> = held.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
+    let known: Vec<&str> = jointed.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
     if !scope.is_news(&name.text, cx) {
         return;
     }

@@ -10,9 +10,9 @@ use super::Pair;
 use super::surface::Form;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
+use crate::kinematics::perpendicular;
 use crate::mechanism::Measure;
-use crate::resolve::build::Builder;
-use crate::resolve::constraint::perpendicular;
+use crate::resolve::builder::Builder;
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {

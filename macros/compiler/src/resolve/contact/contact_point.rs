@@ -9,8 +9,8 @@ use crate::expr::Vec3;
 use crate::expr::diff::Derivative;
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Coordinate, Quantity};
-use crate::resolve::build::Builder;
-use crate::resolve::world::{Level, Placed, View};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context, Placed};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
@@ -22,11 +22,11 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Sheet<'g>> {
         let (first, second) = (self.parameter(u, cx), self.parameter(w, cx));
-        let view = View::new(Level::Placement, Some((home.link, home.pose.clone())));
-        let terms = self.scope.with_view(view, |scope| scope.terms(point, cx));
+        let context = Context::new(Allowed::Placement, Some((home.link, home.pose.clone())));
+        let terms = self.scope.in_context(context, |scope| scope.terms(point, cx));
         let (first, second, terms) = (first?, second?, terms?);
         let zero = Vec3::zero(self.scope.graph);
-        let in_link = self.scope.world.borrow().resolve(&terms, home.link, zero);
+        let in_link = self.scope.kinematics.borrow().resolve(&terms, home.link, zero);
         let at = home.pose.rotation.to_child(in_link);
         let own = |q: Quantity| match q {
             Quantity::Configuration(k) => k == first.q || k == second.q,
@@ -52,10 +52,10 @@ impl<'g> Builder<'_, 'g> {
 
     /// A coordinate of its own, by name.
     fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let world = self.scope.world.borrow();
+        let kinematics = self.scope.kinematics.borrow();
         let known = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
         let name = e.name().unwrap_or("");
-        let found = world.coordinates.iter().find(|(n, ..)| n == name && known().any(|k| k == name));
+        let found = kinematics.coordinates.iter().find(|(n, ..)| n == name && known().any(|k| k == name));
         if found.is_none() && (name.is_empty() || self.scope.is_news(name, cx)) {
             cx.error(e.place.clone(), "expected a coordinate of the surface")
                 .suggest(name, known())

@@ -11,11 +11,11 @@ mod surface;
 pub use slipping::check_pressed;
 pub use surface::FORMS;
 
-use super::build::Builder;
-use super::constraint::{Moving, Relative, perpendicular};
+use super::builder::Builder;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
-use crate::kinematics::time_derivative;
+use crate::kinematics::jet::{Moving, Relative};
+use crate::kinematics::{perpendicular, time_derivative};
 use crate::mechanism::{FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
 use surface::{Form, Surface};

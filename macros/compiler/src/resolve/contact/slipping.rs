@@ -5,8 +5,8 @@
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Constraint, FrictionTerm, Pose};
-use crate::resolve::build::Builder;
-use crate::resolve::world::{Level, View};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
@@ -40,13 +40,14 @@ impl<'g> Builder<'_, 'g> {
         let ground = Some((None, Pose::identity(self.scope.graph)));
         let coefficient = self
             .scope
-            .with_view(View::new(Level::Placement, ground), |s| s.scalar(&given.coefficient, cx))?;
+            .in_context(Context::new(Allowed::Placement, ground), |s| s.scalar(&given.coefficient, cx))?;
         if let Some(n) = coefficient.value().filter(|n| *n < 0.0) {
             let place = given.coefficient.place.clone();
             cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"));
         }
         let Some(written) = &given.speed else { return Some((coefficient, self.model.friction_speed)) };
-        let speed = self.scope.with_view(View::new(Level::Constant, None), |s| s.scalar(written, cx))?;
+        let speed =
+            self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(written, cx))?;
         if let Some(n) = speed.value().filter(|n| *n <= 0.0) {
             cx.error(written.place.clone(), format!("this speed must be positive, but it is {n}")).help(
                 "around it Coulomb's law is smooth; the smaller it is, the stiffer is the motion at rest",

@@ -2,10 +2,9 @@
 
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
-use crate::resolve::build::Builder;
-use crate::resolve::tree::GROUND;
-use crate::resolve::world::{Level, Placed, View};
-use crate::syntax::{self, ExprKind};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context, Placed};
+use crate::syntax::{self, ExprKind, GROUND};
 use std::f64::consts::FRAC_PI_2;
 
 /// A surface of a body; vectors and lengths in body axes.
@@ -28,7 +27,7 @@ pub enum Form<'g> {
     Tube(Expr<'g>, Vec3<'g>),
     /// The outside of a cone: half angle, axis from the apex into the cone.
     Cone(Expr<'g>, Vec3<'g>),
-    /// The inside of a cone: half angle, axis from the apex to the opening.
+    /// The inside of a cone: half angle, axis from the apex to the releasing.
     Funnel(Expr<'g>, Vec3<'g>),
     /// A surface given by its points.
     Sheet(Sheet<'g>),
@@ -102,13 +101,13 @@ impl<'g> Builder<'_, 'g> {
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
         for (argument, name) in arguments.iter().zip(*names) {
-            let view = View::new(Level::Constant, None);
+            let context = Context::new(Allowed::Constant, None);
             match *name {
                 "axis" | "normal" => {
-                    axis = self.scope.with_view(view, |s| s.unit_vector(argument, false, cx));
+                    axis = self.scope.in_context(context, |s| s.unit_vector(argument, false, cx));
                 }
                 _ => {
-                    let value = self.scope.with_view(view, |s| s.scalar(argument, cx))?;
+                    let value = self.scope.in_context(context, |s| s.scalar(argument, cx))?;
                     check_size(name, argument, value, cx);
                     numbers.push(value);
                 }

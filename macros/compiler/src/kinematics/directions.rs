@@ -1,0 +1,55 @@
+//! Directions: of unit length, orthogonal to others.
+
+use crate::expr::Vec3;
+use crate::expr::diff::TINY;
+use crate::expr::eval::eval;
+use crate::expr::sample::sample;
+
+/// Names of the coordinate axes.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A vector divided by its length. The zero vector has no direction; the result is zero then, not NaN.
+pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
+    match v.values() {
+        Some(_) => v.map(|c| c / v.norm()),
+        None => {
+            let length = (v.dot(v) + v[0].num(TINY)).sqrt();
+            v.map(|c| c / length)
+        }
+    }
+}
+
+/// Two directions orthogonal to an axis and to each other, with their names.
+pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
+    let g = axis[0].graph();
+    let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::axis(g, k)));
+    let along = |k: usize| axis.values().is_some_and(|n| n[k].abs() == 1.0);
+    if let Some(k) = (0..3).find(|k| along(*k)) {
+        return [words[(k + 1) % 3], words[(k + 2) % 3]];
+    }
+    let [first, second] = match in_plane(axis) {
+        Some((first, second)) => [first, second],
+        None => {
+            // The coordinate axis that the direction is farthest from for a sample of the parameters.
+            let at = eval(&axis.0, &|s| sample(s, 0));
+            let far = (0..3).min_by(|a, b| at[*a].abs().total_cmp(&at[*b].abs())).unwrap_or(0);
+            let first = unit(axis.cross(Vec3::axis(g, far)));
+            [first, axis.cross(first)]
+        }
+    };
+    [("first", first), ("second", second)]
+}
+
+/// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
+/// other normal the first is orthogonal to the coordinate axis that the normal is farthest from.
+pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
+    let graph = normal[0].graph();
+    let n = normal.values()?;
+    if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {
+        return Some((Vec3::axis(graph, (k + 1) % 3), Vec3::axis(graph, (k + 2) % 3)));
+    }
+    let far = (0..3).min_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))?;
+    let raw = normal.cross(Vec3::axis(graph, far));
+    let first = raw.map(|c| c / raw.norm());
+    Some((first, normal.cross(first)))
+}

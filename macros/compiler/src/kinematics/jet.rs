@@ -1,0 +1,129 @@
+//! Jets: values with their rates, and the rates of those at zero accelerations. Motions are taken relative to the nearest
+//! link that carries both sides, so that what both share drops out.
+
+use super::joint::Joint;
+use super::links::change_axes;
+use super::spatial::Spatial;
+use crate::expr::{Expr, Vec3};
+use crate::mechanism::{LinkId, Model, Quantity};
+
+/// A scalar with its rate, and the rate of that at zero accelerations.
+pub struct Jet<'g> {
+    /// The value.
+    pub value: Expr<'g>,
+    /// Its rate.
+    pub rate: Expr<'g>,
+    /// The rate of that.
+    pub second: Expr<'g>,
+}
+
+/// A vector with its rate, and the rate of that at zero accelerations, in the axes of a link that counts as fixed.
+#[derive(Clone, Copy)]
+pub struct Moving<'g> {
+    /// The value.
+    pub value: Vec3<'g>,
+    /// Its rate.
+    pub rate: Vec3<'g>,
+    /// The rate of that.
+    pub second: Vec3<'g>,
+}
+
+impl<'g> Moving<'g> {
+    /// The difference.
+    pub fn minus(&self, b: &Moving<'g>) -> Moving<'g> {
+        Moving { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
+    }
+
+    /// The inner product.
+    pub fn dot(&self, b: &Moving<'g>) -> Jet<'g> {
+        let twice = self.rate.dot(b.rate) * 2.0;
+        Jet {
+            value: self.value.dot(b.value),
+            rate: self.rate.dot(b.value) + self.value.dot(b.rate),
+            second: self.second.dot(b.value) + twice + self.value.dot(b.second),
+        }
+    }
+
+    /// A component.
+    pub fn component(&self, k: usize) -> Jet<'g> {
+        Jet { value: self.value[k], rate: self.rate[k], second: self.second[k] }
+    }
+}
+
+/// A link's motion relative to one of its ancestors, in link axes.
+pub struct Relative<'g> {
+    /// The link.
+    pub link: Option<LinkId>,
+    /// The ancestor.
+    pub ancestor: Option<LinkId>,
+    /// Velocity of the origin, angular velocity.
+    pub twist: Spatial<'g>,
+    /// Acceleration of the origin, angular acceleration, at zero accelerations of the coordinates.
+    pub acceleration: Spatial<'g>,
+}
+
+/// Motion of a link relative to the nearest link that carries it and another.
+pub fn relative<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    link: Option<LinkId>,
+    other: Option<LinkId>,
+) -> Relative<'g> {
+    let parent = |l: LinkId| joints[l.0].parent;
+    let (mut a, mut b) = (link, other);
+    let mut path = Vec::new();
+    // Parents have smaller indices, so the deeper of two links is the one with the larger index.
+    while a != b {
+        if a > b {
+            path.extend(a);
+            a = a.and_then(parent);
+        } else {
+            b = b.and_then(parent);
+        }
+    }
+    let g = model.graph;
+    let v: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
+    let still = vec![g.zero(); model.nv()];
+    let zero = Spatial::zero(model);
+    let mut motion: Option<(Spatial<'g>, Spatial<'g>)> = None;
+    for l in path.iter().rev() {
+        let joint = &joints[l.0];
+        let own = joint.twist(model, &v);
+        let twist = motion.as_ref().map_or(own, |(twist, _)| joint.twist_to_child(twist).plus(&own));
+        let before = motion.as_ref().map(|(twist, acceleration)| (twist, acceleration));
+        let acceleration = joint.acceleration(model, before, &v, &still);
+        motion = Some((twist, acceleration));
+    }
+    let (twist, acceleration) = motion.unwrap_or((zero, zero));
+    Relative { link, ancestor: a, twist, acceleration }
+}
+
+/// A point of a link.
+pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
+    let mut value = p;
+    let mut at = on.link;
+    while at != on.ancestor {
+        let Some(l) = at else { break };
+        let joint = &joints[l.0];
+        value = joint.translation + joint.rotation.to_parent(value);
+        at = joint.parent;
+    }
+    let (w, a) = (on.twist.angular, &on.acceleration);
+    let rate = on.twist.linear + w.cross(p);
+    let second = a.linear + a.angular.cross(p) + w.cross(w.cross(p));
+    let out = |v| change_axes(joints, v, on.link, on.ancestor);
+    Moving { value, rate: out(rate), second: out(second) }
+}
+
+/// A direction fixed in a link.
+pub fn direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
+    let w = on.twist.angular;
+    let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
+    let out = |v| direction_out(joints, on, v);
+    Moving { value: out(e), rate: out(w.cross(e)), second: out(second) }
+}
+
+/// A vector of a link, in the axes of the ancestor.
+pub fn direction_out<'g>(joints: &[Joint<'g>], on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
+    change_axes(joints, v, on.link, on.ancestor)
+}

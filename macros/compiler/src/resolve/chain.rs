@@ -1,0 +1,115 @@
+//! Joints: each becomes a chain of links, one for each elementary motion.
+
+use super::axis::align;
+use super::builder::Builder;
+use super::joint::{self, Elementary, own_coordinate};
+use super::scope::PlacedKind;
+use crate::diag::Diagnostics;
+use crate::expr::{Rotation, Vec3};
+use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose};
+use crate::syntax::Joint;
+
+impl<'g> Builder<'_, 'g> {
+    /// Resolves what the joints say although the tree is broken, so that all mistakes are reported at once.
+    pub fn check_joints(&self, cx: &mut Diagnostics) {
+        for joint in &self.description.joints {
+            self.check_joint(joint, cx);
+        }
+    }
+
+    /// Resolves what one joint says, for its mistakes alone.
+    pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
+        let _ = self.scope.motions(joint, cx);
+        let _ = self.endpoint(&joint.parent, cx);
+        let _ = self.endpoint(&joint.child, cx);
+    }
+
+    /// Places the child of a joint.
+    pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
+        let joint = &self.description.joints[j];
+        let motions = self.scope.motions(joint, cx);
+        let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
+        let start = self.joint_parent(&joint.parent.body, cx);
+        // What has a mistake is placed somehow, so that what depends on it is read as well.
+        let motions = motions.unwrap_or_else(|| joint::somehow(self.scope.graph, joint));
+        let on_parent = on_parent.unwrap_or_else(|| self.somewhere(false));
+        let on_child = on_child.unwrap_or_else(|| self.somewhere(false));
+        if let Some((link, pose)) = start {
+            let frame = pose.then(&on_parent);
+            self.transmit(j, link, &frame.rotation);
+            let (joints, _) = self.releasing.unwrap_or_default();
+            let (link, frame) = match joints.iter().position(|open| *open == j) {
+                Some(at) => self.release(at, joints.len(), link, frame),
+                None => (link, frame),
+            };
+            let (link, pose) = match self.solving_loop(j) {
+                Some(_) => {
+                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.somewhere(true));
+                    self.link_if_moving(link, frame.then(&solved))
+                }
+                None => self.add_chain(j, &motions, link, frame),
+            };
+            let pose = pose.then(&on_child.inverse());
+            let kind =
+                if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };
+            self.register(&self.jointed[child].name.text, link, pose.clone(), kind);
+            self.places[child] = Some((link, pose));
+        }
+        self.add_passive(j, joint, cx);
+    }
+
+    /// Adds one link for each motion; returns the last link and the joint's child frame on it.
+    fn add_chain(
+        &mut self,
+        j: usize,
+        motions: &[Elementary<'g>],
+        mut link: Option<LinkId>,
+        mut pose: Pose<'g>,
+    ) -> (Option<LinkId>, Pose<'g>) {
+        let graph = self.scope.graph;
+        for (k, motion) in motions.iter().enumerate() {
+            let own = &self.coordinates[j];
+            let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
+            let mut aligned = Rotation::identity(graph);
+            let mut align = |axis| {
+                let (axis, rotation) = align(graph, axis);
+                aligned = rotation;
+                axis
+            };
+            let motion = match motion {
+                Elementary::Turn(axis) => Motion::Turn { axis: align(*axis), coordinate },
+                Elementary::Helix(axis, pitch) => {
+                    Motion::Helix { axis: align(*axis), pitch: *pitch, coordinate }
+                }
+                Elementary::Slide(axis) => Motion::Slide { axis: *axis, coordinate },
+                Elementary::Ball => Motion::Ball { q: own.q, v: own.v },
+                Elementary::Free => Motion::Free { q: own.q, v: own.v },
+            };
+            let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
+            link =
+                Some(self.add_link(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) }));
+            pose = Pose { rotation: aligned.inverse(), translation: Vec3::zero(graph) };
+        }
+        (link, pose)
+    }
+
+    /// Damping, friction and motor of a joint itself.
+    fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
+        let [(name, on, _)] = self.coordinates[j].plain.as_slice() else {
+            return;
+        };
+        let (name, on) = (name.clone(), *on);
+        let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
+        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
+        if joint.driven && joint.mimic.is_none() {
+            self.model.inputs.push((name, Input::Coordinate(on)));
+        }
+    }
+
+    /// True if every body has its place.
+    pub fn is_placed(&self) -> bool {
+        self.places.iter().all(Option::is_some)
+    }
+}

@@ -1,0 +1,190 @@
+//! Joints that close loops: what they restrict, as scalar rows.
+
+use super::builder::Builder;
+use super::joint::Elementary;
+use super::scope::{Placed, PlacedKind};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Rotation, Vec3};
+use crate::kinematics::jet::{Jet, Moving, Relative};
+use crate::kinematics::{AXES, change_axes, perpendicular, time_derivative, unit};
+use crate::mechanism::{Constraint, Measure, Transmission};
+
+/// The two ends of a joint that closes a loop.
+struct Closing<'g> {
+    j: usize,
+    parent: Placed<'g>,
+    child: Placed<'g>,
+    on_parent: Relative<'g>,
+    on_child: Relative<'g>,
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// What the joint of a loop allows, and its two ends.
+    fn closing(&self, j: usize, cx: &mut Diagnostics) -> Option<(Vec<Elementary<'g>>, Closing<'g>)> {
+        let joint = &self.description.joints[j];
+        let motions = self.scope.motions(joint, cx);
+        let [parent, child] = [&joint.parent, &joint.child].map(|end| {
+            let on_body = self.endpoint(end, cx)?;
+            let (link, pose) = self.joint_parent(&end.body, cx)?;
+            Some(Placed { link, pose: pose.then(&on_body), kind: PlacedKind::Body })
+        });
+        let (parent, child) = (parent?, child?);
+        let on_parent = self.relative(parent.link, child.link);
+        let on_child = self.relative(child.link, parent.link);
+        Some((motions?, Closing { j, parent, child, on_parent, on_child }))
+    }
+
+    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's plane.
+    pub fn close_in_plane(&mut self, j: usize, cx: &mut Diagnostics) {
+        self.group += 1;
+        if let Some((motions, ends)) = self.closing(j, cx)
+            && let [Elementary::Turn(axis)] = motions.as_slice()
+        {
+            self.translation_rows(&ends, &[Elementary::Slide(*axis)]);
+        }
+    }
+
+    /// Adds the rows of a joint that closes a loop.
+    pub fn close_loop(&mut self, j: usize, cx: &mut Diagnostics) {
+        let joint = &self.description.joints[j];
+        let Some((motions, ends)) = self.closing(j, cx) else { return };
+        let place = &joint.name.place;
+        if matches!(motions.as_slice(), [Elementary::Free]) {
+            cx.error(place.clone(), format!("`{}` closes a loop, but it restricts nothing", joint.name.text))
+                .help("remove it: a Free joint allows all motions");
+            return;
+        }
+        if ends.parent.link == ends.child.link {
+            cx.error(place.clone(), "these two ends do not move relative to each other")
+                .help("let the joint act between bodies that move relative to each other");
+            return;
+        }
+        self.transmit(j, None, &Rotation::identity(self.scope.graph));
+        self.translation_rows(&ends, &motions);
+        self.group += 1;
+        self.rotation_rows(&ends, &motions);
+    }
+
+    /// The child's joint frame has its origin where the slides of the joint let it be.
+    fn translation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
+        let g = self.scope.graph;
+        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(slide_of).collect();
+        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let origin = self.point(on_parent, parent.pose.translation);
+        let gap = self.point(on_child, child.pose.translation).minus(&origin);
+        if slides.is_empty() {
+            for (k, word) in AXES.iter().enumerate() {
+                self.push(ends, word, gap.component(k), (Measure::Length, Vec3::axis(g, k)));
+            }
+            return;
+        }
+        let across: Vec<(&str, Vec3<'g>)> = match slides.as_slice() {
+            [one] => perpendicular(*one).to_vec(),
+            [first, second] => vec![("normal", unit(first.cross(*second)))],
+            _ => Vec::new(),
+        };
+        for (word, direction) in across {
+            let e = self.direction(on_parent, parent.pose.rotation.to_parent(direction));
+            self.push(ends, word, gap.dot(&e), (Measure::Length, e.value));
+        }
+        if let [Elementary::Helix(axis, pitch)] = motions {
+            let n = self.direction(on_parent, parent.pose.rotation.to_parent(*axis)).value;
+            let [(_, first), (_, second)] = perpendicular(*axis);
+            let on = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
+            let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
+            let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
+            let advance = gap.value.dot(n) / *pitch;
+            let value = *pitch * (sine * advance.cos() - cosine * advance.sin());
+            let rate = time_derivative(self.model.space(), value);
+            let second = time_derivative(self.model.space(), rate);
+            // It pushes the child back along the axis and turns it by the pitch.
+            self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
+            let turned = self.transmission(ends, true, n * *pitch);
+            self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
+        }
+    }
+
+    /// The child's joint axes are turned as the turns of the joint let them be.
+    fn rotation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
+        if matches!(motions, [Elementary::Ball]) {
+            return;
+        }
+        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(turn_of).collect();
+        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let of_parent = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
+        let of_child = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
+        let axis = |k| Vec3::axis(self.scope.graph, k);
+        // Directions of the parent and of the child that stay orthogonal, or at a constant angle.
+        let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
+            // The sines of the angles about three axes.
+            [] => (0..3)
+                .map(|k| {
+                    let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+                    (format!("w{}", AXES[k]), of_parent(axis(m)), of_child(axis(l)), self.scope.graph.zero())
+                })
+                .collect(),
+            [axis] => perpendicular(*axis)
+                .into_iter()
+                .map(|(word, e)| {
+                    (format!("tilt_{word}"), of_parent(e), of_child(*axis), self.scope.graph.zero())
+                })
+                .collect(),
+            [first, second, ..] => {
+                vec![("axes".to_string(), of_parent(*first), of_child(*second), first.dot(*second))]
+            }
+        };
+        for (word, e, carried, angle) in rows {
+            let mut jet = e.dot(&carried);
+            jet.value -= angle;
+            self.push(ends, &word, jet, (Measure::Angle, carried.value.cross(e.value)));
+        }
+    }
+
+    /// A row of a joint, with the force of a length or the torque of an angle on the child that its multiplier is, in the
+    /// axes of the link that carries both ends.
+    fn push(
+        &mut self,
+        ends: &Closing<'g>,
+        word: &str,
+        jet: Jet<'g>,
+        (measure, direction): (Measure, Vec3<'g>),
+    ) {
+        let joint = &self.description.joints[ends.j].name;
+        let Jet { value, rate, second } = jet;
+        let transmits = self.transmission(ends, measure == Measure::Angle, direction);
+        self.model.constraints.push(Constraint {
+            name: format!("{}.{word}", joint.text),
+            place: joint.place.clone(),
+            residual: Some(value),
+            rate,
+            bias: second,
+            measure,
+            transmits: vec![transmits],
+            group: self.group,
+            determines: false,
+            friction: Vec::new(),
+        });
+    }
+
+    fn transmission(&self, ends: &Closing<'g>, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
+        let joints = &self.scope.kinematics.borrow().joints;
+        let direction = change_axes(joints, direction, ends.on_child.ancestor, None);
+        Transmission { joint: ends.j, torque, direction }
+    }
+}
+
+/// The axis of a slide.
+fn slide_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
+    match motion {
+        Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
+        _ => None,
+    }
+}
+
+/// The axis of a turn.
+fn turn_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
+    match motion {
+        Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
+        _ => None,
+    }
+}

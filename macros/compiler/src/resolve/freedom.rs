@@ -1,0 +1,73 @@
+//! Degrees of freedom: redundant rows go, independent speeds are chosen.
+
+use super::builder::Builder;
+use super::contact;
+use crate::diag::Diagnostics;
+use crate::kinematics::{Rows, mobility, redundancy};
+use crate::syntax::{ExprKind, Formulation};
+
+impl<'g> Builder<'_, 'g> {
+    /// Drops rows that follow from others and counts the degrees of freedom.
+    pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
+        let mut rows = Rows::of(&self.model);
+        let constant = redundancy::constant(&self.model, &rows);
+        redundancy::check_constant(&self.model, &constant, cx);
+        if !cx.is_empty() {
+            return;
+        }
+        let witnesses = mobility::witnesses(&self.model, &rows, cx);
+        let before = self.model.constraints.clone();
+        if redundancy::prune(&mut self.model, &rows, &constant, &witnesses) {
+            contact::check_pressed(&before, &self.model.redundant, cx);
+            rows = Rows::of(&self.model);
+        }
+        self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &witnesses, cx);
+        self.choose_speeds(&rows, &witnesses, cx);
+    }
+
+    /// Finds the velocities that follow from independent speeds, if those are asked for.
+    fn choose_speeds(&mut self, rows: &Rows<'_>, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
+        let Formulation::Speeds(names, place) = &self.description.formulation else { return };
+        if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
+            cx.error(place.clone(), "independent speeds leave no normal force for friction to follow")
+                .help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
+            return;
+        }
+        let mut independent = Vec::new();
+        for e in names {
+            let name = match &e.kind {
+                ExprKind::Field(joint, member) => {
+                    joint.name().map(|joint| format!("{joint}.{}", member.text))
+                }
+                _ => e.name().map(str::to_string),
+            };
+            let known = || self.model.velocities.iter().map(|(name, _)| name.as_str());
+            match known().position(|v| Some(v) == name.as_deref()) {
+                Some(k) => independent.push(k),
+                None => {
+                    cx.error(e.place.clone(), "expected a velocity")
+                        .suggest(name.as_deref().unwrap_or(""), known());
+                    return;
+                }
+            }
+        }
+        let free = self.model.freedom[1];
+        if !independent.is_empty() && independent.len() != free {
+            cx.error(
+                place.clone(),
+                format!("{} independent speeds for {free} degrees of freedom", independent.len()),
+            )
+            .help(format!("name {free}, or leave `independent` out: then they are chosen"));
+            return;
+        }
+        if !cx.is_empty() {
+            return;
+        }
+        self.model.dependent = mobility::dependent(&self.model, rows, witnesses, &independent);
+        if self.model.dependent.is_none() {
+            let diagnostic =
+                cx.error(place.clone(), "the other velocities do not follow from independent speeds");
+            diagnostic.help("constraints are redundant, or these speeds depend on each other: use `formulation = multipliers`, or others");
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! Names in expressions: parameters, directions, coordinates, time, inputs, definitions.
+
+use super::scope::{Allowed, Axes, Scope, Value};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::Vec3;
+use crate::kinematics::position_in;
+use crate::mechanism::{Pose, Quantity};
+use crate::syntax::{self, ExprKind, GROUND, Name, words};
+
+/// Names with a value in every expression.
+const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
+
+impl<'g> Scope<'_, 'g> {
+    /// What a known name stands for, with its article.
+    pub fn what(&self, name: &str) -> Option<&'static str> {
+        let is = |list: &[String]| list.iter().any(|known| known == name);
+        match name {
+            _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
+            _ if is(&self.frames) => Some("a frame"),
+            _ if name == GROUND || is(&self.bodies) => Some("a body"),
+            _ if is(&self.joints) => Some("a joint"),
+            _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
+            _ if self.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
+            _ if is(&self.actions) => Some("a force element"),
+            "x" | "y" | "z" => Some("a direction"),
+            "pi" => Some("a number"),
+            _ => None,
+        }
+    }
+
+    /// True where a name that is not known is met for the first time: later it is no news.
+    pub fn is_news(&self, name: &str, cx: &Diagnostics) -> bool {
+        !cx.is_read() || self.unknown.borrow_mut().insert(name.to_string())
+    }
+
+    /// The value of a name.
+    pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
+        let taken = ["x", "y", "z"].contains(&name) && self.parameters.iter().any(|p| p.text == name);
+        if taken {
+            return None;
+        }
+        if let Some(k) = ["x", "y", "z"].iter().position(|a| *a == name) {
+            return Some(self.own_axes(Vec3::axis(self.graph, k)));
+        }
+        if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
+            self.used.borrow_mut()[k] = true;
+            return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
+        }
+        if let Some((_, value)) = CONSTANTS.iter().find(|(c, _)| *c == name) {
+            return Some(Value::Scalar(self.graph.num(*value)));
+        }
+        if let Some(value) = self.moving_name(name, e, cx) {
+            return value;
+        }
+        if self.bodies.iter().any(|b| b == name) || name == GROUND {
+            cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
+                .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
+        } else if let Some(what) = self.what(name) {
+            cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
+                .help("an expression is made of parameters, numbers and directions");
+        } else {
+            let kinematics = self.kinematics.borrow();
+            let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();
+            if self.allowed() >= Allowed::Placement {
+                known.extend(kinematics.coordinates.iter().map(|(name, ..)| name.as_str()));
+                known.extend(self.definitions.iter().map(|d| d.name.text.as_str()));
+            }
+            if self.allowed() >= Allowed::Motion {
+                known.extend(self.inputs.iter().map(|i| i.text.as_str()));
+            }
+            if !self.is_news(name, cx) {
+                return None;
+            }
+            let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
+            known.extend(["x", "y", "z", "pi"]);
+            let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
+            words::point_name(error, name, &known, &rates);
+        }
+        None
+    }
+
+    /// The value of a member.
+    pub fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let ExprKind::Name(joint) = &inner.kind
+            && let Some(value) = self.coordinate_member(joint, member, cx)
+        {
+            return value;
+        }
+        let ExprKind::Name(body) = &inner.kind else {
+            let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
+            let axis = ["x", "y", "z"].into_iter().find(|axis| *axis == member.text).unwrap_or("x");
+            diagnostic.help(format!("a component of a vector is `dot(vector, {axis})`"));
+            return None;
+        };
+        if body == "self" {
+            cx.error(inner.place.clone(), "parameters are named without `self`")
+                .help(format!("write `{}`", member.text));
+            return None;
+        }
+        if body != GROUND && !self.bodies.contains(body) {
+            if self.report_joint_member(body, inner, member, cx) {
+                return None;
+            }
+            if let Some(what) = self.what(body) {
+                cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
+                    .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
+                return None;
+            }
+            let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
+            let known: Vec<&str> = known.collect();
+            if !self.is_news(body, cx) {
+                return None;
+            }
+            let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
+            if matches!(body.as_str(), "body" | "this" | "own" | "local" | "frame" | "me") {
+                error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
+                return None;
+            }
+            words::point(error, words::BODIES, body, &known);
+            return None;
+        }
+        let Some(k) = ["x", "y", "z"].iter().position(|a| *a == member.text) else {
+            let help = match member.text.as_str() {
+                "position" | "pos" | "r" | "origin" | "p" => format!("its place is `r({body} / ground)`"),
+                "velocity" | "vel" | "v" | "speed" => {
+                    format!("its velocity is `v({body} / ground / ground)`")
+                }
+                "acceleration" | "acc" => format!("its acceleration is `a({body} / ground / ground)`"),
+                "omega" | "w" | "angular_velocity" | "rate" if body != GROUND => {
+                    format!("it turns by `omega({body} / ground)`")
+                }
+                "mass" | "m" | "inertia" | "com" | "length" | "radius" | "l" | "I" | "height" | "width" => {
+                    "its figures have no names here: name the parameter that it is".to_string()
+                }
+                _ => "its axes are `x`, `y` and `z`, and `body.at(vector)` is a place".to_string(),
+            };
+            cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
+            return None;
+        };
+        self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
+    }
+
+    /// A vector given in the axes `x`, `y`, `z` of the place where the expression stands.
+    pub fn own_axes(&self, v: Vec3<'g>) -> Value<'g> {
+        Value::Vector(vec![match &self.context.borrow().axes {
+            None => (Axes::Own, v),
+            Some((link, pose)) => (Axes::Link(*link), pose.rotation.to_parent(v)),
+        }])
+    }
+
+    /// A vector given in the axes of a body or a frame.
+    pub fn named_axes(&self, name: &str, v: Vec3<'g>, at: &Place, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if self.context.borrow().axes.is_none() {
+            return Some(Value::Vector(vec![(Axes::Of(name.to_string()), v)]));
+        }
+        if name == GROUND {
+            return Some(Value::Vector(vec![(Axes::Link(None), v)]));
+        }
+        match self.kinematics.borrow().places.get(name) {
+            Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
+            None => {
+                cx.error(at.clone(), format!("`{name}` is not placed"));
+                None
+            }
+        }
+    }
+
+    /// The value of a name that moves: a coordinate, time, an input, a definition. `None` if it is none of these.
+    pub fn moving_name(
+        &self,
+        name: &str,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Option<Value<'g>>> {
+        if let Some((_, value)) = self.context.borrow().locals.iter().find(|(local, _)| *local == name) {
+            return Some(Some(Value::Scalar(*value)));
+        }
+        if name == "t" {
+            let here = self.check_allowed(Allowed::Placement, "time", &e.place, cx);
+            return Some(here.then(|| Value::Scalar(Quantity::Time.expr(self.graph))));
+        }
+        let coordinate =
+            self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
+        if let Some(c) = coordinate {
+            let here =
+                self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
+            return Some(here.then(|| Value::Scalar(position_in(self.graph, &c))));
+        }
+        if let Some(k) = self.inputs.iter().position(|i| i.text == name) {
+            let here = self.check_allowed(Allowed::Motion, &format!("the input `{name}`"), &e.place, cx);
+            return Some(here.then(|| Value::Scalar(Quantity::Input(self.driven + k).expr(self.graph))));
+        }
+        let definition = self.definitions.iter().find(|d| d.name.text == name)?;
+        Some(self.definition(definition, e, cx))
+    }
+
+    fn definition(
+        &self,
+        d: &syntax::Definition,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let name = &d.name.text;
+        if cx.is_read() && self.failed.borrow().contains(name) {
+            return None;
+        }
+        let outermost = self.context.borrow().defining.is_empty();
+        let key = {
+            let context = self.context.borrow();
+            (name.clone(), context.allowed, context.axes.is_some())
+        };
+        if outermost {
+            self.known.borrow_mut().clear();
+        } else if let Some(known) = self.known.borrow().get(&key) {
+            return known.clone();
+        }
+        let before = cx.len();
+        let value = self.define(d, e, cx);
+        if value.is_none() && cx.is_read() && cx.len() > before {
+            self.failed.borrow_mut().insert(name.clone());
+        }
+        self.known.borrow_mut().insert(key, value.clone());
+        value
+    }
+
+    fn define(&self, d: &syntax::Definition, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = &d.name.text;
+        if self.context.borrow().defining.contains(name) {
+            cx.error(d.name.place.clone(), format!("`{name}` is defined by itself"))
+                .help("a definition stands for an expression of others");
+            return None;
+        }
+        if self.context.borrow().defining.len() > 64 {
+            cx.error(d.name.place.clone(), "definitions are nested too deeply")
+                .help("write some of them out");
+            return None;
+        }
+        // Directions without a name are the ground's, wherever the definition is used.
+        let mut context = self.context.borrow().clone();
+        context.defining.push(name.clone());
+        context.locals.clear();
+        context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
+        let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
+        match (&value, d.vector) {
+            (Value::Scalar(_), false) | (Value::Vector(_), true) => Some(value),
+            (_, vector) => {
+                let (is, said) = if vector { ("a scalar", "Vector") } else { ("a vector", "Scalar") };
+                let other = if vector { "Scalar" } else { "Vector" };
+                cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {said}"))
+                    .help(format!("declare it as a `{other}`"));
+                None
+            }
+        }
+    }
+
+    /// `joint.coordinate`; `None` if there is no such coordinate and no joint of that name.
+    pub fn coordinate_member(
+        &self,
+        joint: &str,
+        member: &Name,
+        cx: &mut Diagnostics,
+    ) -> Option<Option<Value<'g>>> {
+        let full = format!("{joint}.{}", member.text);
+        let c = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| *n == full).map(|(_, c, _)| *c)?;
+        let here =
+            self.check_allowed(Allowed::Placement, &format!("the coordinate `{full}`"), &member.place, cx);
+        Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
+    }
+
+    /// Reports what may not stand here.
+    pub fn check_allowed(&self, needed: Allowed, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
+        if self.allowed() >= needed {
+            return true;
+        }
+        if needed == Allowed::Reaction {
+            cx.error(place.clone(), format!("{what} cannot stand here"))
+                .help("reactions stand in outputs: `#[output(reaction_force(joint))]`");
+            return false;
+        }
+        let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
+        if self.allowed() == Allowed::Placement && motion && self.constrains.get() {
+            cx.error(place.clone(), format!("{what} cannot stand here"))
+                .help("a constraint on velocities is a `Nonholonomic`");
+            return false;
+        }
+        let only = match self.allowed() {
+            Allowed::Constant => "only numbers and parameters",
+            Allowed::Placement => "only numbers, parameters, coordinates and time",
+            _ => "no accelerations",
+        };
+        cx.error(place.clone(), format!("{what} cannot stand here")).help(format!("this place takes {only}"));
+        false
+    }
+}

@@ -1,0 +1,117 @@
+//! Numbers of coordinates and velocities, in the order of declaration.
+
+use super::builder::{Builder, JointCoordinates};
+use super::joint::{coordinate_names, full_name, own_coordinate};
+use super::reaction::RELEASED;
+use super::{closed_form, tree};
+use crate::diag::Diagnostics;
+use crate::mechanism::{Chart, Coordinate};
+use crate::syntax::JointKind;
+
+impl<'g> Builder<'_, 'g> {
+    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow
+    /// another one come after, since their masters may be declared later.
+    pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
+        let closing = tree::closing(self.description);
+        self.solved_loops = closed_form::find(self.description, &closing, cx);
+        for (j, joint) in self.description.joints.iter().enumerate() {
+            self.number_free_coordinates(j);
+            let (q, v) = (self.model.nq(), self.model.nv());
+            let mut plain = Vec::new();
+            if joint.mimic.is_none() && !closing[j] && self.solving_loop(j).is_none() {
+                self.model.charts.extend(charts(joint.kind, q, v, joint.along.len()));
+                let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
+                for name in names_q {
+                    self.model.configuration.push(full_name(&joint.name.text, name));
+                }
+                for (k, name) in names_v.iter().enumerate() {
+                    let full = full_name(&joint.name.text, name);
+                    if names_q == names_v {
+                        plain.push((full.clone(), own_coordinate(q + k, v + k), is_angle(joint.kind, name)));
+                    }
+                    self.model.velocities.push((full, joint.name.place.clone()));
+                }
+            }
+            self.scope.kinematics.borrow_mut().coordinates.extend(plain.iter().cloned());
+            self.coordinates.push(JointCoordinates { q, v, plain });
+        }
+        self.number_free_coordinates(self.description.joints.len());
+        for (k, joint) in self.description.joints.iter().enumerate() {
+            let Some(mimic) = &joint.mimic else { continue };
+            let master = self.description.joints.iter().position(|j| j.name.text == mimic.joint.text);
+            match master.map(|m| self.coordinates[m].plain.as_slice()) {
+                Some([(_, c, _)]) => {
+                    let coordinate = Coordinate {
+                        ratio: mimic.multiplier * c.ratio,
+                        offset: mimic.multiplier * c.offset + mimic.offset,
+                        ..*c
+                    };
+                    let angle = is_angle(joint.kind, "");
+                    self.scope.kinematics.borrow_mut().coordinates.push((
+                        joint.name.text.clone(),
+                        coordinate,
+                        angle,
+                    ));
+                    self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
+                }
+                _ => {
+                    cx.error(mimic.joint.place.clone(), format!("`{}` cannot be followed", mimic.joint.text))
+                        .help("a joint that is followed has one coordinate of its own");
+                }
+            }
+        }
+    }
+
+    /// Free coordinates that are declared after the given number of joints.
+    fn number_free_coordinates(&mut self, joints: usize) {
+        for free in self.description.coordinates.iter().filter(|c| c.joints_before == joints) {
+            let (q, v) = (self.model.nq(), self.model.nv());
+            self.model.configuration.push(free.name.text.clone());
+            self.model.velocities.push((free.name.text.clone(), free.name.place.clone()));
+            self.model.charts.push(Chart::Plain(q, v));
+            let mut kinematics = self.scope.kinematics.borrow_mut();
+            kinematics.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
+        }
+    }
+
+    /// Adds the coordinates of released joints after all others.
+    pub fn number_released_coordinates(&mut self, joints: &[usize]) {
+        for j in joints {
+            let name = &self.description.joints[*j].name;
+            for k in 0..RELEASED {
+                let (q, v) = (self.model.nq(), self.model.nv());
+                self.model.charts.push(Chart::Plain(q, v));
+                self.model.configuration.push(format!("{}.open{k}", name.text));
+                self.model.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));
+            }
+        }
+    }
+}
+
+fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {
+    match kind {
+        JointKind::Ball => vec![Chart::Ball(q, v)],
+        JointKind::Free => vec![Chart::Free(q, v)],
+        JointKind::Pin
+        | JointKind::Sleeve
+        | JointKind::Screw
+        | JointKind::Collar
+        | JointKind::Slot
+        | JointKind::Universal
+        | JointKind::Planar
+        | JointKind::Stage
+        | JointKind::Weld => {
+            (0..coordinate_names(kind, along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
+        }
+    }
+}
+
+fn is_angle(kind: JointKind, coordinate: &str) -> bool {
+    match kind {
+        JointKind::Pin | JointKind::Screw | JointKind::Universal => true,
+        JointKind::Collar | JointKind::Slot | JointKind::Planar => matches!(coordinate, "turn" | "angle"),
+        JointKind::Sleeve | JointKind::Stage => false,
+        // Their coordinates are no plain ones.
+        JointKind::Ball | JointKind::Free | JointKind::Weld => false,
+    }
+}

@@ -1,0 +1,110 @@
+//! Rotations and matrices as written.
+
+use super::scope::Scope;
+use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::sample::always;
+use crate::expr::{Expr, Mat3, Rotation};
+use crate::syntax::{self, ExprKind};
+
+impl<'g> Scope<'_, 'g> {
+    /// Successive rotations about carried axes.
+    pub fn rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+        let mut whole = Some(Rotation::identity(self.graph));
+        for step in steps {
+            if !is_rotation(step) {
+                report_rotation(step, cx);
+                return None;
+            }
+            let next = self.rotation_step(step, cx);
+            whole = whole.zip(next).map(|(whole, next)| whole.then(&next));
+        }
+        whole
+    }
+
+    fn rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+        match &step.kind {
+            ExprKind::Call(axis, arguments) => {
+                let k = ["x", "y", "z"].iter().position(|a| *a == axis.text);
+                match (k, axis.text.as_str(), arguments.as_slice()) {
+                    (Some(k), _, [angle]) => {
+                        return Some(Rotation::about_axis(k, self.plane_angle(angle, cx)?));
+                    }
+                    (_, "eigenaxis", [n, angle]) => {
+                        let n = self.unit_vector(n, false, cx);
+                        let angle = self.plane_angle(angle, cx);
+                        return Some(Rotation::eigenaxis(n?, angle?));
+                    }
+                    (_, "quaternion", [x, y, z, w]) => {
+                        let parts: Vec<_> = [x, y, z, w].iter().map(|e| self.scalar(e, cx)).collect();
+                        let q = [parts[0]?, parts[1]?, parts[2]?, parts[3]?];
+                        let square = q.iter().fold(self.graph.zero(), |sum, c| sum + c.square());
+                        if square.value().is_some_and(|n| (n - 1.0).abs() > 1e-9) {
+                            cx.error(step.place.clone(), "this quaternion is not of unit length")
+                                .help("its four numbers are x, y, z, w, and their squares add up to one");
+                            return None;
+                        }
+                        return Some(Rotation::quaternion(q));
+                    }
+                    _ => {}
+                }
+            }
+            ExprKind::Array(_) => {
+                let matrix = self.matrix(step, cx)?;
+                return check_rotation_matrix(&matrix, &step.place, cx)
+                    .then(|| Rotation::from_matrix(matrix));
+            }
+            _ => {}
+        }
+        report_rotation(step, cx);
+        None
+    }
+
+    /// An angle, rad. A plain number beyond a full turn is most likely meant in degrees.
+    pub fn plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        if check_angle(e, cx) { self.scalar(e, cx) } else { None }
+    }
+
+    /// A 3×3 matrix written as an array of rows.
+    pub fn matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
+        let mut m = Mat3::zero(self.graph);
+        let rows = match &e.kind {
+            ExprKind::Array(rows) if rows.len() == 3 => rows,
+            _ => {
+                report_matrix(e, cx);
+                return None;
+            }
+        };
+        if rows.iter().all(|row| !matches!(row.kind, ExprKind::Array(_) | ExprKind::Tuple(_))) {
+            report_matrix(e, cx);
+            return None;
+        }
+        for (i, row) in rows.iter().enumerate() {
+            match &row.kind {
+                ExprKind::Array(entries) if entries.len() == 3 => {
+                    for (j, entry) in entries.iter().enumerate() {
+                        m.0[i][j] = self.scalar(entry, cx)?;
+                    }
+                }
+                _ => {
+                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX);
+                    return None;
+                }
+            }
+        }
+        Some(m)
+    }
+}
+
+/// True if numbers form a rotation matrix; matrices of parameters are sampled.
+fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+    let product = m.transpose() * *m;
+    let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));
+    let orthogonal = (0..3).all(|i| (0..3).all(|j| always(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
+    if orthogonal && always(determinant, 1.0) {
+        return true;
+    }
+    cx.error(place.clone(), "this matrix is not a rotation")
+        .help("its columns are three orthogonal unit vectors that form a right-handed frame");
+    false
+}
