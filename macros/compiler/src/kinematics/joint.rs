@@ -2,9 +2,8 @@
 //! on the other side. A joint placed by expressions of coordinates and time has a motion subspace that depends on them,
 //! and may move by itself.
 
-use super::rates::{position_in, symbols_in, time_derivative};
+use super::rates::{Partials, position_in, symbols_in};
 use super::spatial::{Spatial, map_spatial};
-use crate::expr::diff::Derivative;
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
@@ -135,11 +134,12 @@ impl<'g> Joint<'g> {
 
 /// The joints of all links, at the configuration `q`.
 pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
-    model.links.iter().map(|link| joint(model.space(), link)).collect()
+    let mut partials = Partials::default();
+    model.links.iter().map(|link| joint(model.space(), link, &mut partials)).collect()
 }
 
-/// The joint of a link.
-pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
+/// The joint of a link; `partials` are those of the links before it.
+pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
     let q = |k: usize| Quantity::Configuration(k).expr(g);
@@ -171,7 +171,7 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
             });
             (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
         }
-        Motion::Placed => return placed_joint(space, link),
+        Motion::Placed => return placed_joint(space, link, partials),
     };
     Joint {
         parent: link.parent,
@@ -185,19 +185,17 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
 
 /// The joint of a link whose placement is an expression of coordinates and time: its twist is the rate of the
 /// placement, and its subspace what each velocity adds to that.
-fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
+fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let place = &link.placement;
-    let twist = rate_of_placement(space, &place.rotation, place.translation);
-    let acceleration = map_spatial(&twist, |c| time_derivative(space, c));
+    let twist = rate_of_placement(space, &place.rotation, place.translation, partials);
+    let acceleration = map_spatial(&twist, |c| partials.time_derivative(space, c));
     let mut dofs = Vec::new();
     let mut subspace_rates = Vec::new();
-    let mut drift = twist;
+    // The twist is linear in the velocities: what is left when all are taken away is what time does.
+    let drift = map_spatial(&twist, |c| at_rest(space.graph, c));
     for index in velocities_in(&twist) {
-        let mut d = Derivative::with_respect_to(Quantity::Velocity(index).symbol(), space.graph);
-        let subspace = map_spatial(&twist, |c| d.of(c));
-        // The twist is linear in the velocities: what is left when all are taken away is what time does.
-        drift = map_spatial(&drift, |c| without(space.graph, c, index));
-        subspace_rates.push(map_spatial(&subspace, |c| time_derivative(space, c)));
+        let subspace = map_spatial(&twist, |c| partials.of(Quantity::Velocity(index).symbol(), c));
+        subspace_rates.push(map_spatial(&subspace, |c| partials.time_derivative(space, c)));
         dofs.push(Dof { index, ratio: 1.0, subspace });
     }
     Joint {
@@ -211,13 +209,14 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>) -> Joint<'g> {
 }
 
 /// Twist of a frame from the rates of its placement, in the frame's axes: `Rᵀ ṗ`, and `[ω]× = Rᵀ Ṙ`.
-pub fn rate_of_placement<'g>(
+fn rate_of_placement<'g>(
     space: Space<'_, 'g>,
     rotation: &Rotation<'g>,
     translation: Vec3<'g>,
+    partials: &mut Partials<'g>,
 ) -> Spatial<'g> {
-    let angular = rotation.angular_velocity(&mut |e| time_derivative(space, e));
-    Spatial { linear: rotation.to_child(translation.map(|c| time_derivative(space, c))), angular }
+    let angular = rotation.angular_velocity(&mut |e| partials.time_derivative(space, e));
+    Spatial { linear: rotation.to_child(translation.map(|c| partials.time_derivative(space, c))), angular }
 }
 
 fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
@@ -229,9 +228,9 @@ fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     symbols_in(&all).into_iter().filter_map(index).collect()
 }
 
-/// An expression with one velocity set to zero.
-fn without<'g>(graph: &'g Graph, e: Expr<'g>, velocity: usize) -> Expr<'g> {
-    replace(e, &|s| (s == Quantity::Velocity(velocity).symbol()).then(|| graph.zero()))
+/// An expression with all velocities set to zero.
+fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
+    replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| graph.zero()))
 }
 
 fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {

@@ -4,6 +4,7 @@ use crate::expr::diff::Derivative;
 use crate::expr::eval::needed;
 use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, Model, Quantity, Space};
+use std::collections::BTreeMap;
 
 /// Value of a coordinate as an expression of `q`.
 pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
@@ -22,6 +23,28 @@ pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
 pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
+    rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).of(e))
+}
+
+/// Derivatives by single symbols, kept from one expression to the next: places of a chain have all in common that stands before
+/// them, and differentiating each of them by each coordinate would take the cube of its length.
+#[derive(Default)]
+pub struct Partials<'g>(BTreeMap<Symbol, Derivative<'g>>);
+
+impl<'g> Partials<'g> {
+    /// The derivative of an expression by a symbol.
+    pub fn of(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
+        let new = || Derivative::with_respect_to(symbol, e.graph());
+        self.0.entry(symbol).or_insert_with(new).of(e)
+    }
+
+    /// Its rate along the motion, at constant `v`.
+    pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
+        rate_by(space, e, |symbol| self.of(symbol, e))
+    }
+}
+
+fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol) -> Expr<'g>) -> Expr<'g> {
     let mut sum = e.zero();
     for symbol in symbols_in(&[e]) {
         let rate = match Quantity::of(symbol) {
@@ -29,7 +52,7 @@ pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
             Quantity::Time => space.graph.one(),
             _ => continue,
         };
-        sum += Derivative::with_respect_to(symbol, space.graph).of(e) * rate;
+        sum += partial(symbol) * rate;
     }
     sum
 }

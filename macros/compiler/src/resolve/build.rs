@@ -7,6 +7,7 @@ use super::tree::find_tree;
 use super::{reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
+use crate::kinematics::Partials;
 use crate::mechanism::{Constraint, Gradients, Inertia, Model, Released, Units};
 use crate::syntax::{Description, GROUND, Inertias, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
@@ -215,6 +216,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             masses: Vec::new(),
             solved_loops: Vec::new(),
             releasing: None,
+            partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),
         }

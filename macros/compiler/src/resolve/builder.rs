@@ -5,7 +5,7 @@ use super::joint::full_name;
 use super::scope::{Placed, PlacedKind, Scope};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr as Value, Rotation, Sym3, Vec3};
-use crate::kinematics::{joint, symbols_in};
+use crate::kinematics::{Partials, joint, symbols_in};
 use crate::mechanism::{Constraint, Coordinate, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
 
@@ -61,6 +61,8 @@ pub struct Builder<'a, 'g> {
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints to be released, and the names of the constraints that a mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
+    /// Derivatives of the places of the links so far.
+    pub partials: Partials<'g>,
     /// Number of the group of constraints that is being added.
     pub group: usize,
     /// Mistakes that only the motion shows: they are told together with those of units.
@@ -144,7 +146,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds a link and its kinematics.
     pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
-        let kinematics = joint(self.model.space(), &link);
+        let kinematics = joint(self.model.space(), &link, &mut self.partials);
         self.scope.kinematics.borrow_mut().joints.push(kinematics);
         self.model.links.push(link);
         LinkId(self.model.links.len() - 1)
