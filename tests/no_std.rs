@@ -15,7 +15,7 @@ fn build(features: &str) -> Output {
 fn control_step_has_no_way_to_panic() {
     let output = build("");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std/release/linkwork-no-std");
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("packages/release/linkwork-no-std");
     let status = Command::new(program).status().expect("the program starts");
     assert!(status.success(), "the arm arrives, and everything agrees: {status}");
 }

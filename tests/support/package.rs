@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Calls cargo with a command for a package in release mode; it builds in a folder of the package's name in `target`,
-/// which is `env!("CARGO_TARGET_TMPDIR")`. Without network, unless something is missing.
+/// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`, which is
+/// `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless something is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join(package).join("Cargo.toml");
     let cargo = |network: &[&str]| {
@@ -15,7 +15,7 @@ pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
             .arg("--manifest-path")
             .arg(&manifest)
             .arg("--target-dir")
-            .arg(Path::new(target).join(package))
+            .arg(Path::new(target).join("packages"))
             .output()
             .expect("cargo starts")
     };

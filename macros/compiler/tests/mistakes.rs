@@ -32,6 +32,8 @@ mod rounds;
 mod several;
 #[path = "mistakes/slips.rs"]
 mod slips;
+#[path = "mistakes/tables.rs"]
+mod tables;
 
 /// What is written, the first line of what is said, and a part of the help.
 type Row = (&'static str, &'static str, &'static str);

@@ -51,7 +51,7 @@ mod no_comma {
 mod no_file {
     use linkwork::prelude::*;
 
-    #[mechanism(urdf = "urdf/arn.urdf")]
+    #[mechanism(urdf = "urdf/slip.urdf")]
     struct Robot;
 
     fn placements(robot: &Robot) {

@@ -1,0 +1,130 @@
+//! Mistakes one by one, in the files of `tables`: what is written, the tokens that the message points at between `‹` and `›`,
+//! and the message. `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test mistakes` writes the files anew; read the difference.
+//!
+//! A section begins with `== mechanism(arguments)` and the fields that its rows stand among; rows of `== items` are whole
+//! items. Several messages about a row are in the order of their tokens.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::{compile, read};
+use proc_macro2::{Span, TokenStream, TokenTree};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Around the tokens that a message points at.
+const MARKS: [char; 2] = ['‹', '›'];
+
+/// Where the tables and the robots' files are.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mistakes")
+}
+
+/// A message, with the part of the source that it is about; the attribute as a whole is an empty part.
+struct Said {
+    from: usize,
+    to: usize,
+    text: String,
+}
+
+/// The messages about `#[mechanism(…)] item`, in the order of their places.
+fn said(source: &str) -> Vec<Said> {
+    let mut tokens = source.parse::<TokenStream>().expect("these are tokens").into_iter().skip(1);
+    let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{source} has no attribute") };
+    let arguments = attribute.stream().into_iter().find_map(|token| match token {
+        TokenTree::Group(arguments) => Some(arguments.stream()),
+        _ => None,
+    });
+    let mut cx = Diagnostics::new();
+    if let Some(source) = read(arguments.unwrap_or_default(), tokens.collect(), &folder(), &mut cx) {
+        compile(&source, &Graph::new(), &mut cx);
+    }
+    let texts = cx.messages();
+    // Each is `::core::compile_error! { "…" }`: eight tokens, the first and the last of which have the places.
+    let errors: Vec<Span> = cx.into_tokens().into_iter().map(|token| token.span()).collect();
+    let mut found: Vec<Said> = errors
+        .chunks((errors.len() / texts.len().max(1)).max(1))
+        .zip(texts)
+        .map(|(spans, text)| Said {
+            from: spans[0].byte_range().start,
+            to: spans[spans.len() - 1].byte_range().end,
+            text,
+        })
+        .collect();
+    found.sort_by_key(|one| (one.from, std::cmp::Reverse(one.to)));
+    found
+}
+
+/// A row as it stands in its table: the source with marks, and below it the messages.
+fn row(before: &str, row: &str, after: &str) -> String {
+    let source = format!("{before}{row}{after}");
+    let found = said(&source);
+    let mut marked = String::new();
+    for (k, letter) in source.char_indices().chain([(source.len(), ' ')]) {
+        if k < before.len() || k > before.len() + row.len() {
+            continue;
+        }
+        let is_mark = |one: &&Said| one.from < one.to;
+        let ends = found.iter().filter(is_mark).filter(|one| one.to == k && one.from >= before.len());
+        marked.extend(ends.map(|_| MARKS[1]));
+        let starts = found.iter().filter(is_mark).filter(|one| one.from == k && k < before.len() + row.len());
+        marked.extend(starts.map(|_| MARKS[0]));
+        if k < before.len() + row.len() {
+            marked.push(letter);
+        }
+    }
+    for one in &found {
+        let place = match (one.from == one.to, (before.len()..before.len() + row.len()).contains(&one.from)) {
+            (true, _) => " at the attribute".to_string(),
+            (_, true) => String::new(),
+            (_, false) => format!(" at `{}` above", &source[one.from..one.to]),
+        };
+        let mut lines = one.text.lines().filter(|line| !line.is_empty());
+        marked += &format!("\n    error{place}: {}", lines.next().unwrap_or_default());
+        marked.extend(lines.map(|line| format!("\n    {}", line.trim_start_matches("= "))));
+    }
+    marked
+}
+
+/// A table as it should be: every row with what is said of it now.
+fn table(text: &str) -> String {
+    let (mut before, mut after) = (String::new(), "");
+    let mut blocks = Vec::new();
+    for block in text.trim_end().split("\n\n") {
+        if let Some(header) = block.strip_prefix("== ") {
+            let (arguments, fields) = header.split_once('\n').unwrap_or((header, ""));
+            (before, after) = match arguments {
+                "items" => (String::new(), ""),
+                _ => (format!("#[{arguments}] struct Machine {{\n{fields}\n"), "\n}"),
+            };
+            blocks.push(block.to_string());
+            continue;
+        }
+        let source: Vec<&str> = block.lines().filter(|line| !line.starts_with("    ")).collect();
+        blocks.push(row(&before, &source.join("\n").replace(MARKS, ""), after));
+    }
+    blocks.join("\n\n") + "\n"
+}
+
+#[test]
+fn messages_and_their_tokens() {
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for file in fs::read_dir(folder().join("tables")).unwrap() {
+        let path = file.unwrap().path();
+        let expected = fs::read_to_string(&path).unwrap();
+        let found = table(&expected);
+        if std::env::var_os("LINKWORK_WRITE").is_some() {
+            fs::write(&path, &found).unwrap();
+        }
+        let rows = |text: &str| text.split("\n\n").map(String::from).collect::<Vec<_>>();
+        for (is, was) in rows(&found).into_iter().zip(rows(&expected)) {
+            count += usize::from(is.contains("\n    error"));
+            if is != was {
+                wrong.push(format!("{}\nexpected\n{was}\nfound\n{is}", path.display()));
+            } else if !is.starts_with("== ") && !is.contains("\n    error") {
+                wrong.push(format!("{}\nnothing is said of\n{is}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {count}:\n\n{}", wrong.len(), wrong.join("\n\n"));
+}

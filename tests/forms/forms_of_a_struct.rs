@@ -1,0 +1,71 @@
+//! What a struct may look like.
+
+#![deny(warnings)]
+#![deny(missing_docs)]
+
+use linkwork::prelude::*;
+
+/// Without parameters.
+#[mechanism]
+pub struct Plain {
+    #[body(mass = 1)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+}
+
+/// With everything that Rust allows around.
+#[mechanism(gravity = [0, -9.81, 0],)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+#[non_exhaustive]
+#[must_use]
+pub struct Adorned {
+    /// Mass, kg.
+    #[doc(alias = "weight")]
+    pub mass: f64,
+    /// Kept for whoever uses the struct.
+    pub(crate) _serial: f64,
+    /// A cart.
+    #[doc(hidden)]
+    #[allow(dead_code, reason = "only its form counts")]
+    #[body(mass = mass, inertia = 0, com = 0,)]
+    pub cart: linkwork::elements::Body,
+    /// A rail.
+    #[joint(ground.at(2.5 * x).rotated(z(pi / 2)) -> cart, along = unit(x + y),)]
+    pub rail: linkwork::elements::Sleeve,
+}
+
+/// Over single precision.
+#[mechanism(scalar = f32)]
+struct Single {
+    #[body(mass = 0.1)]
+    cart: Body,
+    #[joint(ground -> cart, along = -x)]
+    rail: Sleeve,
+}
+
+/// Over any scalar, with bounds of its own.
+#[mechanism(gravity = -g * y)]
+#[derive(Clone, Copy, Debug)]
+pub struct Generic<Scalar: Copy>
+where
+    Scalar: core::fmt::Debug,
+{
+    /// Gravity, m/s².
+    pub g: Scalar,
+    #[body(mass = 2, com = 1e-3 * y, inertia = sphere(2, 1))]
+    cart: Body,
+    #[joint(ground -> cart, about = (x, y))]
+    cross: Universal,
+}
+
+#[test]
+fn all_of_them_compile() {
+    let adorned = Adorned { mass: 2.0, _serial: 7.0 };
+    assert_eq!(adorned.total_mass() + adorned._serial, 9.0);
+    assert_eq!(Plain.total_mass(), 1.0);
+    assert_eq!(Single {}.total_mass(), 0.1_f32);
+    let generic = Generic { g: 9.81_f32 };
+    assert_eq!(generic.total_mass(), 2.0_f32);
+}

@@ -1,0 +1,22 @@
+//! Types that a macro puts into a mechanism.
+
+macro_rules! cart {
+    ($number:ty, $body:path, $joint:ty) => {
+        #[linkwork::mechanism]
+        struct Cart {
+            mass: $number,
+            #[body(mass = mass)]
+            cart: $body,
+            #[joint(ground -> cart, along = x)]
+            rail: $joint,
+        }
+    };
+}
+cart!(f64, Body, Sleeve);
+
+#[test]
+fn a_macro_may_put_them_in() {
+    use linkwork::nalgebra::SVector;
+    let cart = Cart { mass: 2.0 };
+    assert_eq!(cart.mass_matrix(&SVector::zeros())[0], 2.0);
+}

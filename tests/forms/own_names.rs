@@ -1,0 +1,123 @@
+//! The prelude stands in nobody's way: beside a program's own items of its names, beside names that are imported one by one,
+//! and beside everything of nalgebra.
+
+mod both {
+    use linkwork::nalgebra::*;
+    use linkwork::prelude::*;
+    use std::error::Error;
+    use std::fmt::Result;
+
+    #[mechanism]
+    pub struct Cart {
+        #[body(mass = 1)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+        #[point(on = cart, at = y)]
+        mast: Point,
+        #[output(r(mast / ground))]
+        place: Vector,
+        #[output(dot(r(mast / ground), ground.x))]
+        along: Scalar,
+    }
+
+    fn sum<T: Scalar + Real>(v: Vector<T, U3, ArrayStorage<T, 3, 1>>) -> T {
+        v.sum()
+    }
+
+    pub fn run() -> std::result::Result<f64, Box<dyn Error>> {
+        let end = simulate(&Cart).from([0.0], [1.0]).duration(2.0).finish()?;
+        let place: Point<f64, 3> = Cart.place(&end.q).into();
+        let _: Result = Ok(());
+        Ok(sum(place.coords) + Cart.along(&end.q) + distance(&place, &Point3::origin()))
+    }
+}
+
+mod own {
+    use linkwork::prelude::*;
+
+    pub struct Error;
+    pub struct Sample;
+    pub struct Body;
+    pub struct Result;
+    pub struct Option;
+    pub struct Lanes;
+    pub trait Mechanism {}
+    pub trait Real {}
+    pub fn at() {}
+    pub fn simulate() {}
+    pub fn frame() {}
+    macro_rules! frame {
+        () => {
+            1
+        };
+    }
+
+    #[mechanism(derivatives, batch)]
+    pub struct Cart {
+        pub m: f64,
+        #[body(mass = m)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+    }
+
+    impl Cart {
+        pub fn prepare(&self) -> Sample {
+            Sample
+        }
+    }
+
+    pub fn run() -> usize {
+        at();
+        simulate();
+        frame();
+        let _ = (Error, Sample, Body, Result, Option, Lanes, Cart { m: 1.0 }.prepare());
+        frame!()
+    }
+}
+
+/// A crate that re-exports the library.
+pub mod other {
+    pub use linkwork as mechanisms;
+}
+
+mod far {
+    use super::other::mechanisms::prelude::*;
+
+    macro_rules! cart {
+        ($name:ident, $mass:literal) => {
+            #[mechanism(crate = $crate::own_names::other::mechanisms)]
+            pub struct $name {
+                #[body(mass = $mass)]
+                cart: Body,
+                #[joint(ground -> cart, along = x)]
+                rail: Sleeve,
+            }
+        };
+    }
+    cart!(Light, 1);
+    cart!(Heavy, 2);
+
+    pub fn run() -> f64 {
+        #[mechanism(prepare, crate = crate::own_names::other::mechanisms)]
+        struct Local<T> {
+            m: T,
+            #[body(mass = m)]
+            cart: Body,
+            #[joint(ground -> cart, along = x)]
+            rail: Sleeve,
+        }
+        let (q, local) = ([0.0].into(), Local { m: 3.0 });
+        let place = local.frame_placement(frame!(Local<f64>, "cart"), &q);
+        let prepared = local.prepare();
+        place.translation.x + (Light.mass_matrix(&q) + Heavy.mass_matrix(&q) + prepared.mass_matrix(&q))[0]
+    }
+}
+
+#[test]
+fn none_is_hidden() {
+    assert!((both::run().unwrap() - 5.0 - 5_f64.sqrt()).abs() < 1e-9);
+    assert_eq!(own::run(), 1);
+    assert_eq!(far::run(), 6.0);
+}

@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism]
-fn machine() {}
-
-fn main() {}

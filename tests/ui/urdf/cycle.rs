@@ -1,6 +1,0 @@
-use linkwork::prelude::*;
-
-#[mechanism(urdf = "urdf/cycle.urdf")]
-struct Robot;
-
-fn main() {}
