@@ -1,4 +1,6 @@
-//! Operations of the generated functions, exactly: a change of the compiler that costs or saves some is seen here.
+//! Operations of the generated functions. Twenty-four are counted exactly: of a small chain with parameters, of a robot, and of one
+//! whose limbs are lanes, so that a change of any pass is seen. All others are at most so many, with two per cent for what
+//! tuning changes; what saves more may lower the bounds.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -59,51 +61,57 @@ fn totals(arguments: &str, item: &str) -> [usize; 4] {
     std::array::from_fn(|k| all[k].counts.total())
 }
 
+/// Nothing is dearer than its bound.
+fn at_most(found: &[usize], bounds: &[usize], what: &str) {
+    assert!(found.iter().zip(bounds).all(|(n, most)| n <= most), "{what}: {found:?}, at most {bounds:?}");
+}
+
 /// Instructions where products are fused into sums, without sines and cosines.
 fn instructions(program: &Program) -> usize {
     let operations = program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..)));
     operations.count() - program.counts.calls
 }
 
-/// With alike limbs as lanes: multiplications, additions and divisions together, each on all lanes at once, sums over lanes
-/// among the additions; and the instructions that are left of them when products are fused into sums.
-#[test]
-fn robots_in_lanes() {
-    for (name, totals, fused) in [
-        ("solo12", [323, 292, 139, 757], [205, 187, 101, 499]),
-        ("simple_humanoid", [1136, 1076, 1250, 2806], [708, 669, 869, 1838]),
-    ] {
-        let arguments = format!("urdf = \"../models/urdf/{name}.urdf\", base = free");
-        let programs = programs(&arguments, "pub struct Robot;", &MAIN).into_iter();
-        let in_lanes: Vec<_> = programs.map(|p| p.simd.expect("its limbs are alike")).collect();
-        let found: [_; 4] = std::array::from_fn(|k| (in_lanes[k].counts.total(), instructions(&in_lanes[k])));
-        let expected: [_; 4] = std::array::from_fn(|k| (totals[k], fused[k]));
-        assert_eq!(found, expected, "{name}: {MAIN:?}");
-    }
+/// Multiplications, additions and divisions of the main functions of a robot together, sines and cosines apart, and the
+/// instructions that are left of them when products are fused into sums; of lanes if its limbs are alike and `lanes` says so.
+fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
+    let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
+    let all = programs(&arguments, "pub struct Robot;", &MAIN);
+    let all: Vec<&Program> =
+        all.iter().map(|p| if lanes { p.simd.as_deref().expect("its limbs are alike") } else { p }).collect();
+    [std::array::from_fn(|k| all[k].counts.total()), std::array::from_fn(|k| instructions(all[k]))]
 }
 
-/// Multiplications, additions and divisions together, and the instructions that are left of them when products are fused
-/// into sums; sines and cosines apart.
+#[test]
+fn exactly() {
+    assert_eq!(of_robot("ur5", "", false), [[229, 170, 93, 356], [149, 117, 70, 243]], "{MAIN:?}");
+    assert_eq!(
+        of_robot("solo12", ", base = free", true),
+        [[323, 292, 139, 757], [205, 187, 101, 499]],
+        "{MAIN:?}"
+    );
+    assert_eq!(totals("gravity = -9.81 * z", &chain(2, false)), [31, 20, 4, 29], "{MAIN:?}");
+    assert_eq!(totals("gravity = -9.81 * z", &chain(2, true)), [55, 33, 29, 58], "{MAIN:?}");
+}
+
 #[test]
 fn robots() {
     let free = ", base = free";
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
-    for (name, options, expected, fused) in [
-        ("cartpole", "", [15, 5, 2, 18], [11, 5, 2, 13]),
-        ("ur5", "", [229, 170, 93, 356], [149, 117, 70, 243]),
-        ("panda", locked, [575, 550, 341, 1130], [381, 360, 245, 743]),
-        ("panda", ", mimic = independent", [646, 619, 441, 1394], [422, 400, 315, 918]),
-        ("kinova", "", [631, 604, 473, 1217], [396, 378, 299, 760]),
-        ("gen3", "", [825, 801, 771, 1810], [522, 510, 510, 1159]),
-        ("gen3", ", snap = 1e-4", [584, 554, 362, 1155], [385, 363, 254, 757]),
-        ("solo12", free, [1064, 979, 499, 2223], [692, 642, 347, 1494]),
-        ("simple_humanoid", free, [1952, 1863, 2329, 4746], [1225, 1158, 1600, 3146]),
+    for (name, options, lanes, total, fused) in [
+        ("cartpole", "", false, [15, 5, 2, 18], [11, 5, 2, 13]),
+        ("panda", locked, false, [590, 570, 350, 1160], [390, 370, 250, 760]),
+        ("panda", ", mimic = independent", false, [660, 640, 450, 1430], [440, 410, 330, 940]),
+        ("kinova", "", false, [650, 620, 490, 1250], [410, 390, 310, 780]),
+        ("gen3", "", false, [850, 820, 790, 1850], [540, 530, 530, 1190]),
+        ("gen3", ", snap = 1e-4", false, [600, 570, 370, 1180], [400, 380, 260, 780]),
+        ("solo12", free, false, [1090, 1000, 510, 2270], [710, 660, 360, 1530]),
+        ("simple_humanoid", free, false, [2000, 1910, 2380, 4850], [1250, 1190, 1640, 3210]),
+        ("simple_humanoid", free, true, [1160, 1100, 1280, 2870], [730, 690, 890, 1880]),
     ] {
-        let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
-        let all = programs(&arguments, "pub struct Robot;", &MAIN);
-        let found: [_; 4] = std::array::from_fn(|k| (all[k].counts.total(), instructions(&all[k])));
-        let expected: [_; 4] = std::array::from_fn(|k| (expected[k], fused[k]));
-        assert_eq!(found, expected, "{name}{options}: {MAIN:?}");
+        let [totals, instructions] = of_robot(name, options, lanes);
+        at_most(&totals, &total, &format!("{name}{options}, operations of {MAIN:?}"));
+        at_most(&instructions, &fused, &format!("{name}{options}, instructions of {MAIN:?}"));
     }
 }
 
@@ -114,17 +122,16 @@ fn chains() {
     let mut before: Option<[usize; 4]> = None;
     for (n, numbers, parameters) in [
         (1, [1, 0, 0, 1], [9, 0, 8, 10]),
-        (2, [31, 20, 4, 29], [55, 33, 29, 58]),
-        (4, [170, 150, 60, 261], [235, 205, 125, 354]),
-        (8, [440, 416, 386, 1117], [591, 557, 541, 1351]),
-        (16, [980, 948, 1758, 2752], [1303, 1261, 2141, 3120]),
-        (32, [2060, 2012, 7383, 6033], [2727, 2669, 8443, 6800]),
-        (64, [4220, 4140, 30151, 12593], [5575, 5485, 33307, 14144]),
+        (4, [180, 160, 60, 270], [240, 210, 130, 370]),
+        (8, [450, 430, 400, 1140], [610, 570, 560, 1380]),
+        (16, [1000, 970, 1800, 2810], [1330, 1290, 2190, 3190]),
+        (32, [2110, 2060, 7540, 6160], [2790, 2730, 8620, 6940]),
+        (64, [4310, 4230, 30760, 12850], [5690, 5600, 33980, 14430]),
     ] {
         let found = totals("gravity = -9.81 * z", &chain(n, false));
-        assert_eq!(found, numbers, "{n} joints with numbers: {MAIN:?}");
+        at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
         let symbolic = totals("gravity = -9.81 * z", &chain(n, true));
-        assert_eq!(symbolic, parameters, "{n} joints with parameters: {MAIN:?}");
+        at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
         // The factorisation gives way to articulated bodies beyond some length, so growth shows from eight on.
         if let Some(before) = before.filter(|_| n >= 16) {
             for k in [0, 1] {
