@@ -45,7 +45,7 @@ const ROBOTS: [(&str, &str, &str); 4] = [
 ];
 const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 const SPRINGS: [usize; 4] = [10, 100, 300, 1000];
-const PLACED: [usize; 4] = [4, 8, 16, 32];
+const PLACED: [usize; 5] = [4, 8, 16, 32, 64];
 const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Name, goal and text of every mechanism.
