@@ -2,12 +2,12 @@
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
+use crate::expr::Expr;
 use crate::expr::print::Written;
-use crate::expr::{Expr, Symbol};
 use crate::kinematics::{self, Joint};
-use crate::lower::{Program, lower, lower_without, pipeline, size};
+use crate::lower::{Program, lower, pipeline};
 use crate::mechanics::{self, crba, frames};
-use crate::mechanism::{Model, Quantity};
+use crate::mechanism::Model;
 use crate::passes::Passes;
 use crate::syntax::{Requests, Skipped};
 
@@ -23,10 +23,12 @@ mod prepared;
 mod regressor;
 mod sensitivities;
 mod singular;
+mod specialisation;
 
 use derivation::Derivation;
 use derivatives::Derivatives;
 use regressor::Identification;
+use specialisation::Specialisation;
 
 pub use output::{Constant, FrameSteps, Function, LinkSteps, Output, PLACEMENT, Prepared, TWIST};
 
@@ -171,79 +173,6 @@ fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
     let n = mass.len();
     let all = (0..n).flat_map(|j| (j..n).map(move |i| (i, j)));
     all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
-}
-
-/// By how many operations equal functions may change places when their sums are factored: so many, and one in so many.
-const SPREAD: (usize, usize) = (3, 100);
-
-/// Outputs of one of several forms of a function, with their size in operations.
-struct Candidate<'g> {
-    size: usize,
-    outputs: Vec<Expr<'g>>,
-}
-
-/// What a function's program is specialised to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Specialisation {
-    /// Nothing: it computes everything.
-    None,
-    /// Given parameters: what depends on them alone is computed before.
-    ByParameters,
-}
-
-impl Specialisation {
-    fn program(self, outputs: &[Expr<'_>]) -> Program {
-        lower_without(outputs, &|s| self.knows(s))
-    }
-
-    /// The program of the outputs that take the fewest operations of some that compute the same, and of equally many
-    /// the fewest instructions.
-    fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
-        self.cheapest_of(lists).1
-    }
-
-    /// The same with their number.
-    fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
-        let all = promising(lists);
-        let mut programs: Vec<(usize, Program)> =
-            all.iter().map(|(k, list)| (*k, self.program(list))).collect();
-        let fewest = programs.iter().map(|(_, p)| p.counts.total()).min();
-        programs.retain(|(_, p)| Some(p.counts.total()) == fewest);
-        if programs.len() > 1 {
-            programs.sort_by_cached_key(|(_, program)| program.fused_length());
-        }
-        programs.into_iter().next().unwrap_or_default()
-    }
-
-    /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
-    /// numbers.
-    fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
-        promising(lists).iter().map(|(k, list)| (*k, self.program(list))).collect()
-    }
-
-    fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
-        Candidate { size: size(&outputs, &|s| self.knows(s)), outputs }
-    }
-
-    /// True for what is known before.
-    fn knows(self, symbol: Symbol) -> bool {
-        self == Specialisation::ByParameters && matches!(Quantity::of(symbol), Quantity::Parameter(_))
-    }
-}
-
-/// Those lists of outputs that may take the fewest operations of some that compute the same, with their numbers; of
-/// lists that are the same, the first.
-fn promising<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
-    let mut all: Vec<(usize, Candidate<'g>)> = lists.enumerate().collect();
-    let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);
-    all.retain(|(_, list)| list.size <= most);
-    let mut chosen: Vec<(usize, Vec<Expr<'g>>)> = Vec::new();
-    for (k, list) in all {
-        if !chosen.iter().any(|(_, known)| *known == list.outputs) {
-            chosen.push((k, list.outputs));
-        }
-    }
-    chosen
 }
 
 /// All functions with their programs.

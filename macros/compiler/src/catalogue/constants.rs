@@ -1,6 +1,6 @@
 //! Associated constants.
 
-use super::{Facts, Need};
+use super::facts::{Facts, Need};
 
 /// Constants of mechanisms, with what each needs.
 const CONSTANTS: [(&str, &[Need]); 18] = [

@@ -1,7 +1,9 @@
 //! What constraints say of a state, and the eliminations that constrained dynamics is made of.
 
-use super::Argument::{Q, Tau, V};
-use super::{Argument, ConstraintFacts, Declaration, Facts, Id, Need, Record, Row, Shape};
+use super::facts::{ConstraintFacts, Facts, Need};
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{Q, Tau, V};
+use super::shape::{Argument, Record, Shape};
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 

@@ -1,7 +1,9 @@
 //! The functions of the word `derivatives`.
 
-use super::Argument::{A, Q, Tau, U, V};
-use super::{Argument, Called, Declaration, Facts, Id, Need, Record, Row, Shape};
+use super::facts::{Facts, Need};
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{A, Q, Tau, U, V};
+use super::shape::{Argument, Called, Record, Shape};
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
 const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";

@@ -1,7 +1,9 @@
 //! Functions of every mechanism.
 
-use super::Argument::{A, Q, Tau, U, V};
-use super::{Called, Declaration, Id, Need, Row, Shape};
+use super::facts::Need;
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{A, Q, Tau, U, V};
+use super::shape::{Called, Shape};
 
 const INERTIA: &[Need] = &[Need::Inertia];
 

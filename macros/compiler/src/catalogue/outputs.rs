@@ -1,7 +1,9 @@
 //! The functions of a mechanism's outputs.
 
-use super::Argument::{A, Q, T, U, V};
-use super::{Argument, Declared, Facts, Id, Shape};
+use super::facts::Facts;
+use super::row::{Declared, Id};
+use super::shape::Argument::{A, Q, T, U, V};
+use super::shape::{Argument, Shape};
 use crate::mechanism::Uses;
 
 /// What the hidden function of a reaction's output is called, after which the output is.

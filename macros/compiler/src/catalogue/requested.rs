@@ -1,7 +1,9 @@
 //! The functions of the words `centroidal`, `regressor`, `sensitivities` and `packed`.
 
-use super::Argument::{A, Q, Tau, V};
-use super::{Argument, Declaration, Id, Need, Row, Shape};
+use super::facts::Need;
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{A, Q, Tau, V};
+use super::shape::{Argument, Shape};
 
 /// How many numbers the mass properties of a body are.
 const STANDARD: usize = 10;

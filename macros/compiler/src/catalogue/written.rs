@@ -1,6 +1,7 @@
 //! Functions that are written as they are: they call others and the runtime.
 
-use super::{Need, Row};
+use super::facts::Need;
+use super::row::Row;
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 

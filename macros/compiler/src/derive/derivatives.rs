@@ -1,7 +1,8 @@
 //! The functions of the word `derivatives`.
 
+use super::in_lanes;
 use super::output::Function;
-use super::{Specialisation, in_lanes};
+use super::specialisation::Specialisation;
 use crate::catalogue::{InverseForm, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{self, Joint};

@@ -1,7 +1,8 @@
 //! Programs of the functions of dynamics. They are derived from several forms of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::{Candidate, Specialisation, in_lanes};
+use super::in_lanes;
+use super::specialisation::{Candidate, Specialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;

@@ -1,6 +1,6 @@
 //! The functions of the word `sensitivities`: how the motion depends on the parameters.
 
-use super::Specialisation;
+use super::specialisation::Specialisation;
 use crate::expr::Expr;
 use crate::kinematics;
 use crate::lower::Program;

@@ -1,21 +1,11 @@
 //! Functions that a mechanism does not have, under bounds that never hold: a call of one is told what it lacks.
 
-use super::function::Signature;
-use super::item::{ALLOW, Head, Interface};
+use super::interface::Absent;
+use super::interface::{ALLOW, Head, Interface};
+use super::signature::Signature;
 use crate::catalogue::{self, Facts, JACOBIAN, Need, Row};
 use crate::derive::Function;
 use std::fmt::Write;
-
-/// Functions and constants that are not there, all for one reason.
-#[derive(Clone, Debug)]
-pub struct Absent {
-    /// The trait of the runtime that says why.
-    pub reason: &'static str,
-    /// Names of the functions.
-    pub functions: Vec<String>,
-    /// Names of the constants.
-    pub constants: Vec<&'static str>,
-}
 
 /// All that a mechanism with these functions and outputs lacks.
 pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {

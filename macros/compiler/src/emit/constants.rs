@@ -1,6 +1,6 @@
 //! Associated constants of a mechanism.
 
-use super::item::Interface;
+use super::interface::Interface;
 use crate::derive::Constant;
 use crate::expr::print::Written;
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
 //! projection.
 
-use super::function::Signature;
+use super::signature::Signature;
 use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
 use crate::mechanism::Model;

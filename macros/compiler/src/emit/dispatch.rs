@@ -2,9 +2,10 @@
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
 use super::body::{Build, write_body};
-use super::function::{Signature, filled, write_function, write_head};
-use super::item::{ALLOW, Head};
+use super::function::{write_function, write_head};
+use super::interface::{ALLOW, Head};
 use super::lanes;
+use super::signature::{Signature, filled};
 use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
 
-use super::item::Interface;
+use super::interface::Interface;
 use crate::catalogue::Id;
 use crate::derive::{Function, Output};
 use crate::expr::Symbol;

@@ -1,6 +1,7 @@
 //! Access to named frames: for each frame, calls of the steps along its path, without computing anything else.
 
-use super::function::{Signature, write_function};
+use super::function::write_function;
+use super::signature::Signature;
 use crate::catalogue::Argument;
 use crate::derive::{FrameSteps, Function, LinkSteps};
 use crate::lower::Program;

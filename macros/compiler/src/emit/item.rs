@@ -1,61 +1,28 @@
 //! The whole output: struct, inherent functions, trait, frames.
 
-use super::absent::{Absent, write_absent};
+use super::absent::write_absent;
 use super::constants::{write_constants, write_frame_index};
-use super::constraints::{self, Constraints};
+use super::constraints::{self};
 use super::dispatch::Bodies;
 use super::docs::struct_docs;
 use super::frames::{write_all_placements, write_frame_impl, write_steps};
-use super::function::{Signature, write_function};
+use super::function::write_function;
+use super::implementations::write_impls;
+use super::interface::ALLOW;
+use super::interface::Head;
+use super::interface::Interface;
 use super::manifold::write_manifold;
 use super::prepared::{Content, write_prepared};
 use super::scalar::ScalarSpelling;
+use super::signature::Signature;
 use super::{lanes, reactions};
-use crate::catalogue::{self, Argument, Facts, Row};
+use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
 use crate::expr::print::Written;
-use crate::mechanism::Units;
-use crate::syntax::{ScalarType, Shell};
+use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::fmt::Write;
-
-/// Names and types that the outside sees.
-pub struct Interface<'a> {
-    /// The struct.
-    pub shell: &'a Shell,
-    /// Its scalar type.
-    pub scalar: ScalarType,
-    /// Name of every entry of `q`.
-    pub configuration: Vec<String>,
-    /// Name of every entry of `v`.
-    pub velocities: Vec<String>,
-    /// Name of every entry of `u`.
-    pub inputs: Vec<String>,
-    /// Names of the frames.
-    pub frames: Vec<String>,
-    /// One line for each joint: what it joins.
-    pub structure: Vec<String>,
-    /// The constraints.
-    pub constraints: Constraints,
-    /// Names of the outputs.
-    pub outputs: Vec<String>,
-    /// Units of all of these and of the parameters.
-    pub units: Units,
-    /// A file whose change asks for another expansion.
-    pub file: Option<String>,
-    /// What signatures depend on.
-    pub facts: Facts,
-    /// Large functions choose their arithmetic at run time.
-    pub detect: bool,
-    /// Numbers of the file that were rounded.
-    pub snapped: &'a [String],
-    /// What the mechanism does not have, and why.
-    pub absent: Vec<Absent>,
-}
-
-/// What stands before generated implementations.
-pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
 /// Emitted code: the struct as tokens, which keep their places in the user's source, and everything else as text, since
 /// the compiler's own lexer is much faster than tokens made one by one.
@@ -222,109 +189,6 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// The arguments that the inherent function takes of those of the trait's.
-pub(super) fn needed(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
-    (row.declare)(&i.facts).arguments
-}
-
-/// The trait's functions, in terms of the inherent ones, which take only what they need.
-fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
-    for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
-        let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
-    }
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    for (row, arguments) in catalogue::of_trait() {
-        let (name, result) = (row.name, s.shape((row.declare)(&i.facts).shape));
-        let needed = needed(row, i);
-        let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
-        let _ = writeln!(
-            out,
-            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
-            s.parameters(&s.timed(arguments)),
-            names.join(", ")
-        );
-    }
-    let _ = writeln!(
-        out,
-        "#[inline]\nfn neutral(&self) -> {q} {{ Self::neutral(self) }}
-        #[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
-        #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
-        #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
-    );
-    constraints::write_projection(out, &i.constraints, s);
-}
-
-/// Generics of the struct's implementations as text.
-pub struct Head {
-    /// `<T: …>`
-    pub generics: String,
-    /// `<T>`
-    pub arguments: String,
-    /// `where …`
-    pub bounds: String,
-}
-
-impl Head {
-    /// Those of the struct, with the scalar's own bound.
-    pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
-        let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
-        let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
-        let mut bounds = spell(&where_clause);
-        if s.scalar.is_generic() {
-            let start = if bounds.is_empty() { "where" } else { bounds.trim_end().trim_end_matches(',') };
-            let comma = if bounds.is_empty() { "" } else { "," };
-            bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.one());
-        }
-        Head { generics: spell(&impl_generics), arguments: spell(&ty_generics), bounds }
-    }
-
-    /// The inherent functions of a type of this name, and the trait's.
-    pub fn write_impls(
-        &self,
-        out: &mut String,
-        name: &str,
-        methods: &str,
-        i: &Interface<'_>,
-        s: &Signature<'_>,
-    ) {
-        let Head { generics, arguments, bounds } = self;
-        let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
-        if i.facts.kinematic {
-            return;
-        }
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
-            if s.time { "Rheonomic" } else { "Mechanism" },
-            s.nq,
-            s.nv,
-            s.nu
-        );
-        write_trait(out, i, s);
-        out.push_str("}\n");
-        if i.facts.requests.batch {
-            let _ = writeln!(
-                out,
-                "{ALLOW}impl{generics} ::linkwork::Batch<{}, {}, {}> for {name}{arguments} {bounds} {{",
-                s.nq, s.nv, s.nu
-            );
-            lanes::write_trait(out, i, s);
-            out.push_str("}\n");
-        }
-        if !i.constraints.names.is_empty() {
-            let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
-            let sizes = sizes.map(|n| n.to_string()).join(", ");
-            let _ = writeln!(
-                out,
-                "{ALLOW}impl{generics} ::linkwork::Constrained<{sizes}> for {name}{arguments} {bounds} {{"
-            );
-            constraints::write_trait(out, &i.constraints, s);
-            out.push_str("}\n");
-        }
-    }
-}
-
 /// The name under which generated code finds the runtime, where the attribute says where it is.
 fn alias_of(ident: &syn::Ident) -> String {
     format!("__linkwork_of_{}", ident.to_string().trim_start_matches("r#"))
@@ -386,7 +250,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     };
     let head = Head::new(i, s);
     let mut text = String::new();
-    head.write_impls(&mut text, &i.shell.ident.to_string(), methods, i, s);
+    write_impls(&head, &mut text, &i.shell.ident.to_string(), methods, i, s);
     for (k, body) in frames.iter().enumerate() {
         let _ = writeln!(
             text,

@@ -1,9 +1,10 @@
 //! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
 
 use super::dispatch::Bodies;
-use super::function::{Signature, given, write_function};
-use super::item::{Interface, needed};
+use super::function::write_function;
+use super::interface::{Interface, needed};
 use super::manifold::write_manifold;
+use super::signature::{Signature, given};
 use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;

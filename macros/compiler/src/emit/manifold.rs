@@ -1,6 +1,6 @@
 //! The functions of the configuration space.
 
-use super::function::Signature;
+use super::signature::Signature;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 

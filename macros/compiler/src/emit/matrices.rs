@@ -1,7 +1,7 @@
 //! Results of several matrices, and what is composed of them at run time.
 
-use super::body::Outputs;
-use super::function::{Signature, given};
+use super::pieces::Outputs;
+use super::signature::{Signature, given};
 use crate::catalogue::{InverseForm, Shape, Structure};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
@@ -12,20 +12,6 @@ const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkw
 
 /// No columns to multiply by the inverse.
 const NOTHING: &str = "&mut []";
-
-/// Type of a result of several matrices.
-pub fn several(shape: Shape, s: &Signature<'_>) -> String {
-    let square = |n| s.shape(Shape::Square(n));
-    match shape {
-        Shape::Pair(n) => format!("({0}, {0})", square(n)),
-        Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
-        Shape::Accelerated(n) => s.vector(n),
-        Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
-            format!("({}, {})", square(2 * n), s.shape(Shape::Matrix(2 * n, m)))
-        }
-        _ => String::new(),
-    }
-}
 
 /// What is left to do after the outputs are in their places.
 pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {

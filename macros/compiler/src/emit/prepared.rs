@@ -5,9 +5,11 @@ use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
 use super::dispatch::Bodies;
 use super::docs::operations;
-use super::function::{Signature, write_function};
-use super::item::{ALLOW, Head, Interface};
+use super::function::write_function;
+use super::implementations::write_impls;
+use super::interface::{ALLOW, Head, Interface};
 use super::manifold::write_manifold;
+use super::signature::Signature;
 use super::{constraints, lanes, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
@@ -50,7 +52,7 @@ pub fn write_prepared(
     reactions::write_methods(&mut methods, i, functions, s);
     write_manifold(&mut methods, content.charts, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
-    head.write_impls(out, &name, &methods, i, s);
+    write_impls(&head, out, &name, &methods, i, s);
     bodies.write(out, &name, &head);
     write_absent_of_prepared(out, &name, i, s);
 

@@ -2,8 +2,8 @@
 //! multipliers.
 
 use super::docs::output_docs;
-use super::function::Signature;
-use super::item::Interface;
+use super::interface::Interface;
+use super::signature::Signature;
 use crate::catalogue::{Argument, REACTION};
 use crate::derive::Function;
 use std::fmt::Write;

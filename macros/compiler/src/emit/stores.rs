@@ -1,13 +1,12 @@
 //! Results that go into matrices which a function is given: as soon as they are known, so that they need not wait in
 //! memory of their own.
 
-use super::body::{Outputs, Piece, Statement};
-use super::function::given;
+use super::pieces::{Outputs, Piece, Statement};
+use super::signature::given;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
-use crate::machine::NEAR_STATEMENTS;
-use crate::machine::TURNED_STATEMENTS;
+use crate::machine::{NEAR_STATEMENTS, TURNED_STATEMENTS};
 use std::fmt;
 
 /// An entry of a matrix.

@@ -2,7 +2,6 @@
 
 use super::graph::{Graph, ZERO};
 use super::node::{Extreme, Function, Id, Node};
-use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// An expression: a node of a graph, with arithmetic.
@@ -15,12 +14,6 @@ pub struct Expr<'g> {
 impl PartialEq for Expr<'_> {
     fn eq(&self, other: &Self) -> bool {
         self.id == other.id
-    }
-}
-
-impl fmt::Debug for Expr<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&super::print::plain(*self, &|s| format!("s{}", s.0)))
     }
 }
 

@@ -5,6 +5,8 @@ use super::factor::{Item, Order, items};
 use super::node::{Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 
+use std::fmt;
+
 pub mod latex;
 pub mod names;
 pub mod style;
@@ -14,6 +16,12 @@ pub use names::Name;
 pub use style::{Plain, Style, Written};
 
 use style::{Argument, Factor, Number};
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&plain(*self, &|s| format!("s{}", s.0)))
+    }
+}
 
 /// An expression in one line, with names for its symbols. For small expressions: what is shared is written out, up to
 /// a limit of depth.

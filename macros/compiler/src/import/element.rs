@@ -1,9 +1,9 @@
 //! One XML element → its children, numbers and names, each checked and with its place.
 //! Knows no particular element.
 
-use super::Placed;
 use super::context::{Cx, position, quote, quote_all};
 use crate::diag::{Place, nearest};
+use crate::import::imported::Placed;
 use crate::syntax::Name;
 
 /// An element of the file.

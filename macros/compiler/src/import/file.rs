@@ -1,11 +1,14 @@
 //! A path → the text of the file. Knows no file format.
 
 use super::context::quote;
-use super::{LARGEST_FILE, UrdfOptions};
 use crate::diag::{Diagnostics, nearest};
+use crate::syntax::UrdfOptions;
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
+
+/// Largest file that is read, in bytes. The largest published robots take less than one mebibyte.
+pub const LARGEST_FILE: usize = 16 << 20;
 
 /// Neighbours of a missing file that are looked at.
 const NEIGHBOURS: usize = 1000;

@@ -4,14 +4,14 @@
 //! Knows XML and URDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
 //! limits, transmissions or the extensions of simulators.
 
-use crate::diag::{Diagnostics, Place};
+use crate::diag::Diagnostics;
 pub use crate::syntax::UrdfOptions;
-use crate::syntax::{Body, Joint};
 use std::cell::OnceCell;
 
 mod context;
 mod element;
 mod file;
+mod imported;
 mod urdf;
 mod xml;
 
@@ -19,22 +19,7 @@ mod xml;
 mod tests;
 
 pub use file::read_file;
-
-/// Largest file that is read, in bytes. The largest published robots take less than one mebibyte.
-const LARGEST_FILE: usize = 16 << 20;
-
-/// What a file describes.
-#[derive(Clone, Debug)]
-pub struct Imported {
-    /// The links, a parent before its children.
-    pub bodies: Vec<Body>,
-    /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
-    pub joints: Vec<Joint>,
-    /// The file's root is the ground itself.
-    pub is_ground: bool,
-    /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
-    pub snapped: Vec<String>,
-}
+pub use imported::Imported;
 
 /// Reads the text of a URDF file.
 ///
@@ -42,7 +27,7 @@ pub struct Imported {
 /// `None` if there was any.
 pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
-    if text.len() > LARGEST_FILE {
+    if text.len() > file::LARGEST_FILE {
         file::report(&file::too_large(text.len() as u64), options, cx);
         return None;
     }
@@ -51,11 +36,4 @@ pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> O
     let declared = OnceCell::new();
     let document = xml::parse(text, &declared, cx)?;
     urdf::read(document.root_element(), options, cx)
-}
-
-/// A value with its place.
-#[derive(Clone, Debug)]
-struct Placed<T> {
-    value: T,
-    place: Place,
 }

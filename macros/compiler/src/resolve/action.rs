@@ -2,6 +2,7 @@
 
 use super::builder::Builder;
 use super::motion::Moving;
+use super::motion::needs_motion;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
@@ -525,15 +526,4 @@ fn kind_word(kind: &ActionKind) -> &'static str {
         ActionKind::Force { .. } => "a Force",
         ActionKind::Torque { .. } => "a Torque",
     }
-}
-
-/// True for force elements that are not on a coordinate, or have a law or a value.
-pub fn needs_motion(action: &Action) -> bool {
-    let own = match &action.kind {
-        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
-        ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
-        ActionKind::Dashpot { law } => !matches!(law, Law::Linear(_)),
-        _ => false,
-    };
-    own || matches!(action.on, On::Between(..))
 }

@@ -1,9 +1,9 @@
 //! Velocities and accelerations of the links, once everything is placed.
 
-use super::action::needs_motion;
 use super::builder::Builder;
 use crate::kinematics::{accelerations, twists};
 use crate::mechanism::Quantity;
+use crate::syntax::{Action, ActionKind, Law, Target};
 
 /// That it is known how the links move, so that what names velocities can be read. Comes of [`Builder::know_motion`] alone.
 #[derive(Clone, Copy)]
@@ -33,4 +33,15 @@ impl<'g> Builder<'_, 'g> {
         kinematics.accelerations = accelerations(&self.model, &kinematics.joints, &kinematics.twists, &v, &a);
         Some(Moving(()))
     }
+}
+
+/// True for force elements that are not on a coordinate, or have a law or a value.
+pub fn needs_motion(action: &Action) -> bool {
+    let own = match &action.kind {
+        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
+        ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
+        ActionKind::Dashpot { law } => !matches!(law, Law::Linear(_)),
+        _ => false,
+    };
+    own || matches!(action.on, Target::Between(..))
 }

@@ -6,17 +6,20 @@ use crate::diag::Place;
 pub mod action;
 pub mod arguments;
 pub mod attribute;
+pub mod constraint;
 pub mod declaration;
 pub mod element;
 pub mod expression;
 pub mod guard;
 pub mod home;
+pub mod joint;
+pub mod mechanism;
 pub mod skipped;
 pub mod sound;
 pub mod words;
 
-pub use attribute::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, UrdfOptions, parse_mechanism};
-pub use skipped::Skipped;
+pub use attribute::parse_mechanism;
+pub use mechanism::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, Skipped, UrdfOptions};
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]

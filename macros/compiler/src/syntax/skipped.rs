@@ -2,6 +2,7 @@
 
 use super::ExprKind;
 use super::arguments::Arguments;
+use super::mechanism::Skipped;
 use crate::diag::Diagnostics;
 
 /// The argument.
@@ -9,19 +10,6 @@ const KEY: &str = "skip_passes";
 
 /// Its words.
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
-
-/// The passes that are left out: `skip_passes = [word, …]`. No function depends on them, only what it costs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Skipped {
-    /// Link frames stay where they are described.
-    pub frames: bool,
-    /// Mass properties stay with their links.
-    pub regroup: bool,
-    /// Links that turn about parallel axes are described in their own axes.
-    pub parallel: bool,
-    /// Neither alike limbs nor joints of one path are lanes.
-    pub limbs: bool,
-}
 
 /// Takes the argument.
 pub fn read(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {

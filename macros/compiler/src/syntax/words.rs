@@ -8,10 +8,6 @@ mod tables;
 
 pub use tables::*;
 
-/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a space.
-/// Words are looked up in lower case and without underscores.
-pub type Words = &'static [(&'static str, &'static str)];
-
 /// The words for the arguments of an element.
 fn arguments(kind: &str) -> Words {
     match kind {
@@ -82,7 +78,7 @@ pub fn meant(words: Words, word: &str, known: &[&str]) -> Option<&'static str> {
 
 /// True for the words of `#[mechanism]` that stand alone.
 pub fn is_request(word: &str) -> bool {
-    super::attribute::REQUESTS.contains(&word)
+    super::mechanism::REQUESTS.contains(&word)
 }
 
 /// Adds what is meant by a word, if it is known.

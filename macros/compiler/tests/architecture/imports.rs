@@ -18,8 +18,6 @@ struct File {
     items: BTreeSet<String>,
     /// What it imports: name here (`*` for all names), path as written, whether it is passed on.
     imports: Vec<(String, Vec<String>, bool)>,
-    /// Methods that it gives to types: the type and the method.
-    methods: Vec<(String, String)>,
 }
 
 /// The files of the crate with what each needs.
@@ -58,38 +56,12 @@ impl Imports {
         (0..self.files.len()).map(|k| self.needs(k)).collect()
     }
 
-    /// By file, the files that it needs, with those whose methods it calls. Methods count whose type is defined in another
-    /// file, and whose name no other method has.
-    pub fn graph_with_methods(&self) -> Vec<BTreeSet<usize>> {
-        let mut definitions: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
-        for (k, file) in self.files.iter().enumerate() {
-            for (of, method) in &file.methods {
-                definitions.entry(method).or_default().push((k, of));
-            }
-        }
-        let apart = |(k, of): &(usize, &str)| !self.files[*k].items.contains(*of);
-        let known: BTreeMap<&str, usize> = definitions
-            .into_iter()
-            .filter_map(|(method, places)| match places.as_slice() {
-                [one] if apart(one) => Some((method, one.0)),
-                _ => None,
-            })
-            .collect();
-        let mut graph = self.graph();
-        for (k, file) in self.files.iter().enumerate() {
-            for pair in file.tokens.windows(2).filter(|pair| pair[0] == "." || pair[0] == "::") {
-                graph[k].extend(known.get(pair[1].as_str()).filter(|at| **at != k));
-            }
-        }
-        graph
-    }
-
     fn needs(&self, k: usize) -> BTreeSet<usize> {
         let file = &self.files[k];
         let mut found = BTreeSet::new();
         for (name, path, passes_on) in &file.imports {
             if !passes_on || file.tokens.contains(name) {
-                found.extend(self.defining(&file.module, path));
+                found.extend(self.defining(&file.module, path, 0));
             }
         }
         let mut at = 0;
@@ -97,7 +69,7 @@ impl Imports {
             let path = path_at(&file.tokens, at);
             at += (2 * path.len()).saturating_sub(1).max(1);
             if path.len() > 1 {
-                found.extend(self.defining(&file.module, &path));
+                found.extend(self.defining(&file.module, &path, 0));
             }
         }
         found.remove(&k);
@@ -105,7 +77,7 @@ impl Imports {
     }
 
     /// The file that defines what a path in a module means; none for modules themselves and for what is not of this crate.
-    fn defining(&self, from: &[String], path: &[String]) -> Option<usize> {
+    fn defining(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
         let mut module = from.to_vec();
         let mut rest = path;
         while let [first, others @ ..] = rest {
@@ -117,7 +89,7 @@ impl Imports {
             }
             rest = others;
         }
-        self.look_up(&module, rest, 0)
+        self.look_up(&module, rest, depth)
     }
 
     fn look_up(&self, module: &[String], path: &[String], depth: usize) -> Option<usize> {
@@ -136,33 +108,15 @@ impl Imports {
         }
         let follow = |target: &[String], rest: &[String]| {
             let whole: Vec<String> = target.iter().chain(rest).cloned().collect();
-            self.defining_at(module, &whole, depth + 1)
+            let outside = !matches!(whole[0].as_str(), "crate" | "super" | "self")
+                && !self.by_module.contains_key(&[module, &whole[..1]].concat());
+            if outside { None } else { self.defining(module, &whole, depth + 1) }
         };
         let named = file.imports.iter().find(|(name, ..)| name == first);
         if let Some((_, target, _)) = named {
             return follow(target, rest);
         }
         file.imports.iter().filter(|(name, ..)| name == "*").find_map(|(_, target, _)| follow(target, path))
-    }
-
-    fn defining_at(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
-        let outside = !matches!(path[0].as_str(), "crate" | "super" | "self")
-            && !self.by_module.contains_key(&from.iter().chain([&path[0]]).cloned().collect::<Module>());
-        if outside {
-            return None;
-        }
-        let mut module = from.to_vec();
-        let mut rest = path;
-        while let [first, others @ ..] = rest {
-            match first.as_str() {
-                "crate" => module.clear(),
-                "super" => drop(module.pop()),
-                "self" => {}
-                _ => break,
-            }
-            rest = others;
-        }
-        self.look_up(&module, rest, depth)
     }
 }
 
@@ -217,9 +171,8 @@ impl File {
             tokens: Vec::new(),
             items: BTreeSet::new(),
             imports: Vec::new(),
-            methods: Vec::new(),
         };
-        let (mut at, mut depth, mut of) = (0, 0_usize, None);
+        let mut at = 0;
         while at < all.len() {
             match all[at].as_str() {
                 "use" => {
@@ -234,16 +187,8 @@ impl File {
                 "struct" | "enum" | "trait" | "type" | "const" | "static" | "fn" => {
                     if let Some(name) = all.get(at + 1) {
                         file.items.insert(name.clone());
-                        let method = all[at] == "fn" && depth == 1;
-                        file.methods.extend(of.clone().filter(|_| method).map(|of| (of, name.clone())));
                     }
                 }
-                "impl" if depth == 0 => {
-                    let end = at + all[at..].iter().position(|t| t == "{").unwrap();
-                    of = implemented(&all[at + 1..end]);
-                }
-                "{" => depth += 1,
-                "}" => depth = depth.saturating_sub(1),
                 _ => {}
             }
             file.tokens.push(all[at].clone());
@@ -251,26 +196,6 @@ impl File {
         }
         file
     }
-}
-
-/// The type that methods are given to; none for those of traits.
-fn implemented(head: &[String]) -> Option<String> {
-    if head.iter().any(|t| t == "for") {
-        return None;
-    }
-    let mut depth = 0;
-    head.iter().find_map(|t| match t.as_str() {
-        "<" => {
-            depth += 1;
-            None
-        }
-        ">" => {
-            depth -= 1;
-            None
-        }
-        name if depth == 0 && name.starts_with(char::is_alphabetic) => Some(name.to_string()),
-        _ => None,
-    })
 }
 
 /// The leaves of an import: name here, path.
@@ -375,7 +300,6 @@ fn files_are_read_as_rust_reads_them() {
     let imports: Vec<String> =
         file.imports.iter().map(|(name, path, on)| format!("{name} {} {on}", path.join("::"))).collect();
     assert_eq!(imports, ["a crate::a false", "C crate::a::b::C false", "e crate::a::b::d false", "* f true"]);
-    assert_eq!(file.methods, [("X".to_string(), "y".to_string())]);
     let at = file.tokens.iter().position(|t| t == "z").unwrap();
     assert_eq!(path_at(&file.tokens, at), ["z", "w"]);
 }

@@ -1,13 +1,13 @@
 //! The file's links and joints, their order and what moves them → bodies and joints of the language.
 
-use super::Robot;
 use super::joint::FileJoint;
 use super::motion::Motion;
 use super::names::unused;
+use super::robot::Robot;
 use super::tree::Order;
 use crate::import::context::{Cx, quote};
-use crate::import::{Imported, UrdfOptions};
-use crate::syntax::{Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, Name, ROOT_JOINT};
+use crate::import::imported::Imported;
+use crate::syntax::{Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, Name, ROOT_JOINT, UrdfOptions};
 
 /// Puts the robot together. Bodies come in the order of the joints that carry them.
 pub(super) fn assemble(

@@ -4,8 +4,8 @@ use super::origin::{Origin, read_origin};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, children, name, number, numbers, place, required};
-use crate::import::{Placed, UrdfOptions};
-use crate::syntax::{Expr, JointKind, Mimic, Name};
+use crate::import::imported::Placed;
+use crate::syntax::{Expr, JointKind, Mimic, Name, UrdfOptions};
 
 /// URDF's words for the joints, and `spherical`, which simulators take as well.
 const TYPES: [(&str, JointKind); 7] = [

@@ -1,10 +1,9 @@
 //! `<link>` → [`Body`].
 
 use super::origin::{Origin, read_origin};
-use crate::import::UrdfOptions;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, name, number, place, required};
-use crate::syntax::{Body, Expr, ExprKind, Inertias, Name};
+use crate::syntax::{Body, Expr, ExprKind, Inertias, Name, UrdfOptions};
 
 /// The entries of the inertia matrix, as URDF names them.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];

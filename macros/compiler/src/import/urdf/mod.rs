@@ -6,9 +6,9 @@
 
 use super::context::Cx;
 use super::element::{Node, check_element_name, elements, place, tag};
-use super::{Imported, UrdfOptions};
-use crate::syntax::Body;
-use joint::FileJoint;
+use crate::import::imported::Imported;
+use crate::syntax::UrdfOptions;
+use robot::Robot;
 
 mod assemble;
 mod joint;
@@ -16,20 +16,13 @@ mod link;
 mod motion;
 mod names;
 mod origin;
+mod robot;
 mod snap;
 mod standing;
 mod tree;
 
 /// Links or joints of one file.
 const MOST: usize = 1024;
-
-/// What the file says, in its own order.
-struct Robot {
-    links: Vec<Body>,
-    joints: Vec<FileJoint>,
-    /// What was rounded.
-    snapped: Vec<String>,
-}
 
 /// Reads the root element.
 pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Imported> {

@@ -1,7 +1,8 @@
 //! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file leaves open.
 
 use super::joint::FileJoint;
-use super::{Robot, link};
+use super::link;
+use super::robot::Robot;
 use crate::import::context::{Cx, position, quote};
 use crate::syntax::{Base, GROUND, Name};
 use std::collections::BTreeMap;

@@ -1,8 +1,8 @@
 //! `<origin xyz="…" rpy="…"/>` → a vector and rotations.
 
-use crate::import::Placed;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, numbers, place};
+use crate::import::imported::Placed;
 use crate::syntax::Expr;
 
 /// A frame as URDF places it.

@@ -1,8 +1,7 @@
 //! The links that stand on the ground, found before anything is read: their mass properties enter no equation.
 
-use crate::import::UrdfOptions;
 use crate::import::element::{Node, elements};
-use crate::syntax::Base;
+use crate::syntax::{Base, UrdfOptions};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of the links that fixed and locked joints hold to a fixed root. A file with mistakes in its tree may have others.

@@ -1,6 +1,6 @@
 //! Joints in the file's order → joints in coordinate order, by way of the tree that the links form.
 
-use super::Robot;
+use super::robot::Robot;
 use crate::import::context::{Cx, quote, quote_all};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,8 @@
 //! The tables: what is said → what is meant.
 
-use super::Words;
+/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a space.
+/// Words are looked up in lower case and without underscores.
+pub type Words = &'static [(&'static str, &'static str)];
 
 const ONE_SIDED: &str =
     "what only pulls is a `Spring` given by its energy: `energy = k / 2 * pow(max(stretch, 0), 2)`";

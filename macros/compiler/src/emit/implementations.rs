@@ -1,0 +1,80 @@
+//! Implementations for a type: its inherent functions and the runtime's traits.
+
+use super::interface::{ALLOW, Head, Interface, needed};
+use super::signature::Signature;
+use super::{constraints, lanes};
+use crate::catalogue;
+use std::fmt::Write;
+
+/// The inherent functions of a type of this name, and the trait's.
+pub fn write_impls(
+    head: &Head,
+    out: &mut String,
+    name: &str,
+    methods: &str,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+) {
+    let Head { generics, arguments, bounds } = head;
+    let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
+    if i.facts.kinematic {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
+        if s.time { "Rheonomic" } else { "Mechanism" },
+        s.nq,
+        s.nv,
+        s.nu
+    );
+    write_trait(out, i, s);
+    out.push_str("}\n");
+    if i.facts.requests.batch {
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::Batch<{}, {}, {}> for {name}{arguments} {bounds} {{",
+            s.nq, s.nv, s.nu
+        );
+        lanes::write_trait(out, i, s);
+        out.push_str("}\n");
+    }
+    if !i.constraints.names.is_empty() {
+        let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
+        let sizes = sizes.map(|n| n.to_string()).join(", ");
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::Constrained<{sizes}> for {name}{arguments} {bounds} {{"
+        );
+        constraints::write_trait(out, &i.constraints, s);
+        out.push_str("}\n");
+    }
+}
+
+/// The trait's functions, in terms of the inherent ones, which take only what they need.
+fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
+    for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
+        let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
+    }
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    for (row, arguments) in catalogue::of_trait() {
+        let (name, result) = (row.name, s.shape((row.declare)(&i.facts).shape));
+        let needed = needed(row, i);
+        let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
+            s.parameters(&s.timed(arguments)),
+            names.join(", ")
+        );
+    }
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn neutral(&self) -> {q} {{ Self::neutral(self) }}
+        #[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
+        #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
+        #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
+    );
+    constraints::write_projection(out, &i.constraints, s);
+}

@@ -1,0 +1,154 @@
+//! Signatures of generated functions: arguments, and the type of the result by its shape. How a result is put together stands in
+//! `matrices`.
+
+use super::scalar::ScalarSpelling;
+use crate::catalogue::{Argument, Called, Shape};
+use crate::derive::Function;
+use crate::machine::FILLING_INSTRUCTIONS;
+use crate::mechanism::Quantity;
+use std::fmt::Write;
+
+/// The index in an argument of what a symbol stands for.
+pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
+    match (argument, quantity) {
+        (Argument::Q, Quantity::Configuration(k))
+        | (Argument::V, Quantity::Velocity(k))
+        | (Argument::A, Quantity::Acceleration(k))
+        | (Argument::Tau, Quantity::Force(k))
+        | (Argument::U, Quantity::Input(k)) => Some(k),
+        (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
+            Some(k - first)
+        }
+        (Argument::Standard(_), Quantity::Given(k))
+        | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
+        | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
+        _ => None,
+    }
+}
+
+/// The names of the matrices that a function's results go into.
+pub fn given(f: &Function) -> Vec<&'static str> {
+    let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+    f.arguments.iter().filter_map(given).collect()
+}
+
+/// How many matrices the variant for given ones fills, if a function is written as a call of that. A long function would else
+/// be two for rustc to read, and both do the same.
+pub fn filled(f: &Function) -> Option<usize> {
+    let has_variant = f.name == "inverse_dynamics_derivatives";
+    match f.shape {
+        _ if !given(f).is_empty() => None,
+        Shape::CalledForward(_) => Some(3),
+        Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
+        _ => None,
+    }
+}
+
+/// Dimensions and names that signatures need.
+#[derive(Clone, Copy)]
+pub struct Signature<'a> {
+    /// Spelling of scalars.
+    pub scalar: &'a ScalarSpelling,
+    /// `NQ`.
+    pub nq: usize,
+    /// `NV`.
+    pub nv: usize,
+    /// `NU`.
+    pub nu: usize,
+    /// Functions take time first.
+    pub time: bool,
+}
+
+impl Signature<'_> {
+    /// The type of what a function returns.
+    pub fn result(&self, f: &Function) -> String {
+        match f.shape {
+            Shape::Accelerated(n) => self.vector(n),
+            shape if given(f).is_empty() => self.shape(shape),
+            _ => "()".to_string(),
+        }
+    }
+
+    /// The type of an argument.
+    pub fn argument(&self, a: Argument) -> String {
+        let n = match a {
+            Argument::T => return self.scalar.name().to_string(),
+            Argument::Q => self.nq,
+            Argument::V | Argument::A | Argument::Tau => self.nv,
+            Argument::U => self.nu,
+            Argument::Standard(n) => n,
+            Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
+            Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
+            Argument::Called(_) => 0,
+        };
+        format!("&{}", self.vector(n))
+    }
+
+    /// A column vector's type.
+    pub fn vector(&self, n: usize) -> String {
+        format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.name())
+    }
+
+    /// A result's type.
+    pub fn shape(&self, shape: Shape) -> String {
+        let s = self.scalar.name();
+        match shape {
+            Shape::Scalar => s.to_string(),
+            Shape::Vector(n) => self.vector(n),
+            Shape::Square(n) | Shape::Inverse(n) => {
+                format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>")
+            }
+            Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
+            Shape::Array(n) => format!("[{s}; {n}]"),
+            Shape::Record(record) => {
+                let (name, [m, n]) = record.name();
+                format!("::linkwork::__private::{name}<{s}, {m}, {n}>")
+            }
+            Shape::Symmetric(_) => "()".to_string(),
+            Shape::Pair(_)
+            | Shape::Forward(_)
+            | Shape::Linear(..)
+            | Shape::Accelerated(_)
+            | Shape::CalledForward(_)
+            | Shape::CalledLinear(..) => several(shape, self),
+        }
+    }
+
+    /// The arguments with time before them, where functions take it.
+    pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
+        self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
+    }
+
+    /// What stands after a function's name: nothing, or what tells it from the one of a single state.
+    pub fn generics(&self) -> &'static str {
+        if self.scalar.is_in_lanes() { "_lanes<const LANES: usize>" } else { "" }
+    }
+
+    /// What stands after a function's name where it is called.
+    pub fn suffix(&self) -> &'static str {
+        if self.scalar.is_in_lanes() { "_lanes" } else { "" }
+    }
+
+    /// `&self, q: …, v: …`.
+    pub fn parameters(&self, arguments: &[Argument]) -> String {
+        let mut text = "&self".to_string();
+        for a in arguments {
+            let _ = write!(text, ", {}: {}", a.name(), self.argument(*a));
+        }
+        text
+    }
+}
+
+/// Type of a result of several matrices.
+fn several(shape: Shape, s: &Signature<'_>) -> String {
+    let square = |n| s.shape(Shape::Square(n));
+    match shape {
+        Shape::Pair(n) => format!("({0}, {0})", square(n)),
+        Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
+        Shape::Accelerated(n) => s.vector(n),
+        Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
+            format!("({}, {})", square(2 * n), s.shape(Shape::Matrix(2 * n, m)))
+        }
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,26 @@
+//! What is made of a file.
+
+use crate::diag::Place;
+use crate::syntax::{Body, Joint};
+
+/// What a file describes.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The links, a parent before its children.
+    pub bodies: Vec<Body>,
+    /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
+    pub joints: Vec<Joint>,
+    /// The file's root is the ground itself.
+    pub is_ground: bool,
+    /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
+    pub snapped: Vec<String>,
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Its place.
+    pub place: Place,
+}

@@ -1,0 +1,14 @@
+//! A robot as its file says.
+
+use super::joint::FileJoint;
+use crate::syntax::Body;
+
+/// What the file says, in its own order.
+pub struct Robot {
+    /// Its links.
+    pub links: Vec<Body>,
+    /// Its joints.
+    pub joints: Vec<FileJoint>,
+    /// What was rounded.
+    pub snapped: Vec<String>,
+}

@@ -1,0 +1,335 @@
+//! Straight-line programs: instructions with operands, and what they cost.
+
+use crate::expr::eval::joined;
+use crate::expr::lanes::MOST;
+use crate::expr::{Extreme, Function, Symbol};
+use std::collections::BTreeSet;
+
+/// Where an operand comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    /// A constant.
+    Const(f64),
+    /// An input.
+    Symbol(Symbol),
+    /// The result of an earlier instruction.
+    Value(usize),
+    /// A constant of each lane: an index of the program's tuples.
+    Tuple(usize),
+    /// An input of each lane: an index of the program's gathers.
+    Gather(usize),
+}
+
+impl Operand {
+    /// The number of the instruction that computes it, zero if none does.
+    pub fn number(self) -> usize {
+        match self {
+            Operand::Value(k) => k,
+            _ => 0,
+        }
+    }
+
+    /// What a value has become in another program, given by number.
+    pub fn among(self, values: &[Operand]) -> Operand {
+        match self {
+            Operand::Value(k) => values[k],
+            other => other,
+        }
+    }
+}
+
+/// What an instruction computes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Op {
+    /// `-a`
+    Neg(Operand),
+    /// `a + b`
+    Add(Operand, Operand),
+    /// `a - b`
+    Sub(Operand, Operand),
+    /// `a * b`
+    Mul(Operand, Operand),
+    /// `a / b`
+    Div(Operand, Operand),
+    /// `a * b + c`
+    MulAdd(Operand, Operand, Operand),
+    /// `a * b - c`
+    MulSub(Operand, Operand, Operand),
+    /// `c - a * b`
+    NegMulAdd(Operand, Operand, Operand),
+    /// `f(a)`
+    Call(Function, Operand),
+    /// `atan2(a, b)`
+    Atan2(Operand, Operand),
+    /// `a` to the power `b`
+    Pow(Operand, Operand),
+    /// The smaller or the larger of `a` and `b`.
+    Extreme(Extreme, Operand, Operand),
+    /// The sum of so many lanes.
+    Sum(usize, Operand),
+    /// One lane.
+    Lane(usize, Operand),
+    /// So many lanes of one value, then as many of another.
+    Join(usize, Operand, Operand),
+}
+
+impl Op {
+    /// Calls `f` with every operand.
+    pub fn operands(&self, mut f: impl FnMut(Operand)) {
+        match *self {
+            Op::Neg(a) | Op::Call(_, a) | Op::Sum(_, a) | Op::Lane(_, a) => f(a),
+            Op::Add(a, b)
+            | Op::Sub(a, b)
+            | Op::Mul(a, b)
+            | Op::Div(a, b)
+            | Op::Atan2(a, b)
+            | Op::Pow(a, b)
+            | Op::Extreme(_, a, b)
+            | Op::Join(_, a, b) => {
+                f(a);
+                f(b);
+            }
+            Op::MulAdd(a, b, c) | Op::MulSub(a, b, c) | Op::NegMulAdd(a, b, c) => {
+                f(a);
+                f(b);
+                f(c);
+            }
+        }
+    }
+}
+
+/// A straight-line program.
+#[derive(Clone, Debug, Default)]
+pub struct Program {
+    /// Instructions; instruction `k` computes value `k`.
+    pub instructions: Vec<Op>,
+    /// How often each value is used, as an operand or an output.
+    pub uses: Vec<u32>,
+    /// The results.
+    pub outputs: Vec<Operand>,
+    /// Operations before fusing; one on all lanes of a value counts once.
+    pub counts: Counts,
+    /// Constants of lanes.
+    pub tuples: Vec<Vec<f64>>,
+    /// Inputs of lanes.
+    pub gathers: Vec<Vec<Symbol>>,
+    /// The same with alike limbs side by side as lanes, where that is cheaper.
+    pub simd: Option<Box<Program>>,
+}
+
+/// Operations of a program: one for every arithmetic instruction, a negation counted as an addition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions, subtractions and negations.
+    pub add: usize,
+    /// Divisions.
+    pub div: usize,
+    /// Elementary functions (a sine and a cosine of one angle are two).
+    pub calls: usize,
+}
+
+impl Counts {
+    /// Multiplications, additions and divisions together.
+    pub fn total(&self) -> usize {
+        self.mul + self.add + self.div
+    }
+}
+
+impl Program {
+    /// The same program with some of its outputs alone.
+    pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
+        self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
+        self.sweep();
+        self.counts = self.count();
+        self.simd = self.simd.map(|program| Box::new(program.with_outputs(chosen)));
+        self
+    }
+
+    /// The same instructions in another order, given by their numbers: operands come before operations.
+    pub fn reordered(mut self, order: &[usize]) -> Program {
+        let mut number = vec![0; self.instructions.len()];
+        for (place, k) in order.iter().enumerate() {
+            number[*k] = place;
+        }
+        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
+        self.uses = order.iter().map(|k| self.uses[*k]).collect();
+        self.outputs.iter_mut().for_each(|o| *o = renumber(*o, &number));
+        self
+    }
+
+    /// Drops instructions without use, renumbers the others and counts the uses.
+    pub fn sweep(&mut self) {
+        let n = self.instructions.len();
+        self.uses.clear();
+        self.uses.resize(n, 0);
+        for output in &self.outputs {
+            if let Operand::Value(k) = output {
+                self.uses[*k] += 1;
+            }
+        }
+        let mut dead = 0;
+        for k in (0..n).rev() {
+            if self.uses[k] == 0 {
+                dead += 1;
+                continue;
+            }
+            self.instructions[k].operands(|o| {
+                if let Operand::Value(a) = o {
+                    self.uses[a] += 1;
+                }
+            });
+        }
+        if dead == 0 {
+            return;
+        }
+        let mut number = vec![0; n];
+        let mut next = 0;
+        for k in 0..n {
+            if self.uses[k] > 0 {
+                number[k] = next;
+                self.instructions[next] = self.instructions[k].renumbered(&number);
+                self.uses[next] = self.uses[k];
+                next += 1;
+            }
+        }
+        self.instructions.truncate(next);
+        self.uses.truncate(next);
+        for output in &mut self.outputs {
+            *output = renumber(*output, &number);
+        }
+    }
+
+    /// Its operations, counted.
+    pub fn count(&self) -> Counts {
+        let mut counts = Counts::default();
+        for op in &self.instructions {
+            match op {
+                Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Sum(..) | Op::Extreme(..) => counts.add += 1,
+                Op::Mul(..) => counts.mul += 1,
+                Op::Div(..) => counts.div += 1,
+                Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => {
+                    counts.mul += 1;
+                    counts.add += 1;
+                }
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => counts.calls += 1,
+                Op::Lane(..) | Op::Join(..) => {}
+            }
+        }
+        counts
+    }
+
+    /// The inputs that it uses.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
+        let mut note = |o: Operand| match o {
+            Operand::Symbol(s) => drop(symbols.insert(s)),
+            Operand::Const(_) | Operand::Value(_) | Operand::Tuple(_) | Operand::Gather(_) => {}
+        };
+        for op in &self.instructions {
+            op.operands(&mut note);
+        }
+        self.outputs.iter().for_each(|o| note(*o));
+        symbols
+    }
+
+    /// True if every constant is a finite number.
+    pub fn is_finite(&self) -> bool {
+        let mut finite = true;
+        let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
+        for op in &self.instructions {
+            op.operands(&mut check);
+        }
+        self.outputs.iter().for_each(|o| check(*o));
+        finite && self.tuples.iter().flatten().all(|c| c.is_finite())
+    }
+
+    /// The values of the outputs.
+    pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        let joins = self.instructions.iter().any(|op| matches!(op, Op::Join(..)));
+        match joins || !self.tuples.is_empty() || !self.gathers.is_empty() {
+            true => self.run_lanes::<MOST>(symbol),
+            false => self.run_lanes::<1>(symbol),
+        }
+    }
+
+    fn run_lanes<const N: usize>(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        let each = |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
+        let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
+        let at = |values: &[[f64; N]], o: Operand| match o {
+            Operand::Const(c) => [c; N],
+            Operand::Symbol(s) => [symbol(s); N],
+            Operand::Value(k) => values[k],
+            Operand::Tuple(k) => each(self.tuples[k].clone()),
+            Operand::Gather(k) => each(self.gathers[k].iter().map(|s| symbol(*s)).collect()),
+        };
+        for op in &self.instructions {
+            let result = match *op {
+                Op::Sum(n, a) => [at(&values, a)[..n].iter().sum(); N],
+                Op::Lane(k, a) => [at(&values, a)[k]; N],
+                Op::Join(n, a, b) => joined(n, at(&values, a), at(&values, b)),
+                op => {
+                    let mut operands = Vec::with_capacity(3);
+                    op.operands(|o| operands.push(at(&values, o)));
+                    std::array::from_fn(|lane| op.apply(|k| operands[k][lane]))
+                }
+            };
+            values.push(result);
+        }
+        self.outputs.iter().map(|o| at(&values, *o)[0]).collect()
+    }
+}
+
+impl Op {
+    /// The result in one lane, given the operands by number.
+    fn apply(self, get: impl Fn(usize) -> f64) -> f64 {
+        match self {
+            Op::Neg(_) => -get(0),
+            Op::Add(..) => get(0) + get(1),
+            Op::Sub(..) => get(0) - get(1),
+            Op::Mul(..) => get(0) * get(1),
+            Op::Div(..) => get(0) / get(1),
+            Op::MulAdd(..) => get(0).mul_add(get(1), get(2)),
+            Op::MulSub(..) => get(0).mul_add(get(1), -get(2)),
+            Op::NegMulAdd(..) => (-get(0)).mul_add(get(1), get(2)),
+            Op::Call(f, _) => f.apply(get(0)),
+            Op::Atan2(..) => get(0).atan2(get(1)),
+            Op::Pow(..) => get(0).powf(get(1)),
+            Op::Extreme(f, ..) => f.apply(get(0), get(1)),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
+        }
+    }
+
+    fn renumbered(self, number: &[usize]) -> Op {
+        self.mapped(|o| renumber(o, number))
+    }
+
+    /// The same operation on other operands.
+    pub fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
+        match self {
+            Op::Neg(a) => Op::Neg(n(a)),
+            Op::Add(a, b) => Op::Add(n(a), n(b)),
+            Op::Sub(a, b) => Op::Sub(n(a), n(b)),
+            Op::Mul(a, b) => Op::Mul(n(a), n(b)),
+            Op::Div(a, b) => Op::Div(n(a), n(b)),
+            Op::MulAdd(a, b, c) => Op::MulAdd(n(a), n(b), n(c)),
+            Op::MulSub(a, b, c) => Op::MulSub(n(a), n(b), n(c)),
+            Op::NegMulAdd(a, b, c) => Op::NegMulAdd(n(a), n(b), n(c)),
+            Op::Call(f, a) => Op::Call(f, n(a)),
+            Op::Atan2(a, b) => Op::Atan2(n(a), n(b)),
+            Op::Pow(a, b) => Op::Pow(n(a), n(b)),
+            Op::Extreme(f, a, b) => Op::Extreme(f, n(a), n(b)),
+            Op::Sum(count, a) => Op::Sum(count, n(a)),
+            Op::Lane(k, a) => Op::Lane(k, n(a)),
+            Op::Join(count, a, b) => Op::Join(count, n(a), n(b)),
+        }
+    }
+}
+
+fn renumber(o: Operand, number: &[usize]) -> Operand {
+    match o {
+        Operand::Value(k) => Operand::Value(number[k]),
+        other => other,
+    }
+}

@@ -1,0 +1,154 @@
+//! Joints: their ends, axes and figures.
+
+use super::arguments::Arguments;
+use super::words;
+use super::{Endpoint, Expr, ExprKind, Joint, JointKind, Name};
+use crate::diag::Diagnostics;
+
+/// The joints by their type's name.
+pub const JOINTS: [(&str, JointKind); 11] = [
+    ("Pin", JointKind::Pin),
+    ("Sleeve", JointKind::Sleeve),
+    ("Screw", JointKind::Screw),
+    ("Collar", JointKind::Collar),
+    ("Slot", JointKind::Slot),
+    ("Universal", JointKind::Universal),
+    ("Ball", JointKind::Ball),
+    ("Planar", JointKind::Planar),
+    ("Stage", JointKind::Stage),
+    ("Free", JointKind::Free),
+    ("Weld", JointKind::Weld),
+];
+
+/// Reads a joint.
+pub fn read_joint(
+    name: &Name,
+    kind: JointKind,
+    arguments: &mut Arguments,
+    cx: &mut Diagnostics,
+) -> Option<Joint> {
+    let ends = arguments.take_relation(&["about", "along", "pitch", "lead", "branch"], cx);
+    let about = read_axes("about", arguments, cx);
+    let along = read_axes("along", arguments, cx);
+    let pitch = arguments.take_expr("pitch", cx);
+    let lead = arguments.take_expr("lead", cx);
+    let branch = arguments.take_expr("branch", cx);
+    let allowed: &[&str] = match kind {
+        JointKind::Pin | JointKind::Universal => &["about"],
+        JointKind::Sleeve | JointKind::Stage => &["along"],
+        JointKind::Screw => &["about", "along", "pitch", "lead"],
+        JointKind::Collar | JointKind::Slot | JointKind::Planar => &["about", "along"],
+        JointKind::Ball | JointKind::Free | JointKind::Weld => &[],
+    };
+    for key in ["about", "along", "pitch", "lead"] {
+        if let Some(place) = arguments.seen(key)
+            && !allowed.contains(&key)
+        {
+            let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();
+            let help = if list.is_empty() {
+                "it takes no axis".to_string()
+            } else {
+                format!("expected {}", crate::diag::one_of(&list))
+            };
+            cx.error(place, format!("a {} takes no `{key}`", kind_word(kind))).help(help);
+        }
+    }
+    arguments.finish(&format!("a {}", kind_word(kind)), allowed, cx);
+    let (parent, child) = ends?;
+    let (about, along) = (about?, along?);
+    Some(Joint {
+        name: name.clone(),
+        kind,
+        parent: endpoint(parent, cx)?,
+        child: endpoint(child, cx)?,
+        about,
+        along,
+        pitch,
+        lead,
+        normalise_axis: false,
+        mimic: None,
+        damping: None,
+        friction: None,
+        branch,
+        driven: false,
+    })
+}
+
+/// One axis or several. Three numbers in parentheses are a vector, which is written otherwise.
+fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Vec<Expr>> {
+    let axes = arguments.take_list(key, cx);
+    let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal).collect();
+    let Some([a, b, c]) = numbers.as_deref() else { return Some(axes) };
+    let axis = match [*a, *b, *c] {
+        [1.0, 0.0, 0.0] => "x".to_string(),
+        [0.0, 1.0, 0.0] => "y".to_string(),
+        [0.0, 0.0, 1.0] => "z".to_string(),
+        [-1.0, 0.0, 0.0] => "-x".to_string(),
+        [0.0, -1.0, 0.0] => "-y".to_string(),
+        [0.0, 0.0, -1.0] => "-z".to_string(),
+        _ => format!("[{a}, {b}, {c}]"),
+    };
+    let place = axes[0].place.to(&axes[2].place);
+    cx.error(place, "expected a direction, found three numbers").help(format!("write `{key} = {axis}`"));
+    None
+}
+
+/// The word of the language for a joint.
+pub fn kind_word(kind: JointKind) -> &'static str {
+    JOINTS.iter().find(|(_, k)| *k == kind).map_or("joint", |(word, _)| word)
+}
+
+/// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
+fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
+    match e.kind {
+        ExprKind::Name(text) => {
+            Some(Endpoint { body: Name { text, place: e.place }, at: None, rotated: Vec::new() })
+        }
+        ExprKind::Method(inner, method, mut arguments) => {
+            let mut end = endpoint(*inner, cx)?;
+            match method.text.as_str() {
+                "at" if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
+                    end.at = arguments.pop();
+                    Some(end)
+                }
+                "at" if arguments.len() == 1 => {
+                    cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`")
+                        .help("write `body.at(a + b).rotated(z(angle))`");
+                    None
+                }
+                "at" => {
+                    let help = match arguments.as_slice() {
+                        [a, b, c] => format!("write `.at([{}, {}, {}])`", a.spelt(), b.spelt(), c.spelt()),
+                        _ => "write `body.at(length * x)`".to_string(),
+                    };
+                    cx.error(method.place, "expected one vector in `.at(…)`").help(help);
+                    None
+                }
+                "rotated" if !arguments.is_empty() => {
+                    end.rotated.extend(arguments);
+                    Some(end)
+                }
+                "rotated" => {
+                    cx.error(method.place, "`.rotated()` says no rotation")
+                        .help("write `body.rotated(z(angle))`");
+                    None
+                }
+                other => {
+                    let error = cx.error(method.place, format!("unknown method `.{other}(…)` of a body"));
+                    words::point(error, words::METHODS, other, &["at", "rotated"]);
+                    None
+                }
+            }
+        }
+        kind => {
+            let help = match kind {
+                ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.name().is_some() => {
+                    format!("a point of a body is written `{}.at(vector)`", base.spelt())
+                }
+                _ => "write `ground -> cart`, `arm.at(length * x) -> hand`".to_string(),
+            };
+            cx.error(e.place, "expected a body").help(help);
+            None
+        }
+    }
+}
