@@ -1,7 +1,6 @@
 //! Functions that a mechanism does not have, under bounds that never hold: a call of one is told what it lacks.
 
-use super::interface::Absent;
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, Absent, Head, Interface};
 use super::signature::Signature;
 use crate::catalogue::{self, Facts, JACOBIAN, Need, Row};
 use crate::derive::Function;

@@ -2,10 +2,7 @@
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
 use super::angles::{Angle, Angles, Calls, WIDTH};
-use super::pieces::Outputs;
-use super::pieces::Piece;
-use super::pieces::Statement;
-use super::pieces::storage;
+use super::pieces::{Outputs, Piece, Statement, storage};
 use super::scalar::ScalarSpelling;
 use super::signature::{Signature, filled, given, index};
 use super::{matrices, stores};

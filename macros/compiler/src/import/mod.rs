@@ -1,4 +1,4 @@
-//! Files of other formats → the [`Body`] and [`Joint`] lists of a [`Description`](crate::syntax::Description),
+//! Files of other formats → the lists of bodies and joints of a [`Description`](crate::syntax::Description),
 //! with line and column of every word and number. Only URDF for now.
 //!
 //! Knows XML and URDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,

@@ -1,8 +1,7 @@
 //! Force elements and inputs: what they act on, and with which parameters.
 
 use super::builder::Builder;
-use super::motion::Moving;
-use super::motion::needs_motion;
+use super::motion::{Moving, needs_motion};
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;

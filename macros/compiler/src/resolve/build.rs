@@ -1,7 +1,6 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
-use super::builder::Builder;
-use super::builder::JointedBody;
+use super::builder::{Builder, JointedBody};
 use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
 use super::tree::find_tree;
 use super::{reaction, units};

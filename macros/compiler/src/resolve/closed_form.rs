@@ -2,8 +2,7 @@
 //! Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of two circles, or of a
 //! circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI); `branch` says which of two.
 
-use super::builder::Builder;
-use super::builder::ClosedFormLoop;
+use super::builder::{Builder, ClosedFormLoop};
 use super::joint::Elementary;
 use super::reaction::RELEASED;
 use super::scope::{Placed, PlacedKind};

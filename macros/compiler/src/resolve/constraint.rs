@@ -5,16 +5,14 @@
 use super::builder::Builder;
 use super::closed_form::Solved;
 use super::motion::Moving;
-use super::scope::Value;
-use super::scope::{Allowed, Context};
+use super::scope::{Allowed, Context, Value};
 use super::slips;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::replace;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::kinematics::AXES;
-use crate::kinematics::{symbols_in, time_derivative, velocity_gradient};
+use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
 use crate::mechanism::{Measure, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 

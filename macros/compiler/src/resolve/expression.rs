@@ -1,9 +1,7 @@
 //! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
 
 use super::functions::FUNCTIONS;
-use super::scope::Axes;
-use super::scope::Scope;
-use super::scope::Value;
+use super::scope::{Axes, Scope, Value};
 use super::slips::{DOMAIN, VECTOR, check_angle, degrees, wrong_count};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};

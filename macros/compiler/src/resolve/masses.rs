@@ -1,7 +1,6 @@
 //! Masses: those of bodies and particles go to the links that carry them.
 
-use super::builder::Builder;
-use super::builder::MassProperties;
+use super::builder::{Builder, MassProperties};
 use super::figures::Range;
 use super::inertia::check_inertia;
 use super::scope::Placed;

@@ -7,8 +7,7 @@ use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
-use crate::mechanism::NamedFrame;
-use crate::mechanism::{LinkId, Pose};
+use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
 /// Something to be placed: an index into its list.

@@ -1,16 +1,10 @@
 //! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and the
 //! kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
 
-use super::scope::Allowed;
-use super::scope::Context;
-use super::scope::Placed;
-use super::scope::PlacedKind;
-use super::scope::Terms;
-use super::scope::{Axes, Scope, Value};
+use super::scope::{Allowed, Axes, Context, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
-use crate::kinematics::Spatial;
-use crate::kinematics::unit;
+use crate::kinematics::{Spatial, unit};
 use crate::mechanism::{LinkId, Pose, Quantity};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, Name, words};
 

@@ -1,7 +1,6 @@
 //! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
 
-use super::builder::BodyIndex;
-use super::builder::JointedBody;
+use super::builder::{BodyIndex, JointedBody};
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::GROUND;

@@ -1,18 +1,12 @@
 //! The struct and its attributes: which fields are parameters, which are elements, and what their attributes say.
 
 use super::arguments::Arguments;
-use super::element;
 use super::expression::name;
-use super::mechanism::Mechanism;
-use super::mechanism::REQUESTS;
-use super::mechanism::Requests;
-use super::mechanism::Shell;
-use super::mechanism::Skipped;
-use super::mechanism::UrdfOptions;
+use super::mechanism::{Mechanism, REQUESTS, Requests, Shell, Skipped, UrdfOptions};
 use super::sound::Reading;
 use super::{
-    Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, guard, home,
-    skipped, words,
+    Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, element, guard,
+    home, skipped, words,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};

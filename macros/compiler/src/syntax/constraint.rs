@@ -1,10 +1,7 @@
 //! Constraints: equations that stay fulfilled, surfaces that touch.
 
-use super::ConstraintKind;
-use super::Description;
-use super::SlipFriction;
 use super::arguments::Arguments;
-use super::{Constraint, Name};
+use super::{Constraint, ConstraintKind, Description, Name, SlipFriction};
 use crate::diag::Diagnostics;
 
 /// An equation or an expression that stays zero, or a pair of surfaces.

@@ -4,8 +4,7 @@ use super::action::{article, read_action};
 use super::arguments::Arguments;
 use super::constraint::read_constraint;
 use super::expression::parse_expr;
-use super::joint::JOINTS;
-use super::joint::read_joint;
+use super::joint::{JOINTS, read_joint};
 use super::{
     ActionKind, Body, ConstraintKind, Definition, Description, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, words,

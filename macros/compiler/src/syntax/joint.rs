@@ -1,8 +1,7 @@
 //! Joints: their ends, axes and figures.
 
 use super::arguments::Arguments;
-use super::words;
-use super::{Endpoint, Expr, ExprKind, Joint, JointKind, Name};
+use super::{Endpoint, Expr, ExprKind, Joint, JointKind, Name, words};
 use crate::diag::Diagnostics;
 
 /// The joints by their type's name.
