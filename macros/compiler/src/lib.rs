@@ -345,7 +345,7 @@ impl Source {
 
 /// What a joint joins, in a line of the documentation.
 fn structure_line(joint: &syntax::Joint) -> String {
-    let kind = syntax::joint::kind_word(joint.kind);
+    let kind = syntax::joint_kind::kind_word(joint.kind);
     let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);
     format!("`{}`: {kind}, `{parent}` → `{child}`", joint.name.text)
 }

@@ -7,7 +7,7 @@ use crate::expr::eval::eval_one;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
-use crate::mechanism::Coordinate;
+use crate::mechanism::{Chart, Coordinate};
 use crate::syntax::{self, Joint, JointKind};
 
 /// One motion of a joint.
@@ -39,6 +39,36 @@ pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static st
         JointKind::Ball => (&BALL, &["wx", "wy", "wz"]),
         JointKind::Free => (&FREE, &["vx", "vy", "vz", "wx", "wy", "wz"]),
         JointKind::Weld => (&[], &[]),
+    }
+}
+
+/// The charts of a joint whose coordinates begin at `q` and `v`.
+pub fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {
+    match kind {
+        JointKind::Ball => vec![Chart::Ball(q, v)],
+        JointKind::Free => vec![Chart::Free(q, v)],
+        JointKind::Pin
+        | JointKind::Sleeve
+        | JointKind::Screw
+        | JointKind::Collar
+        | JointKind::Slot
+        | JointKind::Universal
+        | JointKind::Planar
+        | JointKind::Stage
+        | JointKind::Weld => {
+            (0..coordinate_names(kind, along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
+        }
+    }
+}
+
+/// True if a coordinate of a joint is an angle, false if it is a length.
+pub fn is_angle(kind: JointKind, coordinate: &str) -> bool {
+    match kind {
+        JointKind::Pin | JointKind::Screw | JointKind::Universal => true,
+        JointKind::Collar | JointKind::Slot | JointKind::Planar => matches!(coordinate, "turn" | "angle"),
+        JointKind::Sleeve | JointKind::Stage => false,
+        // Their coordinates are no plain ones.
+        JointKind::Ball | JointKind::Free | JointKind::Weld => false,
     }
 }
 

@@ -1,12 +1,11 @@
 //! Numbers of coordinates and velocities, in the order of declaration.
 
 use super::builder::{Builder, JointCoordinates};
-use super::joint::{coordinate_names, full_name, own_coordinate};
+use super::joint::{charts, coordinate_names, full_name, is_angle, own_coordinate};
 use super::reaction::RELEASED;
 use super::{closed_form, tree};
 use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Coordinate};
-use crate::syntax::JointKind;
 
 impl<'g> Builder<'_, 'g> {
     /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow
@@ -85,33 +84,5 @@ impl<'g> Builder<'_, 'g> {
                 self.model.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));
             }
         }
-    }
-}
-
-fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {
-    match kind {
-        JointKind::Ball => vec![Chart::Ball(q, v)],
-        JointKind::Free => vec![Chart::Free(q, v)],
-        JointKind::Pin
-        | JointKind::Sleeve
-        | JointKind::Screw
-        | JointKind::Collar
-        | JointKind::Slot
-        | JointKind::Universal
-        | JointKind::Planar
-        | JointKind::Stage
-        | JointKind::Weld => {
-            (0..coordinate_names(kind, along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
-        }
-    }
-}
-
-fn is_angle(kind: JointKind, coordinate: &str) -> bool {
-    match kind {
-        JointKind::Pin | JointKind::Screw | JointKind::Universal => true,
-        JointKind::Collar | JointKind::Slot | JointKind::Planar => matches!(coordinate, "turn" | "angle"),
-        JointKind::Sleeve | JointKind::Stage => false,
-        // Their coordinates are no plain ones.
-        JointKind::Ball | JointKind::Free | JointKind::Weld => false,
     }
 }

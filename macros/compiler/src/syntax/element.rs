@@ -4,7 +4,8 @@ use super::action::{article, read_action};
 use super::arguments::Arguments;
 use super::constraint::read_constraint;
 use super::expression::parse_expr;
-use super::joint::{JOINTS, read_joint};
+use super::joint::read_joint;
+use super::joint_kind;
 use super::{
     ActionKind, Body, ConstraintKind, Definition, Description, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, words,
@@ -86,7 +87,7 @@ pub fn is_element(kind: &str) -> bool {
 /// Every element type of the language.
 fn element_types() -> Vec<&'static str> {
     let mut all = vec!["Body", "Particle", "f64"];
-    all.extend(JOINTS.iter().map(|(name, _)| *name));
+    all.extend(joint_kind::names());
     all.extend(ACTIONS);
     all.extend(OTHERS.iter().map(|(name, _)| *name));
     all
@@ -114,7 +115,7 @@ pub fn read_element(
         }
         return;
     }
-    let joint = JOINTS.iter().find(|(joint, _)| *joint == kind_name).map(|(_, joint)| *joint);
+    let joint = joint_kind::of_name(&kind_name);
     let expected = match kind_name.as_str() {
         "Body" => "body",
         "Particle" => "particle",
@@ -273,7 +274,7 @@ fn attributes_of(kind: &str) -> &'static [&'static str] {
     match kind {
         "Body" => &["body"],
         "Particle" => &["particle"],
-        _ if JOINTS.iter().any(|(joint, _)| *joint == kind) => &["joint"],
+        _ if joint_kind::of_name(kind).is_some() => &["joint"],
         _ => OTHERS.iter().find(|(other, _)| *other == kind).map_or(&["acts"], |(_, own)| *own),
     }
 }

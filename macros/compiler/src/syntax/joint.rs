@@ -1,23 +1,9 @@
 //! Joints: their ends, axes and figures.
 
 use super::arguments::Arguments;
-use super::{Endpoint, Expr, ExprKind, Joint, JointKind, Name, words};
+use super::joint_kind::{self, JointKind, kind_word};
+use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
-
-/// The joints by their type's name.
-pub const JOINTS: [(&str, JointKind); 11] = [
-    ("Pin", JointKind::Pin),
-    ("Sleeve", JointKind::Sleeve),
-    ("Screw", JointKind::Screw),
-    ("Collar", JointKind::Collar),
-    ("Slot", JointKind::Slot),
-    ("Universal", JointKind::Universal),
-    ("Ball", JointKind::Ball),
-    ("Planar", JointKind::Planar),
-    ("Stage", JointKind::Stage),
-    ("Free", JointKind::Free),
-    ("Weld", JointKind::Weld),
-];
 
 /// Reads a joint.
 pub fn read_joint(
@@ -32,13 +18,7 @@ pub fn read_joint(
     let pitch = arguments.take_expr("pitch", cx);
     let lead = arguments.take_expr("lead", cx);
     let branch = arguments.take_expr("branch", cx);
-    let allowed: &[&str] = match kind {
-        JointKind::Pin | JointKind::Universal => &["about"],
-        JointKind::Sleeve | JointKind::Stage => &["along"],
-        JointKind::Screw => &["about", "along", "pitch", "lead"],
-        JointKind::Collar | JointKind::Slot | JointKind::Planar => &["about", "along"],
-        JointKind::Ball | JointKind::Free | JointKind::Weld => &[],
-    };
+    let allowed = joint_kind::arguments(kind);
     for key in ["about", "along", "pitch", "lead"] {
         if let Some(place) = arguments.seen(key)
             && !allowed.contains(&key)
@@ -90,11 +70,6 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
     let place = axes[0].place.to(&axes[2].place);
     cx.error(place, "expected a direction, found three numbers").help(format!("write `{key} = {axis}`"));
     None
-}
-
-/// The word of the language for a joint.
-pub fn kind_word(kind: JointKind) -> &'static str {
-    JOINTS.iter().find(|(_, k)| *k == kind).map_or("joint", |(word, _)| word)
 }
 
 /// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.

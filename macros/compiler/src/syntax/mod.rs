@@ -13,12 +13,14 @@ pub mod expression;
 pub mod guard;
 pub mod home;
 pub mod joint;
+pub mod joint_kind;
 pub mod mechanism;
 pub mod skipped;
 pub mod sound;
 pub mod words;
 
 pub use attribute::parse_mechanism;
+pub use joint_kind::JointKind;
 pub use mechanism::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, Skipped, UrdfOptions};
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
@@ -339,33 +341,6 @@ pub struct Particle {
     pub mass: Expr,
     /// `body.at(vector)`; absent for a particle that is itself the end of a joint.
     pub at: Option<Expr>,
-}
-
-/// The joints of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
-    /// Rotation about an axis (revolute, hinge).
-    Pin,
-    /// Translation along an axis (prismatic).
-    Sleeve,
-    /// Rotation about and translation along one axis, coupled by a pitch (helical).
-    Screw,
-    /// Rotation about and translation along one axis, independent (cylindrical).
-    Collar,
-    /// Translation along one axis, then rotation about another.
-    Slot,
-    /// Rotations about two axes in turn.
-    Universal,
-    /// All rotations (spherical).
-    Ball,
-    /// Two translations and a rotation about their normal (dual sleeve-pin).
-    Planar,
-    /// Two or three translations (x-y and x-y-z stage).
-    Stage,
-    /// All motions (six degrees of freedom).
-    Free,
-    /// No motion (fixed).
-    Weld,
 }
 
 /// A joint from a parent to a child.

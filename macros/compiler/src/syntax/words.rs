@@ -1,6 +1,7 @@
 //! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else reads these
 //! tables but the help of messages.
 
+use super::joint_kind;
 use super::{BinaryOp, Expr, ExprKind};
 use crate::diag::{Diagnostic, nearest};
 
@@ -23,8 +24,7 @@ fn arguments(kind: &str) -> Words {
         "Point" => POINT,
         "Vector" => VECTOR,
         "`#[mechanism]`" => OPTIONS,
-        "Pin" | "Sleeve" | "Screw" | "Collar" | "Slot" | "Universal" | "Ball" | "Planar" | "Stage"
-        | "Free" | "Weld" => JOINT,
+        joint if joint_kind::of_name(joint).is_some() => JOINT,
         _ => NO_WORDS,
     }
 }
