@@ -4,8 +4,9 @@
 //! A function that is added to the traits is added here. Whatever passes functions on is under the lint
 //! `clippy::missing_trait_methods`, so that one that is forgotten does not quietly become its default.
 
-/// Rows `name(argument: kind, …) -> result` in four groups, handed to a macro that writes a function for each: `space` depends on
-/// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators call.
+/// Rows `name(argument: kind, …) -> result` in groups, handed to a macro that writes a function for each: `space` depends on
+/// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
+/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time.
 /// A kind is the length of a vector, or `scalar`.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
@@ -32,6 +33,20 @@ macro_rules! each_function {
         $crate::forward::write! { $($how)+;
             forward_dynamics(q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
             try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<SVector<Self::Scalar, NV>, $crate::ConstraintError>;
+        }
+    };
+    (tangent, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            integrate_derivatives(dv: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            tangent_rate_derivatives(dv: NV, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+        }
+    };
+    (derivatives, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            coriolis_matrix(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
+            inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NU>);
         }
     };
     (methods, $($how:tt)+) => {

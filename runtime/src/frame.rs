@@ -38,6 +38,56 @@ macro_rules! frame {
     };
 }
 
+/// The index of an entry of `q`, `v`, `u` or of another list of names, checked at compile time:
+/// `index!(Panda::VELOCITIES, "panda_joint4")`. A name that the list does not have does not compile, and the message has the
+/// nearest ones.
+///
+/// ```
+/// use linkwork::{index, prelude::*};
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct CartPole {
+///     #[body(mass = 1)]
+///     cart: Body,
+///     #[body(mass = 0.1, com = 0.5 * y)]
+///     pole: Body,
+///     #[joint(ground -> cart, along = x)]
+///     rail: Sleeve,
+///     #[joint(cart -> pole, about = z)]
+///     hinge: Pin,
+/// }
+///
+/// const HINGE: usize = index!(CartPole::CONFIGURATION, "hinge");
+/// assert_eq!(HINGE, 1);
+/// ```
+///
+/// ```compile_fail
+/// # use linkwork::{index, prelude::*};
+/// # #[mechanism]
+/// # struct Wheel {
+/// #     #[body(mass = 1, inertia = diagonal(1, 1, 1))]
+/// #     rim: Body,
+/// #     #[joint(ground -> rim, about = z)]
+/// #     axle: Pin,
+/// # }
+/// // `Wheel::VELOCITIES` has no entry `axel`; did you mean `axle`?
+/// let axle = index!(Wheel::VELOCITIES, "axel");
+/// ```
+#[macro_export]
+macro_rules! index {
+    ($names:expr, $name:expr) => {
+        const {
+            match $crate::index_of(&$names, $name) {
+                Some(index) => index,
+                None => panic!(
+                    "{}",
+                    $crate::__private::Message::unknown_name(stringify!($names), &$names, $name).text()
+                ),
+            }
+        }
+    };
+}
+
 /// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
 /// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`,
 /// `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
@@ -74,8 +124,97 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
-/// The index of a name in a list.
-pub const fn frame_index(names: &[&str], name: &str) -> Option<usize> {
+/// The frames of a mechanism with `NQ` configuration numbers and `NV` velocities by number, for code that learns at run time
+/// which it is about, such as from a file of settings: number `k` is `FRAMES[k]`, and [`index_of`] finds it by name. Where the
+/// name is known when the program is compiled, [`frame!`](crate::frame!) is faster to write and checked.
+///
+/// Time `t`, s, counts only for a mechanism that is driven in time. `None` is for a number that no frame has.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork::{Frames, index_of};
+///
+/// /// How high a frame is.
+/// fn height<M, const NQ: usize, const NV: usize>(m: &M, name: &str, q: &SVector<f64, NQ>) -> Option<f64>
+/// where
+///     M: Frames<NQ, NV, Scalar = f64>,
+/// {
+///     Some(m.placement_of(index_of(M::FRAMES, name)?, 0.0, q)?.translation.y)
+/// }
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct Arm {
+///     #[body(mass = 1, com = x)]
+///     upper: Body,
+///     #[joint(ground -> upper, about = z)]
+///     shoulder: Pin,
+///     #[particle(mass = 0.5, at = upper.at(2 * x))]
+///     hand: Particle,
+/// }
+///
+/// let raised = [std::f64::consts::FRAC_PI_6].into();
+/// assert!((height(&Arm {}, "hand", &raised).unwrap() - 1.0).abs() < 1e-12);
+/// assert_eq!(height(&Arm {}, "foot", &raised), None);
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no frames",
+    note = "a mechanism is a struct with the attribute `#[mechanism(…)]`; its prepared form has no frames"
+)]
+pub trait Frames<const NQ: usize, const NV: usize> {
+    /// The scalar type.
+    type Scalar: Real;
+
+    /// Names of the frames, in the order of their numbers.
+    const FRAMES: &'static [&'static str];
+
+    /// Placement in the ground: the frame's axes and its origin, m.
+    fn placement_of(
+        &self,
+        frame: usize,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> Option<IsometryMatrix3<Self::Scalar>>;
+
+    /// Velocity of the origin (m/s), then angular velocity (rad/s), relative to the ground, in ground axes.
+    fn velocity_of(
+        &self,
+        frame: usize,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Option<SVector<Self::Scalar, 6>>;
+
+    /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), relative to the ground, in ground axes, without
+    /// gravity. With `a` zero it is what the rate of the Jacobian contributes, `J̇ v`.
+    fn acceleration_of(
+        &self,
+        frame: usize,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> Option<SVector<Self::Scalar, 6>>;
+
+    /// Jacobian: the velocity is this times `v` (and, of a frame that is driven in time, what drives it).
+    fn jacobian_of(
+        &self,
+        frame: usize,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> Option<SMatrix<Self::Scalar, 6, NV>>;
+}
+
+/// The index of a name in a list of names, at run time or in a constant: `index_of(&Panda::VELOCITIES, name)` of a name that stands in
+/// a file of settings. [`index!`](crate::index!) checks a name that is written in the program.
+///
+/// ```
+/// use linkwork::index_of;
+///
+/// let names = ["shoulder", "elbow"];
+/// assert_eq!(index_of(&names, "elbow"), Some(1));
+/// assert_eq!(index_of(&names, "knee"), None);
+/// ```
+pub const fn index_of(names: &[&str], name: &str) -> Option<usize> {
     let mut k = 0;
     while k < names.len() {
         if same(names[k].as_bytes(), name.as_bytes()) {
@@ -147,8 +286,8 @@ mod tests {
 
     #[test]
     fn names_are_found_and_arrays_joined() {
-        assert_eq!(frame_index(&["a", "bc"], "bc"), Some(1));
-        assert_eq!(frame_index(&["a", "bc"], "b"), None);
+        assert_eq!(index_of(&["a", "bc"], "bc"), Some(1));
+        assert_eq!(index_of(&["a", "bc"], "b"), None);
         assert_eq!(join::<f64, 2, 1, 3>(&[1.0, 2.0], &[3.0]), [1.0, 2.0, 3.0]);
         let p = placement(&identity_placement::<f64>());
         assert_eq!(p, IsometryMatrix3::identity());

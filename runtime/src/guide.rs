@@ -8,6 +8,7 @@
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
 //! | [`functions`] | what is generated |
 //! | [`simulating`] | integrators, inputs, events |
+//! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
 //! | [`batches`] | many states at once |
 //! | [`without_std`] | microcontrollers |
 //! | [`speed`] | what makes generated code fast, in release and in debug builds; accuracy |
@@ -32,6 +33,9 @@ pub mod functions {}
 
 #[doc = include_str!("../guide/simulating.md")]
 pub mod simulating {}
+
+#[doc = include_str!("../guide/control.md")]
+pub mod control {}
 
 #[doc = include_str!("../guide/batches.md")]
 pub mod batches {}

@@ -42,7 +42,7 @@
 //! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), and has chapters on the
 //! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF files,
 //! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
-//! [simulating](guide/simulating/index.html), [batches](guide/batches/index.html) of states,
+//! [simulating](guide/simulating/index.html), [control](guide/control/index.html), [batches](guide/batches/index.html) of states,
 //! targets [without std](guide/without_std/index.html), [speed](guide/speed/index.html), and the names of things
 //! [in other tools](guide/from_other_tools/index.html).
 //!
@@ -50,6 +50,8 @@
 //! - [`mechanism`](macro@mechanism): the attribute and its arguments.
 //! - [`elements`]: bodies, joints and forces, the types of a mechanism's fields.
 //! - [`Mechanism`]: what every mechanism offers; [`Constrained`] what those with closed loops or rolling offer besides.
+//! - [`Derivatives`]: first derivatives for generic code; [`discrete`]: single steps and their Jacobians, for estimators and
+//!   optimal control.
 //! - [`simulate()`]: motion over time; [`integrate`] holds the integrators.
 //! - [`batch`]: many states of a mechanism at once, in [`Lanes`].
 //! - [`rotation`]: Euler angles, quaternions and other parameters of rotations.
@@ -73,7 +75,8 @@ extern crate std;
 pub use batch::Batch;
 #[doc(inline)]
 pub use constraint::{Constrained, ConstraintError};
-pub use frame::{FrameIndex, NamedFrame};
+pub use derivatives::{Derivatives, LinearMotion, RheonomicDerivatives};
+pub use frame::{FrameIndex, Frames, NamedFrame, index_of};
 #[doc(inline)]
 pub use lanes::Lanes;
 pub use linkwork_macros::mechanism;
@@ -88,6 +91,8 @@ pub mod absent;
 mod arithmetic;
 pub mod batch;
 pub mod constraint;
+mod derivatives;
+pub mod discrete;
 pub mod elements;
 mod forward;
 mod frame;
@@ -119,7 +124,9 @@ pub mod prelude {
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
-    pub use crate::{Batch, Constrained, ConstraintError, Mechanism, Real, at, frame, mechanism};
+    pub use crate::{
+        Batch, Constrained, ConstraintError, Derivatives, Mechanism, Real, at, frame, index, mechanism,
+    };
     pub use nalgebra::{SMatrix, SVector};
 }
 
@@ -134,13 +141,17 @@ pub mod __private {
         careful_dynamics, careful_response, constrained_derivatives, independent_solution, least_solution,
         nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
-    pub use crate::frame::{Message, frame_index, identity_placement, join, origin, placement, six};
+    pub use crate::frame::{Message, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
+    pub use crate::lie::jacobians::{
+        ball_integrate_derivatives, ball_tangent_rate_derivatives, free_integrate_derivatives,
+        free_tangent_rate_derivatives,
+    };
     pub use crate::lie::{
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,
     };
-    pub use crate::private::constant;
+    pub use crate::private::{constant, put_block};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,

@@ -4,6 +4,8 @@
 //! child (body) frame; SE(3) vectors hold the linear part first (m), then the angular part (rad). Conventions of
 //! Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
 
+pub mod jacobians;
+
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::{constant, epsilon};

@@ -1,6 +1,7 @@
 //! Constants of any type of number. The rest of what generated code calls is in `arithmetic` and `lie`.
 
 use crate::Real;
+use nalgebra::SMatrix;
 
 /// The nearest number of type `T` to `x`.
 #[inline(always)]
@@ -16,6 +17,21 @@ pub(crate) fn to_f64<T: Real>(x: T) -> f64 {
 /// The distance from 1 to the next larger number of type `T`.
 pub(crate) fn epsilon<T: Real>() -> T {
     T::default_epsilon()
+}
+
+/// Puts a block on the diagonal of a matrix, with its first entry at `first` in both directions.
+pub fn put_block<T: Real, const N: usize, const K: usize>(
+    matrix: &mut SMatrix<T, N, N>,
+    first: usize,
+    block: &[[T; K]; K],
+) {
+    for (j, column) in block.iter().enumerate() {
+        for (i, entry) in column.iter().enumerate() {
+            if let Some(slot) = matrix.get_mut((first + i, first + j)) {
+                *slot = *entry;
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -185,8 +185,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
 /// A mechanism at an instant.
 #[derive(Clone, Copy, Debug)]
 pub struct At<'m, M, T> {
-    mechanism: &'m M,
-    t: T,
+    pub(crate) mechanism: &'m M,
+    pub(crate) t: T,
 }
 
 /// The mechanism at time `t`, for code that is written against [`Mechanism`].

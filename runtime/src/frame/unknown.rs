@@ -18,15 +18,33 @@ impl Message {
 
     /// That a mechanism has no frame of this name, with the names nearest to it, or all if they are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
-        let mut message = Message { text: [0; Message::MOST], length: 0 };
-        message = message.with("`").with(mechanism).with("` has no frame `").with(name).with("`");
+        let start = Message::empty().with("`").with(mechanism).with("` has no frame `").with(name).with("`");
+        match start.nearest(frames, name) {
+            (message, true) => message,
+            (message, false) => message.with("; `").with(mechanism).with("::FRAMES` lists those that it has"),
+        }
+    }
+
+    /// That a list has no such name, with the names nearest to it, or all if they are few.
+    pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
+        let start = Message::empty().with("`").with(list).with("` has no entry `").with(name).with("`");
+        start.nearest(names, name).0
+    }
+
+    const fn empty() -> Message {
+        Message { text: [0; Message::MOST], length: 0 }
+    }
+
+    /// With the names nearest to one, or all if they are few; whether there was something to say.
+    const fn nearest(self, names: &[&str], name: &str) -> (Message, bool) {
+        let mut message = self;
         let mut first = true;
         let mut edits = 1;
         while edits <= EDITS + 1 {
             let mut k = 0;
-            while k < frames.len() {
-                if distance(frames[k].as_bytes(), name.as_bytes()) == edits {
-                    message = message.with(if first { "; did you mean `" } else { "` or `" }).with(frames[k]);
+            while k < names.len() {
+                if distance(names[k].as_bytes(), name.as_bytes()) == edits {
+                    message = message.with(if first { "; did you mean `" } else { "` or `" }).with(names[k]);
                     first = false;
                 }
                 k += 1;
@@ -35,17 +53,17 @@ impl Message {
             edits = if first { edits + 1 } else { EDITS + 2 };
         }
         if !first {
-            return message.with("`?");
+            return (message.with("`?"), true);
         }
-        if frames.len() > LISTED {
-            return message.with("; `").with(mechanism).with("::FRAMES` lists those that it has");
+        if names.len() > LISTED {
+            return (message, false);
         }
         let mut k = 0;
-        while k < frames.len() {
-            message = message.with(if k == 0 { "; expected `" } else { "`, `" }).with(frames[k]);
+        while k < names.len() {
+            message = message.with(if k == 0 { "; expected `" } else { "`, `" }).with(names[k]);
             k += 1;
         }
-        if frames.is_empty() { message } else { message.with("`") }
+        (if names.is_empty() { message } else { message.with("`") }, true)
     }
 
     /// Its text.

@@ -128,7 +128,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::InputDerivatives, "__input_derivatives", CONSTRAINED, |f| Declaration {
+    Row::derived(Id::InputDerivatives, "__input_derivatives", ASKED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()

@@ -3,6 +3,7 @@
 use super::facts::Need;
 use super::row::Row;
 
+const ASKED: &[Need] = &[Need::Inertia, Need::Derivatives];
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
 /// Constrained dynamics, assembly and projection.
@@ -25,6 +26,9 @@ pub const ROWS: &[Row] = &[
     Row::written("difference", &[]).and_batched(),
     Row::written("integrate", &[]).and_batched(),
     Row::written("tangent_rate", &[]).and_batched(),
+    Row::written("generalized_forces_derivatives", ASKED),
+    Row::written("integrate_derivatives", ASKED),
+    Row::written("tangent_rate_derivatives", ASKED),
     Row::written("frame_acceleration", &[]),
     Row::written("frame_index", &[]),
     Row::written("frame_jacobian", &[]),

@@ -65,7 +65,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
 /// The index of a frame by its name. A mechanism that failed to compile knows every name: what its frames are called is
 /// not known, and its own mistakes are said already.
 pub fn write_frame_index(out: &mut String, failed: bool) {
-    let found = "::linkwork::__private::frame_index(&Self::FRAMES, name)";
+    let found = "::linkwork::index_of(&Self::FRAMES, name)";
     let value = match failed {
         true => format!("match {found} {{ None => ::core::option::Option::Some(0), found => found }}"),
         false => found.to_string(),

@@ -192,3 +192,42 @@ fn write_jacobian(
         columns.join(",\n")
     );
 }
+
+/// The trait of frames by number: each is found among its implementations of `NamedFrame`.
+pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
+    use Argument::{A, Q, T, V};
+    let (scalar, nq, nv) = (s.scalar.name(), s.nq, s.nv);
+    let _ = writeln!(out, "type Scalar = {scalar};\nconst FRAMES: &'static [&'static str] = &Self::FRAMES;");
+    let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
+    for (name, function, arguments, result, make) in [
+        (
+            "placement_of",
+            "placement",
+            vec![T, Q],
+            format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>"),
+            "::linkwork::__private::placement(&",
+        ),
+        ("velocity_of", "twist", vec![T, Q, V], six.clone(), "::linkwork::__private::six("),
+        ("acceleration_of", "acceleration", vec![T, Q, V, A], six, "::linkwork::__private::six("),
+        (
+            "jacobian_of",
+            "jacobian",
+            vec![T, Q],
+            format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>"),
+            "(",
+        ),
+    ] {
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let parameters = s.parameters(&arguments).replacen("&self, ", "&self, frame: usize, ", 1);
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}({parameters}) -> ::core::option::Option<{result}> {{\n::core::option::Option::Some(match frame {{"
+        );
+        for k in 0..frames {
+            let call =
+                format!("::linkwork::NamedFrame::<{k}, {nq}, {nv}>::{function}(self, {})", names.join(", "));
+            let _ = writeln!(out, "{k} => {make}{call}),");
+        }
+        out.push_str("_ => return ::core::option::Option::None,\n})\n}\n");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
-use super::{constraints, lanes};
+use super::{constraints, differentiable, lanes};
 use crate::catalogue;
 use std::fmt::Write;
 
@@ -30,6 +30,18 @@ pub fn write_impls(
     );
     write_trait(out, i, s);
     out.push_str("}\n");
+    if i.facts.requests.derivatives {
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
+            if s.time { "RheonomicDerivatives" } else { "Derivatives" },
+            s.nq,
+            s.nv,
+            s.nu
+        );
+        differentiable::write_trait(out, s);
+        out.push_str("}\n");
+    }
     if i.facts.requests.batch {
         let _ = writeln!(
             out,

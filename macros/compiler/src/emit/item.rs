@@ -2,10 +2,13 @@
 
 use super::absent::write_absent;
 use super::constants::{write_constants, write_frame_index};
-use super::constraints::{self};
+use super::constraints;
+use super::differentiable;
 use super::dispatch::Bodies;
 use super::docs::struct_docs;
-use super::frames::{write_all_placements, write_frame_impl, write_steps};
+use super::frames::{
+    write_all_placements, write_frame_impl, write_steps, write_trait as write_frames_by_number,
+};
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
@@ -60,6 +63,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, Some(&output.charts), &s);
+    differentiable::write_methods(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
@@ -111,6 +115,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, None, &s);
+    differentiable::write_methods(&mut methods, None, interface, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
@@ -249,6 +254,13 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     let head = Head::new(i, s);
     let mut text = String::new();
     write_impls(&head, &mut text, &i.shell.ident.to_string(), methods, i, s);
+    let _ = writeln!(
+        text,
+        "{ALLOW}impl{} ::linkwork::Frames<{}, {}> for {}{} {} {{",
+        head.generics, s.nq, s.nv, i.shell.ident, head.arguments, head.bounds
+    );
+    write_frames_by_number(&mut text, frames.len(), s);
+    text.push_str("}\n");
     for (k, body) in frames.iter().enumerate() {
         let _ = writeln!(
             text,

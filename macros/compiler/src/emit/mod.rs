@@ -7,6 +7,7 @@ mod body;
 mod constants;
 mod constraints;
 mod derived;
+mod differentiable;
 mod dispatch;
 mod docs;
 mod frames;

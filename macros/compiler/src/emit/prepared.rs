@@ -10,7 +10,7 @@ use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
 use super::manifold::write_manifold;
 use super::signature::Signature;
-use super::{constraints, lanes, reactions};
+use super::{constraints, differentiable, lanes, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
 use crate::mechanism::Chart;
@@ -51,6 +51,7 @@ pub fn write_prepared(
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     reactions::write_methods(&mut methods, i, functions, s);
     write_manifold(&mut methods, content.charts, s);
+    differentiable::write_methods(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);
     bodies.write(out, &name, &head);

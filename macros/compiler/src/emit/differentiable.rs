@@ -1,0 +1,117 @@
+//! The runtime's trait of derivatives, and what it needs beside functions that follow from equations: derivatives on the
+//! configuration space and of the inputs' forces.
+
+use super::interface::Interface;
+use super::signature::Signature;
+use crate::catalogue::{Argument, Shape};
+use crate::mechanism::Chart;
+use std::fmt::Write;
+
+/// Functions of the configuration space to first order, and the forces of the inputs to first order. Without parts of the
+/// configuration space, for a mechanism that failed to compile, their bodies never return.
+pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_>, s: &Signature<'_>) {
+    if i.facts.kinematic || !i.facts.requests.derivatives {
+        return;
+    }
+    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    for (name, about, arguments, first) in [
+        (
+            "integrate",
+            "`(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, at any `q`: how the result moves with `q` and with `dv`, for ball and free joints in body axes; identities for plain coordinates.",
+            format!("dv: &{v}"),
+            "identity",
+        ),
+        (
+            "tangent_rate",
+            "`(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate); zero and the identity for plain coordinates.",
+            format!("dv: &{v}, v: &{v}"),
+            "zeros",
+        ),
+    ] {
+        let _ = writeln!(
+            out,
+            "/// {about}\n#[inline]\n#[must_use]\npub fn {name}_derivatives(&self, {arguments}) -> ({square}, {square}) {{"
+        );
+        match charts {
+            None => out.push_str("loop {}\n"),
+            Some(charts) => write_blocks(out, name, first, charts, &square),
+        }
+        out.push_str("}\n");
+    }
+    let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
+    let pass = if s.time { "t, " } else { "" };
+    let columns = |list: &str| {
+        format!(
+            "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(found.{list}))"
+        )
+    };
+    let _ = writeln!(
+        out,
+        "/// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' [`generalized_forces`](Self::generalized_forces).
+        ///
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).
+        #[inline]\n#[must_use]
+        pub fn generalized_forces_derivatives({}) -> ({square}, {square}, {inputs}) {{
+            let found = self.__input_derivatives({pass}q, v, u);
+            ({}, {}, {})
+        }}",
+        s.parameters(&s.timed(&[Argument::Q, Argument::V, Argument::U])),
+        columns("by_q"),
+        columns("by_v"),
+        columns("by_u"),
+    );
+}
+
+/// The blocks of ball and free joints.
+fn write_blocks(out: &mut String, name: &str, first: &str, charts: &[Chart], square: &str) {
+    let _ = writeln!(out, "let (mut first, mut second) = (<{square}>::{first}(), <{square}>::identity());");
+    for chart in charts {
+        let (kind, v, n) = match *chart {
+            Chart::Plain(..) => continue,
+            Chart::Ball(_, v) => ("ball", v, 3),
+            Chart::Free(_, v) => ("free", v, 6),
+        };
+        let entries = |of: &str| {
+            let list: Vec<String> = (v..v + n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
+            format!("[{}]", list.join(", "))
+        };
+        let mut arguments = entries("dv");
+        if name == "tangent_rate" {
+            arguments = format!("{arguments}, {}", entries("v"));
+        }
+        let _ = writeln!(
+            out,
+            "let blocks = ::linkwork::__private::{kind}_{name}_derivatives({arguments});
+            ::linkwork::__private::put_block(&mut first, {v}, &blocks.0);
+            ::linkwork::__private::put_block(&mut second, {v}, &blocks.1);"
+        );
+    }
+    out.push_str("(first, second)\n");
+}
+
+/// The trait's functions, in terms of the inherent ones.
+pub fn write_trait(out: &mut String, s: &Signature<'_>) {
+    use Argument::{A, Q, Tau, U, V};
+    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn integrate_derivatives(&self, dv: &{v}) -> ({square}, {square}) {{ Self::integrate_derivatives(self, dv) }}
+        #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ Self::tangent_rate_derivatives(self, dv, v) }}"
+    );
+    let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
+    for (name, arguments, result) in [
+        ("coriolis_matrix", vec![Q, V], square.clone()),
+        ("inverse_dynamics_derivatives", vec![Q, V, A], format!("({square}, {square})")),
+        ("forward_dynamics_derivatives", vec![Q, V, Tau], format!("({square}, {square}, {square})")),
+        ("generalized_forces_derivatives", vec![Q, V, U], format!("({square}, {square}, {inputs})")),
+    ] {
+        let arguments = s.timed(&arguments);
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
+            s.parameters(&arguments),
+            names.join(", ")
+        );
+    }
+}

@@ -1,0 +1,244 @@
+//! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
+
+use crate::forward::each_function;
+use crate::private::constant;
+use crate::{At, Mechanism, Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// `NV` by `NV`.
+type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
+
+/// First derivatives of a mechanism's functions, in blocks of `NV` by `NV` (and by `NU`). `#[mechanism(…, derivatives)]` implements
+/// it, with and without constraints; one that is driven in time has [`RheonomicDerivatives`], and this at an instant
+/// ([`at`](crate::at)).
+///
+/// A derivative by `q` is along motions of the configuration: column `i` is along `q ⊕ ε eᵢ` (see
+/// [`integrate`](Mechanism::integrate)), for ball and free joints in body axes. So is the change of a configuration.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no derivatives",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`",
+    note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`"
+)]
+pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
+    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
+    fn integrate_derivatives(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Mechanism::tangent_rate); zero and the identity for plain coordinates.
+    fn tangent_rate_derivatives(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.
+    fn coriolis_matrix(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV>;
+
+    /// `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics); `∂τ/∂a` is the mass matrix.
+    fn inverse_dynamics_derivatives(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Mechanism::forward_dynamics), constraints included. Without constraints
+    /// the last is the inverse of the mass matrix.
+    fn forward_dynamics_derivatives(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
+    fn generalized_forces_derivatives(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NU>);
+
+    /// The motion under the inputs `u` to first order.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    ///
+    /// #[mechanism(gravity = -9.81 * y, derivatives)]
+    /// struct Pendulum {
+    ///     #[body(mass = 2, com = -0.5 * y)]
+    ///     bob: Body,
+    ///     #[joint(ground -> bob, about = z)]
+    ///     hinge: Pin,
+    ///     #[acts(on = hinge)]
+    ///     motor: Torque,
+    /// }
+    ///
+    /// /// How fast it swings when it is let go: by the eigenvalue of the linear system, for any mechanism of one coordinate.
+    /// fn frequency<M: Derivatives<1, 1, 1, Scalar = f64>>(m: &M) -> f64 {
+    ///     let linear = m.linear_motion(&m.neutral(), &[0.0].into(), &[0.0].into());
+    ///     (-linear.by_q[0]).sqrt()
+    /// }
+    /// assert!((frequency(&Pendulum {}) - (9.81_f64 / 0.5).sqrt()).abs() < 1e-12);
+    /// ```
+    fn linear_motion(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> LinearMotion<Self::Scalar, NV, NU> {
+        let tau = Mechanism::generalized_forces(self, q, v, u);
+        let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
+        let (force_by_q, force_by_v, force_by_u) = Derivatives::generalized_forces_derivatives(self, q, v, u);
+        let (turning, _) = Derivatives::tangent_rate_derivatives(self, &SVector::zeros(), v);
+        LinearMotion {
+            acceleration: Mechanism::forward_dynamics(self, q, v, &tau),
+            by_q: by_q + by_force * force_by_q,
+            by_v: by_v + by_force * force_by_v,
+            by_u: by_force * force_by_u,
+            // The tangent space moves along, so that the bracket counts twice.
+            turning: turning * constant::<Self::Scalar>(2.0),
+        }
+    }
+}
+
+/// What [`Derivatives`] are for a mechanism whose functions depend on time `t`, s. Every mechanism with [`Derivatives`] has
+/// these, too.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no derivatives",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`"
+)]
+pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
+    Rheonomic<NQ, NV, NU>
+{
+    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
+    fn integrate_derivatives(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂/∂dv, ∂/∂v)` of the rate of `dv` ([`Derivatives::tangent_rate_derivatives`]).
+    fn tangent_rate_derivatives(
+        &self,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// A matrix `C(t, q, v)` of Coriolis and centrifugal forces ([`Derivatives::coriolis_matrix`]).
+    fn coriolis_matrix(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV>;
+
+    /// `(∂τ/∂q, ∂τ/∂v)` ([`Derivatives::inverse_dynamics_derivatives`]).
+    fn inverse_dynamics_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` ([`Derivatives::forward_dynamics_derivatives`]).
+    fn forward_dynamics_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces ([`Derivatives::generalized_forces_derivatives`]).
+    fn generalized_forces_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NU>);
+}
+
+/// A motion under inputs to first order: how displacements `δq` (in body axes for ball and free joints) and changes of velocity
+/// grow, `δq̇ = turning δq + δv`, `δv̇ = by_q δq + by_v δv + by_u δu`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearMotion<T, const NV: usize, const NU: usize> {
+    /// `v̇`, m/s² and rad/s².
+    pub acceleration: SVector<T, NV>,
+    /// `∂v̇/∂q`.
+    pub by_q: SMatrix<T, NV, NV>,
+    /// `∂v̇/∂v`.
+    pub by_v: SMatrix<T, NV, NV>,
+    /// `∂v̇/∂u`.
+    pub by_u: SMatrix<T, NV, NU>,
+    /// What displacements in turning axes add to their own rates, `δq × v`; zero for plain coordinates.
+    pub turning: SMatrix<T, NV, NV>,
+}
+
+/// An entry of one of four blocks.
+pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], i: usize, j: usize) -> T {
+    let of = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
+    let ((row, i), (column, j)) = (of(i), of(j));
+    let block = blocks.get(row).and_then(|blocks| blocks.get(column)).and_then(|block| block.get((i, j)));
+    block.copied().unwrap_or(T::zero())
+}
+
+/// A matrix of one column of blocks.
+pub(crate) fn column<T: Real, const NV: usize, const NU: usize, const NX: usize>(
+    above: &SMatrix<T, NV, NU>,
+    below: &SMatrix<T, NV, NU>,
+) -> SMatrix<T, NX, NU> {
+    SMatrix::from_fn(|i, j| {
+        let entry = if i < NV { above.get((i, j)) } else { below.get((i - NV, j)) };
+        entry.copied().unwrap_or(T::zero())
+    })
+}
+
+impl<T: Real, const NV: usize, const NU: usize> LinearMotion<T, NV, NU> {
+    /// `A` of `ẋ = A x + B δu`, with `x` the displacements, then the changes of velocity. `NX` is `2 NV`, which the type that
+    /// is asked for says; any other does not compile.
+    pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
+        let identity = Square::identity();
+        SMatrix::from_fn(|i, j| entry([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
+    }
+
+    /// `B` of `ẋ = A x + B δu`; `NX` is `2 NV`.
+    pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
+        column(&SMatrix::zeros(), &self.by_u)
+    }
+}
+
+impl<M, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU> for &M
+where
+    M: Derivatives<NQ, NV, NU> + ?Sized,
+{
+    each_function!(tangent, plain Derivatives, self => *self);
+    each_function!(derivatives, plain Derivatives, self => *self);
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize> RheonomicDerivatives<NQ, NV, NU> for M
+where
+    M: Derivatives<NQ, NV, NU>,
+{
+    each_function!(tangent, plain Derivatives, self => self);
+    each_function!(derivatives, drop Derivatives, self => self);
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU> for At<'_, M, T>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
+    each_function!(derivatives, at RheonomicDerivatives, self => self.mechanism, self.t);
+}

@@ -1,0 +1,339 @@
+//! Single steps of a mechanism as maps of state and input, with their exact Jacobians: what Kalman filters, iLQR, DDP and
+//! multiple shooting are made of.
+//!
+//! A step leads from the state `(q, v)` at the time `t` to the next, under inputs `u` that are held over the period of the
+//! method. Derivatives are along motions of the configuration, in body axes for ball and free joints, at the start and at the
+//! end: with `x = (δq, δv)`, `x⁺ = A x + B δu`.
+//!
+//! ```
+//! use linkwork::discrete;
+//! use linkwork::prelude::*;
+//!
+//! #[mechanism(gravity = -9.81 * y, derivatives)]
+//! struct Pendulum {
+//!     #[body(mass = 2, com = -0.5 * y)]
+//!     bob: Body,
+//!     #[joint(ground -> bob, about = z)]
+//!     hinge: Pin,
+//!     #[acts(on = hinge)]
+//!     motor: Torque,
+//! }
+//!
+//! # fn main() -> Result<(), Error> {
+//! let (m, method) = (Pendulum {}, Rk4::step(0.01));
+//! let (q, v, u) = ([0.3].into(), [0.0].into(), [0.1].into());
+//! let next = discrete::transition(&m, &method, 0.0, &q, &v, &u)?;
+//! let (a, b) = (next.a::<2>(), next.b::<2>());
+//!
+//! // A little more torque moves the next state by B.
+//! let moved = discrete::step(&m, &method, 0.0, &q, &v, &[0.1 + 1e-6].into())?;
+//! assert!((moved.1[0] - next.v[0] - b[(1, 0)] * 1e-6).abs() < 1e-12);
+//! // Without friction areas of states keep their size, to the order of the method.
+//! assert!((a.determinant() - 1.0).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives, column, entry};
+use crate::integrate::{Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Steered, System};
+use crate::private::{constant, to_f64};
+use crate::{At, Real, Rheonomic, at};
+use nalgebra::{SMatrix, SVector};
+
+/// The state after one step of a method under inputs `u` that are held: configuration and velocity.
+///
+/// With constraints the state is brought onto them as in a simulation. The method's own memory begins anew.
+///
+/// # Errors
+///
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, and those of the method:
+/// [`Error::NotFinite`], [`Error::NotConverged`], [`Error::Constraint`].
+pub fn step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<(SVector<T, NQ>, SVector<T, NV>), Error>
+where
+    T: Real,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    S: FixedStep<T>,
+{
+    method.check()?;
+    // Counted from its own start, a step is as long as it is.
+    let start = State { t: T::zero(), q: *q, v: *v };
+    let mut memory = method.memory();
+    let step = if NU == 0 {
+        System::new(mechanism, NoInputs).advance(method, &mut memory, t, &start, None, false)
+    } else {
+        let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+        System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
+    }?;
+    Ok((step.end.q, step.end.v))
+}
+
+/// One step of a method under inputs that are held, and its Jacobians ([`Transition`]), exact to rounding.
+///
+/// The mechanism has no constraints: a mechanism with constraints does not compile here. Where it has contacts or loops, write
+/// them as springs or stabilise them.
+///
+/// # Errors
+///
+/// Those of [`step`].
+pub fn transition<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<Transition<T, NQ, NV, NU>, Error>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    S: DifferentiableStep<T>,
+{
+    const { assert!(!M::CONSTRAINED, "a step with derivatives is one of a mechanism without constraints") };
+    method.check()?;
+    let found = method.differentiate(mechanism, t, q, v, u);
+    let is_finite = found.q.iter().chain(found.v.iter()).all(|x| x.is_finite());
+    if is_finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
+}
+
+/// Methods with steps of a length that is set: all but [`DormandPrince`](crate::integrate::DormandPrince).
+pub trait FixedStep<T: Real>: Method<T> {}
+
+impl<T: Real> FixedStep<T> for Rk4<T> {}
+impl<T: Real> FixedStep<T> for SemiImplicitEuler<T> {}
+impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
+impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
+
+/// Methods whose steps have derivatives: [`SemiImplicitEuler`] and [`Rk4`].
+pub trait DifferentiableStep<T: Real>: FixedStep<T> {
+    /// A step with its derivatives; what [`transition`] calls.
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Transition<T, NQ, NV, NU>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>;
+}
+
+/// The state after a step, and how it changes with the state before and with the inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
+    /// The configuration after the step.
+    pub q: SVector<T, NQ>,
+    /// The velocity after the step.
+    pub v: SVector<T, NV>,
+    /// How the configuration after the step moves with that before.
+    pub q_by_q: SMatrix<T, NV, NV>,
+    /// How the configuration moves with the velocity before, s.
+    pub q_by_v: SMatrix<T, NV, NV>,
+    /// How the configuration moves with the inputs.
+    pub q_by_u: SMatrix<T, NV, NU>,
+    /// How the velocity changes with the configuration before, 1/s.
+    pub v_by_q: SMatrix<T, NV, NV>,
+    /// How the velocity changes with that before.
+    pub v_by_v: SMatrix<T, NV, NV>,
+    /// How the velocity changes with the inputs.
+    pub v_by_u: SMatrix<T, NV, NU>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
+    /// `A` of `x⁺ = A x + B δu`: displacements first, then changes of velocity. `NX` is `2 NV`; any other does not compile.
+    pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
+        let blocks = [[&self.q_by_q, &self.q_by_v], [&self.v_by_q, &self.v_by_v]];
+        SMatrix::from_fn(|i, j| entry(blocks, i, j))
+    }
+
+    /// `B` of `x⁺ = A x + B δu`; `NX` is `2 NV`.
+    pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
+        column(&self.q_by_u, &self.v_by_u)
+    }
+
+    /// The gradient by configuration, velocity and inputs before the step of a function whose gradient after it is
+    /// (`by_q`, `by_v`): `Aᵀ λ` and `Bᵀ λ`, what adjoint methods carry backwards.
+    pub fn adjoint(
+        &self,
+        by_q: &SVector<T, NV>,
+        by_v: &SVector<T, NV>,
+    ) -> (SVector<T, NV>, SVector<T, NV>, SVector<T, NU>) {
+        (
+            self.q_by_q.tr_mul(by_q) + self.v_by_q.tr_mul(by_v),
+            self.q_by_v.tr_mul(by_q) + self.v_by_v.tr_mul(by_v),
+            self.q_by_u.tr_mul(by_q) + self.v_by_u.tr_mul(by_v),
+        )
+    }
+}
+
+/// How a vector of the tangent space changes with the state and the inputs at the start of a step.
+#[derive(Clone, Copy)]
+struct Sensitive<T, const NV: usize, const NU: usize> {
+    value: SVector<T, NV>,
+    by_q: SMatrix<T, NV, NV>,
+    by_v: SMatrix<T, NV, NV>,
+    by_u: SMatrix<T, NV, NU>,
+}
+
+impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
+    /// The velocity at the start.
+    fn velocity(v: &SVector<T, NV>) -> Self {
+        let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
+        Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
+    }
+
+    /// `self + s other`.
+    fn plus(&self, s: T, other: &Self) -> Self {
+        Self {
+            value: self.value + other.value * s,
+            by_q: self.by_q + other.by_q * s,
+            by_v: self.by_v + other.by_v * s,
+            by_u: self.by_u + other.by_u * s,
+        }
+    }
+
+    fn scaled(&self, s: T) -> Self {
+        Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
+    }
+
+    /// A function of two of these, by its derivatives.
+    fn of(
+        value: SVector<T, NV>,
+        (by_a, a): (&SMatrix<T, NV, NV>, &Self),
+        (by_b, b): (&SMatrix<T, NV, NV>, &Self),
+    ) -> Self {
+        Self {
+            value,
+            by_q: by_a * a.by_q + by_b * b.by_q,
+            by_v: by_a * a.by_v + by_b * b.by_v,
+            by_u: by_a * a.by_u + by_b * b.by_u,
+        }
+    }
+}
+
+/// A mechanism under inputs at the start of a step.
+struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+    mechanism: &'a M,
+    t: T,
+    q: &'a SVector<T, NQ>,
+    u: &'a SVector<T, NU>,
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Start<'_, M, T, NQ, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    /// The configuration `q ⊕ displacement` with how it moves.
+    fn moved(&self, displacement: &Sensitive<T, NV, NU>) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        let q = self.mechanism.integrate(self.q, &displacement.value);
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&displacement.value);
+        let motion = Sensitive {
+            value: displacement.value,
+            by_q: by_q + by_dv * displacement.by_q,
+            by_v: by_dv * displacement.by_v,
+            by_u: by_dv * displacement.by_u,
+        };
+        (q, motion)
+    }
+
+    /// The acceleration at a time `h` after the start.
+    fn acceleration(
+        &self,
+        h: T,
+        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
+        v: &Sensitive<T, NV, NU>,
+    ) -> Sensitive<T, NV, NU> {
+        let now: At<'_, M, T> = at(self.mechanism, self.t + h);
+        let LinearMotion { acceleration, by_q, by_v, by_u, .. } = now.linear_motion(q, &v.value, self.u);
+        let found = Sensitive::of(acceleration, (&by_q, motion), (&by_v, v));
+        Sensitive { by_u: found.by_u + by_u, ..found }
+    }
+
+    /// The end of a step.
+    fn end(
+        &self,
+        displacement: &Sensitive<T, NV, NU>,
+        v: &Sensitive<T, NV, NU>,
+    ) -> Transition<T, NQ, NV, NU> {
+        let (q, motion) = self.moved(displacement);
+        Transition {
+            q,
+            v: v.value,
+            q_by_q: motion.by_q,
+            q_by_v: motion.by_v,
+            q_by_u: motion.by_u,
+            v_by_q: v.by_q,
+            v_by_v: v.by_v,
+            v_by_u: v.by_u,
+        }
+    }
+
+    /// Where it starts: the configuration moves as itself.
+    fn here(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        let (value, zero) = (SVector::zeros(), SMatrix::zeros());
+        (*self.q, Sensitive { value, by_q: SMatrix::identity(), by_v: zero, by_u: SMatrix::zeros() })
+    }
+}
+
+impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Transition<T, NQ, NV, NU>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        let before = Sensitive::velocity(v);
+        let v = before.plus(h, &start.acceleration(T::zero(), &start.here(), &before));
+        start.end(&v.scaled(h), &v)
+    }
+}
+
+impl<T: Real> DifferentiableStep<T> for Rk4<T> {
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Transition<T, NQ, NV, NU>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        let v = Sensitive::velocity(v);
+        let stage = |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
+            let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
+            let (by_dv, by_v) = mechanism.tangent_rate_derivatives(&displacement.value, &v.value);
+            let value = mechanism.tangent_rate(&displacement.value, &v.value);
+            let rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
+            (rate, start.acceleration(h, &start.moved(&displacement), &v))
+        };
+        let half = h * constant(0.5);
+        let k1 = (v, start.acceleration(T::zero(), &start.here(), &v));
+        let k2 = stage(half, &k1);
+        let k3 = stage(half, &k2);
+        let k4 = stage(h, &k3);
+        let two = constant::<T>(2.0);
+        let sixth = h / constant(6.0);
+        let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
+        let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
+        start.end(&displacement, &v.plus(T::one(), &change))
+    }
+}

@@ -1,0 +1,246 @@
+//! Jacobians of the exponentials of SO(3) and SE(3): how `q ⊕ dv` and `tangent_rate(dv, v)` of ball and free joints change to
+//! first order. Blocks are given as lists of columns; displacements are measured in body axes, as everywhere.
+
+use super::{
+    add, ball_tangent_rate, bracket, choose, cross, dot, even_brackets, exponential, free_integrate,
+    free_tangent_rate, left_jacobian, plus, rotated, scale, second_bracket, series,
+};
+use crate::Real;
+use crate::arithmetic::{Arithmetic, Compiled};
+use crate::private::constant;
+
+/// A square block, column by column.
+type Block<T, const N: usize> = [[T; N]; N];
+
+/// The unit vectors.
+fn units<T: Real, const N: usize>() -> Block<T, N> {
+    core::array::from_fn(|j| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }))
+}
+
+/// How the result of `q ⊕ dv` of a ball joint moves, in its body axes, with `q` moved in body axes and with `dv`:
+/// `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information Theory, and Lie Groups*, vol. 2,
+/// 2012, § 10.6).
+pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+    let back = exponential(dv.map(|x| -x));
+    let [a, b] = left_jacobian(dot(dv, dv));
+    let right = |e: [T; 3]| {
+        let first = cross(dv, e);
+        add(add(e, scale(first, -a)), scale(cross(dv, first), b))
+    };
+    (units().map(|e| rotated(back, e)), units().map(right))
+}
+
+/// How `tangent_rate(dv, v)` of a ball joint changes with `dv` and with `v`.
+pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+    let square = dot(dv, dv);
+    let second = second_bracket(square);
+    // The factor of the second bracket falls with θ² by that of the fourth.
+    let [_, slope] = even_brackets(square);
+    let first = cross(dv, v);
+    let twice = cross(dv, first);
+    let by_dv = |e: [T; 3]| {
+        let changed = cross(e, v);
+        let brackets = add(cross(e, first), cross(dv, changed));
+        let factor = constant::<T>(-2.0) * slope * dot(dv, e);
+        add(add(scale(changed, constant(0.5)), scale(brackets, second)), scale(twice, factor))
+    };
+    (units().map(by_dv), units().map(|e| ball_tangent_rate(dv, e)))
+}
+
+/// Factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, of `θ²`: `ad` has the minimal
+/// polynomial `ad (ad² + θ²)²` (Selig, *Geometric Fundamentals of Robotics*, § 4.6).
+fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
+    choose(
+        square,
+        constant(1.0),
+        |square| {
+            // adᵐ⁺²ⁿ is, by the double root, n (−θ²)ⁿ⁻¹ adᵐ⁺² − (n − 1) (−θ²)ⁿ adᵐ: 1 / (2 n + 2)! and 1 / (2 n + 3)! of these.
+            let mut factors = [constant::<T>(0.5), constant(1.0 / 6.0), T::zero(), T::zero()];
+            let (mut power, mut odd, mut even) = (T::one(), 0.5, 1.0 / 6.0);
+            for n in 1_u8..=9 {
+                let n = f64::from(n);
+                odd /= (2.0 * n + 1.0) * (2.0 * n + 2.0);
+                even /= (2.0 * n + 2.0) * (2.0 * n + 3.0);
+                let next = power * -square;
+                let [c1, c2, c3, c4] = factors;
+                factors = [
+                    c1 - constant::<T>((n - 1.0) * odd) * next,
+                    c2 - constant::<T>((n - 1.0) * even) * next,
+                    c3 + constant::<T>(n * odd) * power,
+                    c4 + constant::<T>(n * even) * power,
+                ];
+                power = next;
+            }
+            factors
+        },
+        |square| {
+            let angle = square.sqrt();
+            let (sin, cos) = Compiled::sin_cos(angle);
+            let two = constant::<T>(2.0);
+            let (s, c) = (angle * sin, angle * cos);
+            let fourth = square * square;
+            [
+                (constant::<T>(4.0) - s - constant::<T>(4.0) * cos) / (two * square),
+                (constant::<T>(4.0) * angle - constant::<T>(5.0) * sin + c) / (two * square * angle),
+                (two - s - two * cos) / (two * fourth),
+                (two * angle - constant::<T>(3.0) * sin + c) / (two * fourth * angle),
+            ]
+        },
+    )
+}
+
+/// How the result of `q ⊕ dv` of a free joint moves, in its body axes, with `q` moved in body axes and with `dv`: the adjoint
+/// of `exp(−dv)` and the right Jacobian of SE(3); linear parts first.
+pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+    let [_, _, _, rx, ry, rz] = dv;
+    let turn = [rx, ry, rz];
+    let (o, i) = (T::zero(), T::one());
+    let [px, py, pz, ..] = free_integrate([o, o, o, o, o, o, i], dv);
+    let back = exponential(turn.map(|x| -x));
+    let carried = |[x, y, z, a, b, c]: [T; 6]| {
+        let [x, y, z] = rotated(back, add([x, y, z], cross([a, b, c], [px, py, pz])));
+        let [a, b, c] = rotated(back, [a, b, c]);
+        [x, y, z, a, b, c]
+    };
+    let [c1, c2, c3, c4] = jacobian_factors(dot(turn, turn));
+    let right = |e: [T; 6]| {
+        let first = bracket(dv, e);
+        let second = bracket(dv, first);
+        let third = bracket(dv, second);
+        plus(plus(plus(plus(e, -c1, first), c2, second), -c3, third), c4, bracket(dv, third))
+    };
+    (units().map(carried), units().map(right))
+}
+
+/// Derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
+fn even_slopes<T: Real>(square: T) -> [T; 2] {
+    choose(
+        square,
+        constant(super::SMALL),
+        |square| [series(square, 2, |k| (2.0 - k) * (k - 1.0)), series(square, 3, |k| (1.0 - k) * (k - 2.0))],
+        |square| {
+            let half = square.sqrt() * constant(0.5);
+            let (sin, cos) = Compiled::sin_cos(half);
+            let (two, along) = (constant::<T>(2.0), half * cos / sin);
+            let over = half * half / (sin * sin);
+            let value = T::one() - along;
+            let slope = (along - over) * constant(0.5);
+            // By θ², times it: value and slope.
+            let value_by = -slope;
+            let slope_by = (along - constant::<T>(3.0) * over + two * over * along) * constant(0.25);
+            let second = two * value_by + slope_by - (two * value + slope);
+            let fourth = value_by + slope_by - two * (value + slope);
+            [second / (square * square), fourth / (square * square * square)]
+        },
+    )
+}
+
+/// How `tangent_rate(dv, v)` of a free joint changes with `dv` and with `v`; linear parts first.
+pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+    let [_, _, _, rx, ry, rz] = dv;
+    let turn = [rx, ry, rz];
+    let square = dot(turn, turn);
+    let [second, fourth] = even_brackets(square);
+    let [second_slope, fourth_slope] = even_slopes(square);
+    let b1 = bracket(dv, v);
+    let b2 = bracket(dv, b1);
+    let b3 = bracket(dv, b2);
+    let b4 = bracket(dv, b3);
+    let by_dv = |e: [T; 6]| {
+        let [_, _, _, x, y, z] = e;
+        // θ² changes by twice this.
+        let along = constant::<T>(2.0) * dot(turn, [x, y, z]);
+        let c1 = bracket(e, v);
+        let c2 = plus(bracket(e, b1), T::one(), bracket(dv, c1));
+        let c3 = plus(bracket(e, b2), T::one(), bracket(dv, c2));
+        let c4 = plus(bracket(e, b3), T::one(), bracket(dv, c3));
+        let zero = [T::zero(); 6];
+        let changed = plus(plus(plus(zero, constant(0.5), c1), second, c2), fourth, c4);
+        plus(plus(changed, second_slope * along, b2), fourth_slope * along, b4)
+    };
+    (units().map(by_dv), units().map(|e| free_tangent_rate(dv, e)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lie::{ball_difference, ball_integrate, free_difference};
+
+    /// Numbers between −1 and 1 that repeat nothing.
+    fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
+        core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
+    }
+
+    /// Central differences of fourth order, column by column.
+    fn slope<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
+        let h = 1e-3;
+        core::array::from_fn(|j| {
+            let at = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
+            let (a, b, c, d) = (at(-2.0 * h), at(-h), at(h), at(2.0 * h));
+            core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
+        })
+    }
+
+    fn sum<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+        core::array::from_fn(|k| a[k] + b[k])
+    }
+
+    fn assert_same<const N: usize>(found: [[f64; N]; N], expected: [[f64; N]; N], what: &str) {
+        for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{what}: {found:?} instead of {expected:?}");
+        }
+    }
+
+    #[test]
+    fn balls_move_as_their_derivatives_say() {
+        for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.49, 0.51, 1.0, 1.7].into_iter().enumerate() {
+            let (dv, v): ([f64; 3], [f64; 3]) = (figures(seed, size), figures(seed + 50, 1.0));
+            let q = [0.1, -0.5, 0.3, 0.8];
+            let end = ball_integrate(q, dv);
+            let (by_q, by_dv) = ball_integrate_derivatives(dv);
+            assert_same(
+                by_q,
+                slope(|e| ball_difference(end, ball_integrate(ball_integrate(q, e), dv))),
+                "by q",
+            );
+            assert_same(by_dv, slope(|e| ball_difference(end, ball_integrate(q, sum(dv, e)))), "by dv");
+            let (by_dv, by_v) = ball_tangent_rate_derivatives(dv, v);
+            assert_same(by_dv, slope(|e| ball_tangent_rate(sum(dv, e), v)), "rate by dv");
+            assert_same(by_v, slope(|e| ball_tangent_rate(dv, sum(v, e))), "rate by v");
+        }
+    }
+
+    #[test]
+    fn free_bodies_move_as_their_derivatives_say() {
+        for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7].into_iter().enumerate() {
+            let (dv, v): ([f64; 6], [f64; 6]) = (figures(seed, size), figures(seed + 50, 1.0));
+            let q = [0.3, 0.2, -0.7, 0.1, -0.5, 0.5, 0.7];
+            let end = free_integrate(q, dv);
+            let (by_q, by_dv) = free_integrate_derivatives(dv);
+            assert_same(
+                by_q,
+                slope(|e| free_difference(end, free_integrate(free_integrate(q, e), dv))),
+                "by q",
+            );
+            assert_same(by_dv, slope(|e| free_difference(end, free_integrate(q, sum(dv, e)))), "by dv");
+            let (by_dv, by_v) = free_tangent_rate_derivatives(dv, v);
+            assert_same(by_dv, slope(|e| free_tangent_rate(sum(dv, e), v)), "rate by dv");
+            assert_same(by_v, slope(|e| free_tangent_rate(dv, sum(v, e))), "rate by v");
+        }
+    }
+
+    /// On both sides of the limits series and closed forms agree.
+    #[test]
+    fn series_meet_closed_forms() {
+        let near = |f: fn(f64) -> [f64; 2], x: f64| {
+            let (below, above) = (f(x * (1.0 - 1e-12)), f(x * (1.0 + 1e-12)));
+            below
+                .iter()
+                .zip(&above)
+                .for_each(|(a, b)| assert!((a - b).abs() < 1e-13 + 1e-11 * a.abs(), "{a} {b}"));
+        };
+        near(even_slopes, super::super::SMALL);
+        near(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
+        near(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
+    }
+}

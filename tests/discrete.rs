@@ -1,0 +1,260 @@
+//! Single steps and their Jacobians: against differences of steps, against the linear system, and for what they are used.
+
+use linkwork::discrete::{self, DifferentiableStep};
+use linkwork::prelude::*;
+use linkwork::{Frames, Rheonomic, RheonomicDerivatives, frame, index_of};
+use support::random::Random;
+
+/// A flying body with four rotors, of which two also turn it by drag, and a pendulum on a ball joint below.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Carrier {
+    #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
+    frame: Body,
+    #[body(mass = 0.3, com = -0.4 * z + 0.05 * x, inertia = diagonal(0.004, 0.005, 0.001))]
+    load: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[joint(frame.at(-0.05 * z) -> load)]
+    hook: Ball,
+    #[acts(on = frame.at(0.2 * x), along = frame.z)]
+    front: Force,
+    #[acts(on = frame.at(-0.2 * x + 0.1 * y), along = frame.z)]
+    back: Force,
+    #[acts(on = frame, about = frame.z)]
+    drag: Torque,
+}
+
+/// A pendulum on a pivot that is driven up and down, with a motor.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Driven {
+    rate: f64,
+    #[point(at = 0.1 * sin(rate * t) * y)]
+    pivot: Point,
+    #[body(mass = 0.7, com = -0.3 * y, inertia = diagonal(0.01, 0.01, 0.02))]
+    bob: Body,
+    #[joint(pivot -> bob, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge)]
+    motor: Torque,
+}
+
+/// Plain coordinates alone.
+#[mechanism(urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives)]
+struct Panda;
+
+/// A loop: its derivatives hold the constraints' forces.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Linkage {
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    crank: Body,
+    #[body(mass = 2, com = x, inertia = rod(2, 2, x))]
+    coupler: Body,
+    #[body(mass = 1.5, com = 0.75 * x, inertia = rod(1.5, 1.5, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    first: Pin,
+    #[joint(crank.at(x) -> coupler, about = z)]
+    second: Pin,
+    #[joint(ground.at(1.8 * x) -> rocker, about = z)]
+    third: Pin,
+    #[joint(rocker.at(1.5 * x) -> coupler.at(2 * x), about = z)]
+    closing: Pin,
+    #[acts(on = first)]
+    motor: Torque,
+}
+
+/// A state in the tangent space: displacements, changes of velocity, changes of the inputs.
+fn direction<const N: usize>(k: usize, first: usize, size: f64) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| if first + i == k { size } else { 0.0 })
+}
+
+/// How `f` changes along each direction of state and inputs: central differences of fourth order.
+fn slopes<const NV: usize, const NU: usize, const R: usize>(
+    f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
+) -> Vec<SVector<f64, R>> {
+    let h = 5e-4;
+    let along = |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
+    let slope =
+        |k| (along(k, -2.0 * h) - along(k, 2.0 * h) + (along(k, h) - along(k, -h)) * 8.0) / (12.0 * h);
+    (0..2 * NV + NU).map(slope).collect()
+}
+
+fn assert_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
+    let found: Vec<f64> = found.concat();
+    assert_eq!(found.len(), expected.len(), "{what}");
+    let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(worst < 1e-9 * scale, "{what}: off by {worst:e}, {found:?} instead of {expected:?}");
+}
+
+/// The Jacobians of steps at random states against differences of steps.
+fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    method: &S,
+    speed: f64,
+    push: f64,
+) where
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    S: DifferentiableStep<f64>,
+{
+    for seed in 0..3 {
+        let mut random = Random::new(seed);
+        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform(1.2)));
+        let v = SVector::from_fn(|_, _| random.uniform(speed));
+        let u = SVector::from_fn(|_, _| random.uniform(push));
+        let t = random.uniform(1.0);
+        let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
+        let found = discrete::transition(m, method, t, &q, &v, &u).expect("it is regular");
+        let (next_q, next_v) = step(&q, &v, &u);
+        assert!(m.difference(&next_q, &found.q).amax() < 1e-14 && (next_v - found.v).amax() < 1e-13);
+        let moved = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
+            step(&m.integrate(&q, dq), &(v + dv), &(u + du))
+        };
+        let by_q: Vec<f64> = slopes(|dq, dv, du| m.difference(&next_q, &moved(dq, dv, du).0))
+            .iter()
+            .flatten()
+            .copied()
+            .collect();
+        let by_v: Vec<f64> = slopes(|dq, dv, du| moved(dq, dv, du).1).iter().flatten().copied().collect();
+        let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
+        let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
+        let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+        assert_columns(&format!("{name}, {seed}: configuration"), &q_blocks, &by_q, scale(&q_blocks));
+        assert_columns(&format!("{name}, {seed}: velocity"), &v_blocks, &by_v, scale(&v_blocks));
+        // Adjoint products are those of the transposed blocks.
+        let (a, b) =
+            (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+        let (back_q, back_v, back_u) = found.adjoint(&a, &b);
+        let (dq, dv) =
+            (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+        let du = SVector::from_fn(|_, _| random.uniform(1.0));
+        let forth = a.dot(&(found.q_by_q * dq + found.q_by_v * dv + found.q_by_u * du))
+            + b.dot(&(found.v_by_q * dq + found.v_by_v * dv + found.v_by_u * du));
+        let back = back_q.dot(&dq) + back_v.dot(&dv) + back_u.dot(&du);
+        assert!((forth - back).abs() < 1e-11 * scale(&v_blocks), "{name}: {forth} {back}");
+    }
+}
+
+#[test]
+fn steps_change_as_their_jacobians_say() {
+    let carrier = Carrier {};
+    check_steps("carrier, Rk4", &carrier, &Rk4::step(0.02), 2.0, 5.0);
+    check_steps("carrier, a long step of Rk4", &carrier, &Rk4::step(0.15), 4.0, 5.0);
+    check_steps("carrier, Euler", &carrier, &SemiImplicitEuler::step(0.02), 2.0, 5.0);
+    check_steps("driven, Rk4", &Driven { rate: 30.0 }, &Rk4::step(0.02), 2.0, 1.0);
+    check_steps("driven, Euler", &Driven { rate: 30.0 }, &SemiImplicitEuler::step(0.02), 2.0, 1.0);
+    check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 1.0, 0.0);
+    check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 1.0, 0.0);
+}
+
+/// The linear motion of the trait against differences of accelerations, on loops too.
+fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) where
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
+{
+    let acceleration = |q: &_, v: &_, u: &_| {
+        Mechanism::forward_dynamics(m, q, v, &Mechanism::generalized_forces(m, q, v, u))
+    };
+    let found = m.linear_motion(q, v, u);
+    assert!((found.acceleration - acceleration(q, v, u)).amax() < 1e-12);
+    let expected = slopes(|dq, dv, du| acceleration(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du)));
+    let expected: Vec<f64> = expected.iter().flatten().copied().collect();
+    let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+    let blocks = [found.by_q.as_slice(), found.by_v.as_slice(), found.by_u.as_slice()];
+    assert_columns(name, &blocks, &expected, scale);
+}
+
+#[test]
+fn motions_change_as_the_linear_system_says() {
+    let mut random = Random::new(7);
+    let carrier = Carrier {};
+    let q = carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform(1.0)));
+    let (v, u) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(4.0)));
+    check_motion("carrier", &carrier, &q, &v, &u);
+    // In one matrix it is what the mechanism's own function says.
+    let (a, b) = carrier.linearize(&q, &v, &u);
+    let found = carrier.linear_motion(&q, &v, &u);
+    assert!((found.a::<{ 2 * Carrier::NV }>() - a).amax() < 1e-11 * a.amax());
+    assert!((found.b::<{ 2 * Carrier::NV }>() - b).amax() < 1e-12 * b.amax());
+
+    let driven = Driven { rate: 20.0 };
+    check_motion("driven", &at(&driven, 0.3), &[0.4].into(), &[1.0].into(), &[0.2].into());
+
+    let linkage = Linkage {};
+    let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
+    let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
+    check_motion("linkage", &linkage, &q, &v, &[3.0].into());
+}
+
+/// A single step is a simulation of that length, for every method and with constraints.
+#[test]
+fn single_steps_are_those_of_simulations() {
+    fn check<M, S, const NQ: usize, const NV: usize>(
+        m: &M,
+        method: S,
+        h: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+    ) where
+        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+        S: discrete::FixedStep<f64> + Copy,
+    {
+        let (t, u) = (0.7, SVector::from([0.8]));
+        let (found_q, found_v) = discrete::step(m, &method, t, q, v, &u).expect("it moves");
+        let run = simulate(m).from(*q, *v).start_at(t).method(method).inputs(|_, _, _| u).duration(h);
+        let end = run.finish().expect("it moves");
+        assert!((found_q - end.q).amax() < 1e-14 && (found_v - end.v).amax() < 1e-13, "{found_v} {}", end.v);
+    }
+    let (linkage, driven, h) = (Linkage {}, Driven { rate: 30.0 }, 0.01);
+    let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
+    let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
+    check(&linkage, Rk4::step(h), h, &q, &v);
+    check(&linkage, ImplicitMidpoint::step(h), h, &q, &v);
+    check(&linkage, SemiImplicitEuler::step(h), h, &q, &v);
+    check(&driven, Rk4::step(h), h, &[0.4].into(), &[1.0].into());
+    check(&driven, ImplicitMidpoint::step(h), h, &[0.4].into(), &[1.0].into());
+    check(&driven, Rosenbrock::step(h), h, &[0.4].into(), &[1.0].into());
+}
+
+#[test]
+fn bad_periods_are_errors() {
+    let driven = Driven { rate: 1.0 };
+    let (q, v, u) = ([0.4].into(), [1.0].into(), [0.0].into());
+    for h in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let found = discrete::step(&driven, &Rk4::step(h), 0.0, &q, &v, &u);
+        assert!(matches!(found, Err(Error::InvalidStep { .. })), "{found:?}");
+        let found = discrete::transition(&driven, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u);
+        assert!(matches!(found, Err(Error::InvalidStep { .. })), "{found:?}");
+    }
+    let found = discrete::transition(&driven, &Rk4::step(0.1), 0.0, &[f64::NAN].into(), &v, &u);
+    assert!(matches!(found, Err(Error::NotFinite { .. })), "{found:?}");
+}
+
+/// Frames by number are those by name.
+#[test]
+fn frames_are_found_by_number() {
+    let mut random = Random::new(3);
+    let carrier = Carrier {};
+    let q = carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform(1.0)));
+    let (v, a) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+    let load = index_of(<Carrier as Frames<11, 9>>::FRAMES, "load").expect("it is one");
+    let named = frame!(Carrier, "load");
+    assert_eq!(carrier.placement_of(load, 0.0, &q), Some(carrier.frame_placement(named, &q)));
+    assert_eq!(carrier.velocity_of(load, 0.0, &q, &v), Some(carrier.frame_velocity(named, &q, &v)));
+    assert_eq!(
+        carrier.acceleration_of(load, 0.0, &q, &v, &a),
+        Some(carrier.frame_acceleration(named, &q, &v, &a))
+    );
+    assert_eq!(carrier.jacobian_of(load, 0.0, &q), Some(carrier.frame_jacobian(named, &q)));
+    assert_eq!(carrier.placement_of(Carrier::FRAMES.len(), 0.0, &q), None);
+    // Time counts where something is driven in it.
+    let driven = Driven { rate: 2.0 };
+    let pivot = index_of(&Driven::FRAMES, "pivot").expect("it is one");
+    let height = driven.placement_of(pivot, 0.4, &[0.1].into()).map(|p| p.translation.y);
+    assert!(height.is_some_and(|y| (y - 0.1 * 0.8_f64.sin()).abs() < 1e-15));
+}
