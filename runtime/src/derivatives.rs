@@ -8,6 +8,10 @@ use nalgebra::{SMatrix, SVector};
 /// `NV` by `NV`.
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
+/// Derivatives by configuration, by velocity, and by `N` forces or inputs.
+pub type ByMotion<T, const NV: usize, const N: usize> =
+    (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, N>);
+
 /// First derivatives of a mechanism's functions, in blocks of `NV` by `NV` (and by `NU`). `#[mechanism(…, derivatives)]` implements
 /// it, with and without constraints; one that is driven in time has [`RheonomicDerivatives`], and this at an instant
 /// ([`at`](crate::at)).
@@ -55,7 +59,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+    ) -> ByMotion<Self::Scalar, NV, NV>;
 
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
     fn generalized_forces_derivatives(
@@ -63,7 +67,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NU>);
+    ) -> ByMotion<Self::Scalar, NV, NU>;
 
     /// The motion under the inputs `u` to first order.
     ///
@@ -154,7 +158,7 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+    ) -> ByMotion<Self::Scalar, NV, NV>;
 
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces ([`Derivatives::generalized_forces_derivatives`]).
     fn generalized_forces_derivatives(
@@ -163,7 +167,7 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NU>);
+    ) -> ByMotion<Self::Scalar, NV, NU>;
 }
 
 /// A motion under inputs to first order: how displacements `δq` (in body axes for ball and free joints) and changes of velocity

@@ -75,7 +75,7 @@ extern crate std;
 pub use batch::Batch;
 #[doc(inline)]
 pub use constraint::{Constrained, ConstraintError};
-pub use derivatives::{Derivatives, LinearMotion, RheonomicDerivatives};
+pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
 pub use frame::{FrameIndex, Frames, NamedFrame, index_of};
 #[doc(inline)]
 pub use lanes::Lanes;

@@ -44,6 +44,8 @@ mod own {
     pub struct Lanes;
     pub trait Mechanism {}
     pub trait Real {}
+    impl<T> Mechanism for T {}
+    impl<T> Real for T {}
     pub fn at() {}
     pub fn simulate() {}
     pub fn frame() {}
@@ -68,8 +70,12 @@ mod own {
         }
     }
 
+    /// The traits are these, not those of the prelude.
+    fn takes(_: impl Mechanism + Real) {}
+
     pub fn run() -> usize {
         at();
+        takes(());
         simulate();
         frame();
         let _ = (Error, Sample, Body, Result, Option, Lanes, Cart { m: 1.0 }.prepare());
