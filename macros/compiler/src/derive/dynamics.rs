@@ -17,7 +17,8 @@ use crate::vectorise::{self, Limbs};
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
 const SIMILAR: usize = 8;
-/// The same of a mechanism with many operations, where one distribution of the masses is enough to tell.
+/// Of a mechanism with many operations, frames are not tried further that are larger by more than one in so many with the first
+/// distribution of its masses, which is enough to tell there.
 const SIMILAR_AT_FIRST: usize = 24;
 
 /// What dynamics is derived from.

@@ -251,7 +251,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// The same of one with contacts that slip.
+/// The functions of constrained dynamics of a mechanism with contacts that slip.
 fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
     let (scalar, slipping) = (s.scalar.name(), &c.slipping);

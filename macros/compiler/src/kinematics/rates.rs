@@ -116,7 +116,7 @@ pub fn velocity_gradient(e: Expr<'_>) -> Vec<(usize, Expr<'_>)> {
     velocity_gradients(&[e]).pop().unwrap_or_default()
 }
 
-/// The same of several expressions, which share what they have in common.
+/// For each of several expressions its derivatives by the velocities, with their indices; common parts are differentiated once.
 pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
     let mut gradients = vec![Vec::new(); all.len()];
     let Some(graph) = all.first().map(|e| e.graph()) else { return gradients };

@@ -69,7 +69,7 @@ pub enum Op {
     Sum(usize, Operand),
     /// One lane.
     Lane(usize, Operand),
-    /// So many lanes of one value, then as many of another.
+    /// A vector of the first so many lanes of one value, then as many lanes of another.
     Join(usize, Operand, Operand),
 }
 
@@ -113,7 +113,7 @@ pub struct Program {
     pub tuples: Vec<Vec<f64>>,
     /// Inputs of lanes.
     pub gathers: Vec<Vec<Symbol>>,
-    /// The same with alike limbs side by side as lanes, where that is cheaper.
+    /// The SIMD variant of the program, with alike limbs side by side as lanes, where that is cheaper.
     pub simd: Option<Box<Program>>,
 }
 
@@ -138,7 +138,7 @@ impl Counts {
 }
 
 impl Program {
-    /// The same program with some of its outputs alone.
+    /// A program that computes some of the outputs alone.
     pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
         self.sweep();
@@ -147,7 +147,7 @@ impl Program {
         self
     }
 
-    /// The same instructions in another order, given by their numbers: operands come before operations.
+    /// The program with its instructions in another order, given by their numbers: operands come before operations.
     pub fn reordered(mut self, order: &[usize]) -> Program {
         let mut number = vec![0; self.instructions.len()];
         for (place, k) in order.iter().enumerate() {
@@ -305,7 +305,7 @@ impl Op {
         self.mapped(|o| renumber(o, number))
     }
 
-    /// The same operation on other operands.
+    /// The operation with each of its operands replaced.
     pub fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
         match self {
             Op::Neg(a) => Op::Neg(n(a)),

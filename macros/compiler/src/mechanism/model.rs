@@ -77,7 +77,7 @@ pub struct Model<'g> {
     pub freedom: [usize; 2],
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
-    /// The same mechanism with the joints whose reactions outputs name released: six coordinates for each after all others.
+    /// The mechanism with the joints released whose reactions outputs name: six coordinates for each, after all others.
     pub released: Option<Rc<Released<'g>>>,
     /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: Units,
