@@ -37,14 +37,16 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.
+    /// A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces, N and N·m, and `Ṁ − 2 C` skew (Echeandia and Wensing,
+    /// *Numerical methods to compute the Coriolis matrix and Christoffel symbols*, 2021).
     fn coriolis_matrix(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV>;
 
-    /// `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics); `∂τ/∂a` is the mass matrix.
+    /// `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per m, rad, m/s and rad/s; `∂τ/∂a` is
+    /// the mass matrix (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
     fn inverse_dynamics_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,

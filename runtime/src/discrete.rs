@@ -76,8 +76,22 @@ where
 
 /// One step of a method under inputs that are held, and its Jacobians ([`Transition`]), exact to rounding.
 ///
-/// The mechanism has no constraints: a mechanism with constraints does not compile here. Where it has contacts or loops, write
-/// them as springs or stabilise them.
+/// The mechanism has no constraints. One that has does not compile here:
+///
+/// ```compile_fail
+/// # use linkwork::{discrete, prelude::*};
+/// # #[mechanism(derivatives)]
+/// # struct Bead {
+/// #     #[particle(mass = 1)]
+/// #     bead: Particle,
+/// #     #[joint(ground -> bead, along = (x, y))]
+/// #     table: Stage,
+/// #     #[constraint(table.x * table.x + table.y * table.y = 1)]
+/// #     wire: Holonomic,
+/// # }
+/// let (q, v, u) = ([1.0, 0.0].into(), [0.0, 1.0].into(), [].into());
+/// let step = discrete::transition(&Bead, &Rk4::step(0.01), 0.0, &q, &v, &u);
+/// ```
 ///
 /// # Errors
 ///

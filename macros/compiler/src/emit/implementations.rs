@@ -20,34 +20,23 @@ pub fn write_impls(
     if i.facts.kinematic {
         return;
     }
-    let _ = writeln!(
-        out,
-        "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
-        if s.time { "Rheonomic" } else { "Mechanism" },
-        s.nq,
-        s.nv,
-        s.nu
-    );
+    let begin = |out: &mut String, of: &str| {
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::{of}<{}, {}, {}> for {name}{arguments} {bounds} {{",
+            s.nq, s.nv, s.nu
+        );
+    };
+    begin(out, if s.time { "Rheonomic" } else { "Mechanism" });
     write_trait(out, i, s);
     out.push_str("}\n");
     if i.facts.requests.derivatives {
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::{}<{}, {}, {}> for {name}{arguments} {bounds} {{",
-            if s.time { "RheonomicDerivatives" } else { "Derivatives" },
-            s.nq,
-            s.nv,
-            s.nu
-        );
+        begin(out, if s.time { "RheonomicDerivatives" } else { "Derivatives" });
         differentiable::write_trait(out, s);
         out.push_str("}\n");
     }
     if i.facts.requests.batch {
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::Batch<{}, {}, {}> for {name}{arguments} {bounds} {{",
-            s.nq, s.nv, s.nu
-        );
+        begin(out, "Batch");
         lanes::write_trait(out, i, s);
         out.push_str("}\n");
     }

@@ -11,7 +11,8 @@ pub struct PassiveForces<'g> {
     pub forces: Vec<Expr<'g>>,
     /// The derivatives that are not constant, in the order in which they are given.
     pub derivatives: Vec<Expr<'g>>,
-    /// The same by what they are by, configuration before velocity: by velocity of the direction, then of the force.
+    /// All derivatives, constant ones too: those by configuration, then those by velocity; in each, for the velocity of every
+    /// direction, one for every force.
     given: [Vec<Vec<Expr<'g>>>; 2],
 }
 

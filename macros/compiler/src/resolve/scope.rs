@@ -114,7 +114,7 @@ impl<'g> Context<'g> {
         Context { allowed, axes, locals: Vec::new(), defining: Vec::new() }
     }
 
-    /// The same with names of its own.
+    /// The context with these names of its own.
     pub fn with_locals(mut self, locals: Vec<(&'static str, Expr<'g>)>) -> Context<'g> {
         self.locals = locals;
         self
