@@ -12,6 +12,14 @@
 )]
 pub trait AsksForDerivatives<'a> {}
 
+/// A mechanism with the word `second_derivatives`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `second_derivatives`",
+    label = "this needs the word `second_derivatives`",
+    note = "add the word to the attribute: `#[mechanism(…, second_derivatives)]`"
+)]
+pub trait AsksForSecondDerivatives<'a> {}
+
 /// A mechanism with the word `centroidal`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `centroidal`",

@@ -6,7 +6,7 @@
 
 /// Rows `name(argument: kind, …) -> result` in groups, handed to a macro that writes a function for each: `space` depends on
 /// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
-/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time.
+/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time, `second` those of second ones.
 /// A kind is the length of a vector, or `scalar`.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
@@ -47,6 +47,13 @@ macro_rules! each_function {
             inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NU>);
+        }
+    };
+    (second, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            inverse_dynamics_second_derivatives(q: NQ, v: NV, a: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
+            forward_dynamics_second_derivatives(q: NQ, v: NV, tau: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
+            generalized_forces_second_derivatives(q: NQ, v: NV, u: NU, lambda: NV) -> $crate::InputSecondOrder<Self::Scalar, NV, NU>;
         }
     };
     (methods, $($how:tt)+) => {

@@ -83,6 +83,7 @@ pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
 pub use rheonomic::{At, Rheonomic, at};
+pub use second::{InputSecondOrder, RheonomicSecondDerivatives, SecondDerivatives, SecondOrder};
 #[doc(inline)]
 pub use simulate::simulate;
 
@@ -106,6 +107,7 @@ mod private;
 mod product;
 mod rheonomic;
 pub mod rotation;
+mod second;
 pub mod simulate;
 mod trigonometry;
 
@@ -125,7 +127,8 @@ pub mod prelude {
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
     pub use crate::{
-        Batch, Constrained, ConstraintError, Derivatives, Mechanism, Real, at, frame, index, mechanism,
+        Batch, Constrained, ConstraintError, Derivatives, Mechanism, Real, SecondDerivatives, at, frame,
+        index, mechanism,
     };
     pub use nalgebra::{SMatrix, SVector};
 }
@@ -153,6 +156,7 @@ pub mod __private {
     };
     pub use crate::private::{constant, put_block};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
+    pub use crate::second::forward_second_derivatives;
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

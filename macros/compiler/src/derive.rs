@@ -21,6 +21,7 @@ mod outputs;
 mod passive;
 mod prepared;
 mod regressor;
+mod second;
 mod sensitivities;
 mod singular;
 mod specialisation;

@@ -136,6 +136,39 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
+const SECOND: &[Need] = &[Need::Inertia, Need::SecondDerivatives];
+const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
+
+/// Second derivatives of the dynamics.
+pub const SECOND_ROWS: &[Row] = &[
+    Row::derived(Id::InverseDynamicsSecondDerivatives, "inverse_dynamics_second_derivatives", SECOND, |f| {
+        Declaration {
+            arguments: vec![Q, V, A, Argument::Factors(f.nv)],
+            shape: Shape::Hessian(f.nv),
+            docs: vec![
+                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`, with `τ` by [`inverse_dynamics`](Self::inverse_dynamics): the Hessians of its entries, contracted with the factors `lambda`. Of mixed ones the rows are those of `q`. Others are zero.",
+                SYMMETRIC,
+                "By recursion, as the first derivatives (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023), where motion subspaces are constant in link axes.",
+            ],
+            ..Declaration::default()
+        }
+    }),
+    Row::derived(
+        Id::GeneralizedForcesSecondDerivatives,
+        "generalized_forces_second_derivatives",
+        SECOND,
+        |f| Declaration {
+            arguments: vec![Q, V, U, Argument::Factors(f.nv)],
+            shape: Shape::InputHessian(f.nv, f.nu),
+            docs: vec![
+                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)` of `λᵀ τ`, with `τ` the [`generalized_forces`](Self::generalized_forces) of the inputs: the Hessians of its entries, contracted with the factors `lambda`.",
+                SYMMETRIC,
+            ],
+            ..Declaration::default()
+        },
+    ),
+];
+
 fn constraints(f: &Facts) -> usize {
     f.constraints.map_or(0, |c| c.all)
 }

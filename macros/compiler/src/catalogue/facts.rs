@@ -14,6 +14,8 @@ pub enum Need {
     NoConstraints,
     /// The word `derivatives`.
     Derivatives,
+    /// The word `second_derivatives`.
+    SecondDerivatives,
     /// The word `centroidal`.
     Centroidal,
     /// The word `regressor`.
@@ -38,9 +40,10 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 14] = [
+    pub const ALL: [Need; 15] = [
         Need::Inertia,
         Need::Derivatives,
+        Need::SecondDerivatives,
         Need::Centroidal,
         Need::Regressor,
         Need::Sensitivities,
@@ -62,6 +65,7 @@ impl Need {
             Need::Constraints => "HasConstraints",
             Need::NoConstraints => "HasNoConstraints",
             Need::Derivatives => "AsksForDerivatives",
+            Need::SecondDerivatives => "AsksForSecondDerivatives",
             Need::Centroidal => "AsksForCentroidal",
             Need::Regressor => "AsksForRegressor",
             Need::Sensitivities => "AsksForSensitivities",
@@ -156,6 +160,7 @@ impl Facts {
             Need::Constraints => self.constraints.is_some(),
             Need::NoConstraints => self.constraints.is_none(),
             Need::Derivatives => self.requests.derivatives,
+            Need::SecondDerivatives => self.requests.second_derivatives,
             Need::Centroidal => self.requests.centroidal,
             Need::Regressor => self.requests.regressor,
             Need::Sensitivities => self.requests.sensitivities,

@@ -21,11 +21,12 @@ pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows in the order in which functions are generated: outputs come between both lists.
-const TABLES: [&[Row]; 7] = [
+const TABLES: [&[Row]; 8] = [
     dynamics::ROWS,
     constraints::ROWS,
     requested::CENTROIDAL,
     derivatives::ROWS,
+    derivatives::SECOND_ROWS,
     requested::ROWS,
     written::CONSTRAINED,
     written::ROWS,

@@ -45,6 +45,8 @@ pub enum Id {
     ForwardDynamicsDerivativesInto,
     MotionDerivatives,
     InputDerivatives,
+    InverseDynamicsSecondDerivatives,
+    GeneralizedForcesSecondDerivatives,
     JointTorqueRegressor,
     StandardParameters,
     BaseRegressor,

@@ -21,6 +21,8 @@ pub enum Argument {
     Standard(usize),
     /// A square matrix of so many rows that a result goes into.
     Into(&'static str, usize),
+    /// Factors `lambda`, one for each velocity, by which forces or accelerations are multiplied.
+    Factors(usize),
     /// The results of another function, which a body calls: in no signature.
     Called(Called),
 }
@@ -59,6 +61,7 @@ impl Argument {
             Argument::U => "u",
             Argument::Given(name, ..) | Argument::Into(name, _) => name,
             Argument::Standard(_) => "standard",
+            Argument::Factors(_) => "lambda",
             Argument::Called(Called::PassiveForces) => "passive",
             Argument::Called(Called::PassiveDerivatives) => "change",
         }
@@ -78,6 +81,12 @@ pub enum Shape {
     Matrix(usize, usize),
     /// Two square matrices.
     Pair(usize),
+    /// Second derivatives by configuration twice, configuration and velocity, velocity twice, and configuration and acceleration:
+    /// four square matrices.
+    Hessian(usize),
+    /// Second derivatives of forces of inputs by configuration twice, configuration and velocity, velocity twice, configuration
+    /// and input, velocity and input, input twice.
+    InputHessian(usize, usize),
     /// `M⁻¹`. The outputs are what [`InverseForm`] says.
     Inverse(usize),
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
@@ -124,6 +133,8 @@ impl Shape {
             Shape::Square(n) => n * n,
             Shape::Matrix(m, n) => m * n,
             Shape::Pair(n) => 2 * n * n,
+            Shape::Hessian(n) => 4 * n * n,
+            Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
             Shape::Inverse(n) => n * n + parts(n),
             Shape::Forward(n) => 3 * n * n + parts(n),
             Shape::Linear(n, m) => 4 * n * n + parts(n) + n * m,

@@ -27,6 +27,10 @@ pub const ROWS: &[Row] = &[
     Row::written("integrate", &[]).and_batched(),
     Row::written("tangent_rate", &[]).and_batched(),
     Row::written("generalized_forces_derivatives", ASKED),
+    Row::written(
+        "forward_dynamics_second_derivatives",
+        &[Need::Inertia, Need::SecondDerivatives, Need::NoConstraints],
+    ),
     Row::written("integrate_derivatives", ASKED),
     Row::written("tangent_rate_derivatives", ASKED),
     Row::written("frame_acceleration", &[]),

@@ -147,6 +147,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::InputDerivatives => self.derivatives(|d| plain(d.input_derivatives())),
             Id::InverseDynamicsDerivativesInto => as_of(known(Id::InverseDynamicsDerivatives)),
             Id::ForwardDynamicsDerivativesInto => as_of(known(Id::ForwardDynamicsDerivatives)),
+            Id::InverseDynamicsSecondDerivatives => {
+                self.derivatives(|d| plain(d.inverse_dynamics_second_derivatives()))
+            }
+            Id::GeneralizedForcesSecondDerivatives => {
+                self.derivatives(|d| plain(d.generalized_forces_second_derivatives()))
+            }
             Id::JointTorqueRegressor => of(&self.identified(|i| i.joint_torque_regressor(joints))),
             Id::StandardParameters => of(&self.identified(Identification::standard_parameters)),
             Id::BaseRegressor => of(&self.identified(Identification::base_regressor)),

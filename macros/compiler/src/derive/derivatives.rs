@@ -2,6 +2,7 @@
 
 use super::in_lanes;
 use super::output::Function;
+use super::second;
 use super::specialisation::Specialisation;
 use crate::catalogue::{InverseForm, Structure};
 use crate::expr::{Expr, Mat3, Vec3};
@@ -19,7 +20,7 @@ use crate::passes::{self, Form, Passes};
 use crate::vectorise::{self, Limbs};
 
 /// Up to how many velocities differentiation is tried.
-const DIFFERENTIATE: usize = 6;
+pub(super) const DIFFERENTIATE: usize = 6;
 
 /// The forms of the model that are tried.
 pub(super) fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
@@ -118,6 +119,15 @@ impl<'a, 'g> Derivatives<'a, 'g> {
             true => self.parts.inputs(&self.tau),
             false => self.parts.linearization(&self.tau),
         }
+    }
+
+    pub(super) fn inverse_dynamics_second_derivatives(&self) -> Program {
+        let parts = &self.parts;
+        second::inverse_dynamics(parts.model, &parts.joints, parts.wide, parts.specialisation)
+    }
+
+    pub(super) fn generalized_forces_second_derivatives(&self) -> Program {
+        second::inputs(self.parts.model, &self.tau, self.parts.specialisation)
     }
 
     pub(super) fn motion_derivatives(&self) -> Program {
@@ -383,7 +393,7 @@ impl<'a, 'g> Parts<'a, 'g> {
 }
 
 /// A matrix column by column.
-fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+pub(super) fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     let width = m.first().map_or(0, Vec::len);
     (0..width).flat_map(|j| m.iter().map(move |row| row[j])).collect()
 }

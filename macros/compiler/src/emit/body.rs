@@ -429,7 +429,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             Argument::Q => (s.nq, false),
             Argument::V | Argument::A | Argument::Tau => (s.nv, false),
             Argument::U => (s.nu, false),
-            Argument::Standard(n) => (*n, false),
+            Argument::Standard(n) | Argument::Factors(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
             Argument::Into(..) => continue,
             Argument::Called(_) => (usize::MAX, false),
@@ -536,6 +536,8 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         Shape::Symmetric(_) => {}
         Shape::Inverse(_)
         | Shape::Pair(_)
+        | Shape::Hessian(_)
+        | Shape::InputHessian(..)
         | Shape::Forward(_)
         | Shape::Linear(..)
         | Shape::Accelerated(_)

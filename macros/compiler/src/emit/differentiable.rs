@@ -62,6 +62,33 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
     );
 }
 
+/// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations.
+pub fn write_second(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    if i.facts.kinematic || !i.facts.requests.second_derivatives || i.facts.constraints.is_some() {
+        return;
+    }
+    let (square, pass) = (s.shape(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
+    let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
+    let _ = writeln!(
+        out,
+        "/// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`, with `v̇` by [`forward_dynamics`](Self::forward_dynamics): the Hessians of
+        /// its entries, contracted with the factors `lambda`. Of mixed ones the rows are those of `q`. Others are zero.
+        ///
+        /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and
+        /// free joints `dq` is a motion in body axes.
+        ///
+        /// With `μ = M⁻¹ λ` they are those of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations change with
+        /// `q` and `v` as [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) says.
+        #[inline]\n#[must_use]
+        pub fn forward_dynamics_second_derivatives({}) -> ({square}, {square}, {square}, {square}) {{
+            let first = self.forward_dynamics_derivatives({pass}q, v, tau);
+            let a = self.forward_dynamics({pass}q, v, tau);
+            ::linkwork::__private::forward_second_derivatives(&first, lambda, |mu| self.inverse_dynamics_second_derivatives({pass}q, v, &a, mu))
+        }}",
+        s.parameters(&arguments),
+    );
+}
+
 /// The blocks of ball and free joints.
 fn write_blocks(out: &mut String, name: &str, first: &str, charts: &[Chart], square: &str) {
     let _ = writeln!(out, "let (mut first, mut second) = (<{square}>::{first}(), <{square}>::identity());");
@@ -87,6 +114,27 @@ fn write_blocks(out: &mut String, name: &str, first: &str, charts: &[Chart], squ
         );
     }
     out.push_str("(first, second)\n");
+}
+
+/// The functions of the trait of second derivatives, in terms of the inherent ones.
+pub fn write_second_trait(out: &mut String, s: &Signature<'_>) {
+    use Argument::{A, Q, Tau, U, V};
+    let n = s.nv;
+    for (name, third, shape) in [
+        ("inverse_dynamics_second_derivatives", A, Shape::Hessian(n)),
+        ("forward_dynamics_second_derivatives", Tau, Shape::Hessian(n)),
+        ("generalized_forces_second_derivatives", U, Shape::InputHessian(n, s.nu)),
+    ] {
+        let arguments = s.timed(&[Q, V, third, Argument::Factors(n)]);
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}({}) -> {} {{ Self::{name}(self, {}) }}",
+            s.parameters(&arguments),
+            s.shape(shape),
+            names.join(", ")
+        );
+    }
 }
 
 /// The trait's functions, in terms of the inherent ones.

@@ -35,6 +35,11 @@ pub fn write_impls(
         differentiable::write_trait(out, s);
         out.push_str("}\n");
     }
+    if i.facts.requests.second_derivatives && i.facts.constraints.is_none() {
+        begin(out, if s.time { "RheonomicSecondDerivatives" } else { "SecondDerivatives" });
+        differentiable::write_second_trait(out, s);
+        out.push_str("}\n");
+    }
     if i.facts.requests.batch {
         begin(out, "Batch");
         lanes::write_trait(out, i, s);

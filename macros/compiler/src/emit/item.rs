@@ -64,6 +64,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     }
     write_manifold(&mut methods, Some(&output.charts), &s);
     differentiable::write_methods(&mut methods, Some(&output.charts), interface, &s);
+    differentiable::write_second(&mut methods, interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
@@ -116,6 +117,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     }
     write_manifold(&mut methods, None, &s);
     differentiable::write_methods(&mut methods, None, interface, &s);
+    differentiable::write_second(&mut methods, interface, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);

@@ -84,6 +84,8 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         }
         Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => parts(2),
         Shape::Forward(_) | Shape::CalledForward(_) => parts(3),
+        Shape::Hessian(_) => parts(4),
+        Shape::InputHessian(..) => parts(6),
         Shape::Accelerated(_) | Shape::Array(_) | Shape::Record(_) | Shape::Symmetric(_) => return None,
     };
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))

@@ -50,6 +50,15 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
     let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
+        Shape::Hessian(n) => {
+            format!("({}, {}, {}, {})\n", square(0, n), square(1, n), square(2, n), square(3, n))
+        }
+        Shape::InputHessian(n, m) => {
+            let mixed = |k: usize| outputs.matrix(3 * n * n + k * n * m, n, m);
+            let state = [0, 1, 2].map(|k| square(k, n)).join(", ");
+            let inputs = outputs.matrix(3 * n * n + 2 * n * m, m, m);
+            format!("({state}, {}, {}, {inputs})\n", mixed(0), mixed(1))
+        }
         // Composed in what is returned, so that every matrix is moved once at most.
         Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
         Shape::Forward(n) => format!(

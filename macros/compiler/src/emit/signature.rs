@@ -19,7 +19,7 @@ pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
         (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
             Some(k - first)
         }
-        (Argument::Standard(_), Quantity::Given(k))
+        (Argument::Standard(_) | Argument::Factors(_), Quantity::Given(k))
         | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
         | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
         _ => None,
@@ -76,7 +76,7 @@ impl Signature<'_> {
             Argument::Q => self.nq,
             Argument::V | Argument::A | Argument::Tau => self.nv,
             Argument::U => self.nu,
-            Argument::Standard(n) => n,
+            Argument::Standard(n) | Argument::Factors(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
             Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
             Argument::Called(_) => 0,
@@ -106,6 +106,8 @@ impl Signature<'_> {
             }
             Shape::Symmetric(_) => "()".to_string(),
             Shape::Pair(_)
+            | Shape::Hessian(_)
+            | Shape::InputHessian(..)
             | Shape::Forward(_)
             | Shape::Linear(..)
             | Shape::Accelerated(_)
@@ -144,6 +146,11 @@ fn several(shape: Shape, s: &Signature<'_>) -> String {
     let square = |n| s.shape(Shape::Square(n));
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square(n)),
+        Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square(n)),
+        Shape::InputHessian(n, m) => {
+            let mixed = s.shape(Shape::Matrix(n, m));
+            format!("({0}, {0}, {0}, {mixed}, {mixed}, {1})", square(n), square(m))
+        }
         Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
         Shape::Accelerated(n) => s.vector(n),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {

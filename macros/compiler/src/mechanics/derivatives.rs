@@ -15,6 +15,7 @@ mod columns;
 mod factor;
 pub mod invariance;
 pub mod parameters;
+pub mod second;
 mod subtree;
 pub mod symbolic;
 mod trunk;

@@ -440,7 +440,8 @@ fn read_requests(
 ) -> Requests {
     let is_asked = |word| asked.iter().any(|(known, _)| *known == word);
     let requests = Requests {
-        derivatives: is_asked("derivatives"),
+        derivatives: is_asked("derivatives") || is_asked("second_derivatives"),
+        second_derivatives: is_asked("second_derivatives"),
         centroidal: is_asked("centroidal"),
         regressor: is_asked("regressor"),
         sensitivities: is_asked("sensitivities"),

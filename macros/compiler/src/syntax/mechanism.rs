@@ -23,6 +23,8 @@ pub struct Mechanism {
 pub struct Requests {
     /// First derivatives of the dynamics.
     pub derivatives: bool,
+    /// Second derivatives, too.
+    pub second_derivatives: bool,
     /// The matrix of the momentum, and its bias.
     pub centroidal: bool,
     /// The dynamics as linear functions of the mass properties.
@@ -104,5 +106,13 @@ pub struct UrdfOptions {
 }
 
 /// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 7] =
-    ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
+pub(super) const REQUESTS: [&str; 8] = [
+    "derivatives",
+    "second_derivatives",
+    "centroidal",
+    "regressor",
+    "sensitivities",
+    "packed",
+    "prepare",
+    "batch",
+];

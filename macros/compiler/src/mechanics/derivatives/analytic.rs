@@ -174,7 +174,7 @@ impl<'g> ForceDerivatives<'g> {
 }
 
 /// `S ×* F`: the change of a wrench that moves along `S`.
-fn cross_force<'g>(s: &Spatial<'g>, f: &Spatial<'g>) -> Spatial<'g> {
+pub fn cross_force<'g>(s: &Spatial<'g>, f: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: s.angular.cross(f.linear),
         angular: s.angular.cross(f.angular) + s.linear.cross(f.linear),

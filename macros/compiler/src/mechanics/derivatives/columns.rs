@@ -145,7 +145,7 @@ pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g
 }
 
 /// `V × X`: the rate of a motion `X` that moves with the twist `V`.
-fn cross<'g>(v: &Spatial<'g>, x: &Spatial<'g>) -> Spatial<'g> {
+pub fn cross<'g>(v: &Spatial<'g>, x: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: v.angular.cross(x.linear) + v.linear.cross(x.angular),
         angular: v.angular.cross(x.angular),

@@ -70,7 +70,7 @@ pub fn subtrees<'g>(
 }
 
 /// What a body itself adds. With its first moment `h` and `J = Σ m r rᵀ`: `p = m v + w × h`, `K = v hᵀ + [w]× J`.
-fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
+pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
     let second = second_moments(&body.tensor);
     let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
     let j = Mat3::from_fn(|i, k| second.at(i, k) * multiple);

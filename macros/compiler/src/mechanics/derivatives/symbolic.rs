@@ -54,6 +54,11 @@ pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     columns(model, e, (0..model.nu()).map(|k| vec![(Quantity::Input(k).symbol(), model.graph.one())]))
 }
 
+/// Derivatives of expressions by the accelerations.
+pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+    columns(model, e, (0..model.nv()).map(|k| vec![(Quantity::Acceleration(k).symbol(), model.graph.one())]))
+}
+
 fn columns<'g>(
     model: &Model<'g>,
     e: &[Expr<'g>],

@@ -1,0 +1,44 @@
+//! The functions of the word `second_derivatives`.
+
+use super::derivatives::{DIFFERENTIATE, columns};
+use super::specialisation::Specialisation;
+use crate::expr::Expr;
+use crate::kinematics::Joint;
+use crate::lower::Program;
+use crate::mechanics::derivatives::second::{self, Hessian, InputHessian};
+use crate::mechanism::Model;
+
+/// Those of inverse dynamics: by recursion, also in up to so many lanes each, or by differentiation.
+pub(super) fn inverse_dynamics<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    wide: &[usize],
+    specialisation: Specialisation,
+) -> Program {
+    // Given forces do not show what they depend on.
+    let model = &Model { passive: None, ..model.clone() };
+    let in_lanes =
+        |most: usize| second::by_recursion(model, joints, most).map(|found| state(&found).concat());
+    let Some(plain) = in_lanes(1) else {
+        return specialisation.program(&state(&second::by_differentiation(model, joints)).concat());
+    };
+    let candidates = match model.nv() <= DIFFERENTIATE {
+        true => vec![plain, state(&second::by_differentiation(model, joints)).concat()],
+        false => vec![plain],
+    };
+    let program = specialisation.cheapest(candidates.into_iter().map(|list| specialisation.sized(list)));
+    let wide = wide.iter().filter_map(|most| Some(specialisation.program(&in_lanes(*most)?)));
+    program.or_in_lanes(wide)
+}
+
+/// Those of forces of the inputs.
+pub(super) fn inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>], specialisation: Specialisation) -> Program {
+    let InputHessian { state: by_state, qu, vu, uu } = second::of_inputs(model, tau);
+    let [qq, qv, vv, _] = state(&by_state);
+    let blocks = [qq, qv, vv, columns(&qu), columns(&vu), columns(&uu)];
+    specialisation.program(&blocks.concat())
+}
+
+fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
+    [&found.qq, &found.qv, &found.vv, &found.qa].map(columns)
+}

@@ -1,0 +1,408 @@
+//! Second derivatives of inverse dynamics, contracted: those of `λᵀ τ(q, v, a)`, on the tangent space.
+//!
+//! With the twists `W` that the rates `λ` would give, `λᵀ τ` is the power `Σ W · f` of all bodies' wrenches (Jourdain's
+//! principle). A direction moves all that a degree of freedom carries as one: in axes that move along, velocities change by
+//! `α`, accelerations by `β + α × V` and `W` by `γ`, the same for every body. So each entry is a product of what sums over the
+//! outer degree of freedom's links make of its direction with the inner one's direction, as in the first derivatives
+//! (Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra*, 2022;
+//! *Second-order derivatives of rigid-body dynamics*, 2023, which gives the tensor that is contracted here).
+//!
+//! | direction | `α` | `β` | `γ` |
+//! | --- | --- | --- | --- |
+//! | displacement | `Ψ̇` | `Ψ̈` | `Ω = W × S`, `W` of the parent |
+//! | rate | `S` | `Ψ̇ + Ṡ` | – |
+//! | acceleration | – | `S` | – |
+//!
+//! With the sums `I`, `F`, `B` of the first derivatives, `P = Σ I W`, `N = Σ Bᵀ W` and `Q = Σ (W×)ᵀ I + I (W×)`, which is
+//! made as mass properties are, of no mass and the first moment `−P`:
+//!
+//! `γ · (I β′ + B α′) + γ′ · (I β + B α) + α · Q α′ + P · (α × α′)`, and what the outer direction itself changes by.
+
+use super::super::crba::{Matrix, momentum};
+use super::super::{accelerations, rnea, velocities};
+use super::columns::{Column, columns, cross, motions};
+use super::subtree::{Subtree, of_body, subtrees};
+use super::{analytic, is_analytic, symbolic};
+use crate::expr::{Expr, Sym3, Vec3};
+use crate::kinematics::{Joint, Spatial, twists};
+use crate::mechanics::passive::passive_forces;
+use crate::mechanism::{Chart, Inertia, Model, Quantity};
+use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
+
+/// Second derivatives of a function of configuration, velocity and acceleration, which is linear in the last, and there has no
+/// mixed ones with the velocity.
+pub struct Hessian<'g> {
+    /// By configuration twice, symmetric: along `q ⊕ ε (eᵢ + eⱼ)`.
+    pub qq: Matrix<'g>,
+    /// By configuration (rows) and velocity.
+    pub qv: Matrix<'g>,
+    /// By velocity twice.
+    pub vv: Matrix<'g>,
+    /// By configuration (rows) and acceleration.
+    pub qa: Matrix<'g>,
+}
+
+/// The factors `λ` as symbols.
+pub fn factors<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.nv()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
+}
+
+/// The second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to so many lanes; `None` where a motion subspace
+/// is not constant in link axes.
+pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Option<Hessian<'g>> {
+    if !is_analytic(model) {
+        return None;
+    }
+    let (v, a, lambda) = (velocities(model), accelerations(model), factors(model));
+    let motions = motions(model, joints, &v, &a);
+    let virtual_twists = twists(model, joints, &lambda);
+    let columns: Vec<Vec<Directions<'g>>> = joints
+        .iter()
+        .zip(&motions)
+        .map(|(joint, motion)| {
+            let ground = Spatial::zero(model);
+            let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
+            let directions =
+                |column: Column<'g>| Directions { factor: cross(&above, &column.subspace), column };
+            columns(joint, motion).into_iter().map(directions).collect()
+        })
+        .collect();
+    let own: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
+    let wrenches = rnea::wrenches(model, joints, &v, Some(&a));
+    let sums = subtrees(model, joints, &own, &wrenches, 2.0);
+    let sums = contracted(model, joints, (&own, &virtual_twists), sums);
+    let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let out = Hessian { qq: zero(), qv: zero(), vv: zero(), qa: zero() };
+    let paths = Paths::of(joints, most);
+    let mut entries =
+        Entries { columns: &columns, all: columns.concat(), links: paths.links(), sums: &sums, out };
+    paths.propagate(&mut entries);
+    let mut out = entries.out;
+    out.add(&passive(model, &lambda));
+    Some(out)
+}
+
+/// The same by differentiation.
+pub fn by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
+    let (v, a) = (velocities(model), accelerations(model));
+    let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
+    of_power(model, &tau, &factors(model))
+}
+
+/// Those of springs, dashpots, friction, potentials and loads.
+fn passive<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
+    of_power(model, &passive_forces(model, true), lambda)
+}
+
+/// The second derivatives of `λᵀ τ`, for forces as expressions.
+pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
+    let zero = model.graph.zero();
+    let power = tau.iter().zip(lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
+    let first = symbolic::derivatives(model, &[power]);
+    let by_q = first.by_q.into_iter().next().unwrap_or_default();
+    let by_v = first.by_v.into_iter().next().unwrap_or_default();
+    let mut second = symbolic::derivatives(model, &by_q);
+    symmetrise(model, &mut second.by_q);
+    Hessian {
+        qq: second.by_q,
+        qv: second.by_v,
+        vv: symbolic::derivatives(model, &by_v).by_v,
+        qa: symbolic::by_acceleration(model, &by_q),
+    }
+}
+
+/// Second derivatives of the power `λᵀ τ` of the inputs' forces.
+pub struct InputHessian<'g> {
+    /// By the state.
+    pub state: Hessian<'g>,
+    /// By configuration (rows) and input.
+    pub qu: Matrix<'g>,
+    /// By velocity (rows) and input.
+    pub vu: Matrix<'g>,
+    /// By inputs twice.
+    pub uu: Matrix<'g>,
+}
+
+/// Those of forces `tau` that inputs give.
+pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
+    let lambda = factors(model);
+    let zero = model.graph.zero();
+    let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
+    let by_u = symbolic::by_input(model, &[power]).into_iter().next().unwrap_or_default();
+    let mixed = symbolic::derivatives(model, &by_u);
+    let transposed = |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
+    InputHessian {
+        state: of_power(model, tau, &lambda),
+        qu: transposed(mixed.by_q),
+        vu: transposed(mixed.by_v),
+        uu: symbolic::by_input(model, &by_u),
+    }
+}
+
+/// One displacement after another depends on their order where axes turn; of both orders the mean is along their sum.
+pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
+    for chart in &model.charts {
+        let block = match *chart {
+            Chart::Plain(..) => continue,
+            Chart::Ball(_, v) => v..v + 3,
+            Chart::Free(_, v) => v..v + 6,
+        };
+        for i in block.clone() {
+            for j in block.start..i {
+                let mean = (m[i][j] + m[j][i]) * 0.5;
+                (m[i][j], m[j][i]) = (mean, mean);
+            }
+        }
+    }
+}
+
+/// A degree of freedom with what its displacement does to the twists of the factors, `Ω`.
+#[derive(Clone, Copy)]
+struct Directions<'g> {
+    column: Column<'g>,
+    factor: Spatial<'g>,
+}
+
+impl<'g> Directions<'g> {
+    fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Directions<'g> {
+        let factor = Spatial { linear: self.factor.linear.map(f), angular: self.factor.angular.map(f) };
+        Directions { column: self.column.map(f), factor }
+    }
+}
+
+/// The sums of one link, those with the twists of the factors included.
+struct Sums<'g> {
+    plain: Subtree<'g>,
+    /// `P`.
+    momentum: Spatial<'g>,
+    /// `N`, a moment.
+    moment: Vec3<'g>,
+    /// What of `Q` is made as a tensor of inertia is.
+    tensor: Sym3<'g>,
+}
+
+impl<'g> Sums<'g> {
+    /// The moment of `Q X + X ×* P`; it has no force.
+    fn turned(&self, x: &Spatial<'g>) -> Vec3<'g> {
+        self.change(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
+    }
+
+    /// The moment of `Q X`.
+    fn change(&self, x: &Spatial<'g>) -> Vec3<'g> {
+        x.linear.cross(self.momentum.linear) + self.tensor * x.angular
+    }
+}
+
+fn contracted<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    (own, virtual_twists): (&[Spatial<'g>], &[Spatial<'g>]),
+    sums: Vec<Subtree<'g>>,
+) -> Vec<Sums<'g>> {
+    let mut changes: Vec<Inertia<'g>> = Vec::with_capacity(joints.len());
+    let mut wrenches: Vec<[Spatial<'g>; 2]> = Vec::with_capacity(joints.len());
+    for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
+        let p = momentum(&link.inertia, w);
+        let zero = Vec3::zero(model.graph);
+        let n = of_body(&link.inertia, own, 2.0).transposed_map(w);
+        changes.push(change_of(&link.inertia, w, p.linear));
+        wrenches.push([p, Spatial { linear: zero, angular: n }]);
+    }
+    for (k, joint) in joints.iter().enumerate().rev() {
+        if let Some(parent) = joint.parent {
+            changes[parent.0] = joint.composite(&changes[parent.0], &changes[k]);
+            let [p, n] = wrenches[k];
+            let above = wrenches[parent.0];
+            wrenches[parent.0] = [joint.add_wrench(&above[0], &p), joint.add_wrench(&above[1], &n)];
+        }
+    }
+    let parts = changes.into_iter().zip(wrenches);
+    sums.into_iter()
+        .zip(parts)
+        .map(|(plain, (change, [momentum, moment]))| Sums {
+            plain,
+            momentum,
+            moment: moment.angular,
+            tensor: change.tensor,
+        })
+        .collect()
+}
+
+/// `(W×)ᵀ I + I (W×)` of a body with the momentum `p` at the twist `W = (a, b)`: no mass, the first moment `−p`, and the tensor
+/// `h aᵀ + a hᵀ − 2 (h · a) + J [b]× − [b]× J`.
+fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g> {
+    let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
+    let lever = (h.dot(a)) * 2.0;
+    // Row i of J [b]× is (column i of J) × b.
+    let turned = |i: usize| Vec3([j.at(i, 0), j.at(i, 1), j.at(i, 2)]).cross(b);
+    let rows = [turned(0), turned(1), turned(2)];
+    let at = |i: usize, k: usize| rows[i][k] + rows[k][i] + h[i] * a[k] + a[i] * h[k];
+    Inertia {
+        mass: body.mass.zero(),
+        moment: -p,
+        tensor: Sym3 {
+            diagonal: [at(0, 0) - lever, at(1, 1) - lever, at(2, 2) - lever],
+            off: [at(0, 1), at(0, 2), at(1, 2)],
+        },
+    }
+}
+
+struct Entries<'a, 'g> {
+    /// Degrees of freedom, by link and all together.
+    columns: &'a [Vec<Directions<'g>>],
+    all: Vec<Directions<'g>>,
+    links: &'a [usize],
+    sums: &'a [Sums<'g>],
+    out: Hessian<'g>,
+}
+
+impl<'g> Visitor<'g> for Entries<'_, 'g> {
+    type Item = Changes<'g>;
+
+    fn start(&mut self, dof: usize) -> Changes<'g> {
+        let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);
+        let changes = Changes::new(&own, sums);
+        let out = &mut self.out;
+        for other in &self.columns[self.links[dof]] {
+            let [qq, _, vq, _, _, aq] = changes.meet(other);
+            // Half of either order.
+            out.put(|h| &mut h.qq, &own, other, qq * 0.5);
+            out.put(|h| &mut h.qq, other, &own, qq * 0.5);
+            out.put(|h| &mut h.qv, other, &own, vq);
+            out.put(|h| &mut h.qa, other, &own, aq);
+            let vv = sums.change(&own.column.subspace).dot(other.column.subspace.angular)
+                + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
+            out.put(|h| &mut h.vv, &own, other, vv);
+        }
+        changes
+    }
+
+    fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
+        for other in &self.columns[group.link] {
+            let met = group.item.meet(&other.map(&|e| group.spread(e)));
+            for (part, entry) in met.into_iter().enumerate() {
+                for (dof, entry) in group.parts(entry) {
+                    let own = &self.all[dof];
+                    let out = &mut self.out;
+                    match part {
+                        0 => {
+                            out.put(|h| &mut h.qq, own, other, entry);
+                            out.put(|h| &mut h.qq, other, own, entry);
+                        }
+                        1 => out.put(|h| &mut h.qv, own, other, entry),
+                        2 => out.put(|h| &mut h.qv, other, own, entry),
+                        3 => {
+                            out.put(|h| &mut h.vv, own, other, entry);
+                            out.put(|h| &mut h.vv, other, own, entry);
+                        }
+                        4 => out.put(|h| &mut h.qa, own, other, entry),
+                        _ => out.put(|h| &mut h.qa, other, own, entry),
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<'g> Hessian<'g> {
+    fn put(
+        &mut self,
+        block: for<'h> fn(&'h mut Hessian<'g>) -> &'h mut Matrix<'g>,
+        row: &Directions<'g>,
+        column: &Directions<'g>,
+        entry: Expr<'g>,
+    ) {
+        let (row, column) = (&row.column, &column.column);
+        block(self)[row.index][column.index] += entry * entry.num(row.ratio * column.ratio);
+    }
+
+    /// Adds another.
+    fn add(&mut self, other: &Hessian<'g>) {
+        let blocks = [
+            (&mut self.qq, &other.qq),
+            (&mut self.qv, &other.qv),
+            (&mut self.vv, &other.vv),
+            (&mut self.qa, &other.qa),
+        ];
+        for (to, from) in blocks {
+            for (entry, change) in to.iter_mut().flatten().zip(from.iter().flatten()) {
+                *entry += *change;
+            }
+        }
+    }
+}
+
+/// What one degree of freedom brings to its ancestors: wrenches about their origins in their axes, and moments that are wrenches
+/// without force.
+struct Changes<'g> {
+    /// `I Ψ̈ + B Ψ̇ + S ×* F`.
+    by_q: Spatial<'g>,
+    /// `I Ω + S ×* P`.
+    factored: Spatial<'g>,
+    /// `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`, a moment.
+    moment_by_q: Vec3<'g>,
+    /// `I (Ψ̇ + Ṡ) + B S`.
+    by_v: Spatial<'g>,
+    /// `Q S + S ×* P`, a moment.
+    moment_by_v: Vec3<'g>,
+    /// `I S`.
+    momentum: Spatial<'g>,
+}
+
+impl<'g> Changes<'g> {
+    fn new(own: &Directions<'g>, sums: &Sums<'g>) -> Changes<'g> {
+        let (column, plain) = (&own.column, &sums.plain);
+        let s = &column.subspace;
+        let inertia = |x: &Spatial<'g>| momentum(&plain.inertia, x);
+        Changes {
+            by_q: inertia(&column.second)
+                .plus(&plain.map(&column.first))
+                .plus(&analytic::cross_force(s, &plain.wrench)),
+            factored: inertia(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
+            moment_by_q: plain.transposed_map(&own.factor)
+                + sums.turned(&column.first)
+                + s.angular.cross(sums.moment),
+            by_v: inertia(&column.rate).plus(&plain.map(s)),
+            moment_by_v: sums.turned(s),
+            momentum: inertia(s),
+        }
+    }
+
+    /// The entries with a degree of freedom of an ancestor: both displacements; displacement of this and rate of the other, and
+    /// the other way round; both rates; displacement of this and acceleration of the other, and the other way round.
+    fn meet(&self, other: &Directions<'g>) -> [Expr<'g>; 6] {
+        let Column { subspace, first, second, rate, .. } = &other.column;
+        [
+            other.factor.dot(&self.by_q) + second.dot(&self.factored) + first.angular.dot(self.moment_by_q),
+            subspace.angular.dot(self.moment_by_q) + rate.dot(&self.factored),
+            other.factor.dot(&self.by_v) + first.angular.dot(self.moment_by_v),
+            subspace.angular.dot(self.moment_by_v),
+            subspace.dot(&self.factored),
+            other.factor.dot(&self.momentum),
+        ]
+    }
+}
+
+impl<'g> Propagated<'g> for Changes<'g> {
+    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        Changes {
+            by_q: self.by_q.with(&other.by_q, f),
+            factored: self.factored.with(&other.factored, f),
+            moment_by_q: self.moment_by_q.with(&other.moment_by_q, f),
+            by_v: self.by_v.with(&other.by_v, f),
+            moment_by_v: self.moment_by_v.with(&other.moment_by_v, f),
+            momentum: self.momentum.with(&other.momentum, f),
+        }
+    }
+
+    fn moved(&self, joint: &Joint<'g>) -> Self {
+        Changes {
+            by_q: self.by_q.moved(joint),
+            factored: self.factored.moved(joint),
+            moment_by_q: self.moment_by_q.moved(joint),
+            by_v: self.by_v.moved(joint),
+            moment_by_v: self.moment_by_v.moved(joint),
+            momentum: self.momentum.moved(joint),
+        }
+    }
+}

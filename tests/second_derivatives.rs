@@ -1,0 +1,173 @@
+//! Second derivatives of the dynamics: against differences of first ones along the tangent space, on mechanisms with turning
+//! axes, driven motion, and inputs in body axes.
+
+use linkwork::prelude::*;
+use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives};
+use support::random::Random;
+
+/// A flying body with rotors, of which two also turn it by drag, and a pendulum on a ball joint below; forces along lines that
+/// the motion moves.
+#[mechanism(gravity = -9.81 * z, second_derivatives)]
+struct Carrier {
+    #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
+    frame: Body,
+    #[body(mass = 0.3, com = -0.4 * z + 0.05 * x, inertia = diagonal(0.004, 0.005, 0.001))]
+    load: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[joint(frame.at(-0.05 * z) -> load)]
+    hook: Ball,
+    #[acts(on = frame.at(0.2 * x), along = frame.z)]
+    front: Force,
+    #[acts(on = load.at(0.3 * y), along = x)]
+    wind: Force,
+    #[acts(on = load, about = frame.z)]
+    drag: Torque,
+    #[acts(between = (frame.at(0.1 * x), load.at(-0.3 * z)), stiffness = 30, free_length = 0.2)]
+    spring: Spring,
+}
+
+/// A pendulum on a pivot that is driven up and down, with a motor and a second pendulum.
+#[mechanism(gravity = -9.81 * y, second_derivatives)]
+struct Driven {
+    rate: f64,
+    #[point(at = 0.1 * sin(rate * t) * y)]
+    pivot: Point,
+    #[body(mass = 0.7, com = -0.3 * y, inertia = diagonal(0.01, 0.01, 0.02))]
+    bob: Body,
+    #[body(mass = 0.4, com = -0.2 * y, inertia = diagonal(0.01, 0.01, 0.005))]
+    second: Body,
+    #[joint(pivot -> bob, about = z)]
+    hinge: Pin,
+    #[joint(bob.at(-0.6 * y) -> second, about = z)]
+    lower: Pin,
+    #[acts(on = hinge)]
+    motor: Torque,
+}
+
+/// An arm.
+#[mechanism(urdf = "../models/urdf/panda.urdf", second_derivatives)]
+struct Panda;
+
+/// A quadruped on its legs.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
+struct Solo;
+
+/// Largest difference, relative to the largest entry.
+const TOLERANCE: f64 = 2e-9;
+
+/// Derivatives of a matrix along every direction by differences of sixth order: a row of slopes for each.
+fn slopes<const N: usize, const R: usize, const C: usize>(
+    of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
+) -> Vec<SMatrix<f64, R, C>> {
+    let along = |k: usize| {
+        let step = 1.2e-3;
+        let at = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let part = |s: f64| at(s) - at(-s);
+        (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
+    };
+    (0..N).map(along).collect()
+}
+
+/// The same for `λᵀ` of a matrix of derivatives: entry `(i, j)` is the slope along `j` of the derivative along `i`.
+fn contracted<const NV: usize, const N: usize, const C: usize>(
+    lambda: &SVector<f64, NV>,
+    of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, NV, C>,
+) -> SMatrix<f64, C, N> {
+    let columns = slopes(|d: &SVector<f64, N>| of(d).tr_mul(lambda));
+    SMatrix::from_fn(|i, j| columns[j][i])
+}
+
+fn assert_block<const R: usize, const C: usize>(
+    what: &str,
+    found: &SMatrix<f64, R, C>,
+    expected: &SMatrix<f64, R, C>,
+    scale: f64,
+) {
+    let off = (found - expected).amax();
+    assert!(off <= TOLERANCE * scale, "{what}: off by {off:e} of {scale:e}\n{found:.6}{expected:.6}");
+}
+
+fn check<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M, push: f64)
+where
+    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = f64>,
+{
+    for seed in 0..2 {
+        let mut random = Random::new(seed);
+        let q = m.integrate(&m.neutral(), &random.vector(1.2));
+        let (v, a, tau, lambda) =
+            (random.vector(1.5), random.vector(2.0), random.vector(3.0), random.vector(1.0));
+        let (u, t) = (random.vector::<NU>(push), random.uniform(1.0));
+        let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
+        let at_q = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
+        let mean = |b: SMatrix<f64, NV, NV>| (b + b.transpose()) * 0.5;
+        let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+
+        let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
+        let first = |q: &_, v: &_, a: &_| RheonomicDerivatives::inverse_dynamics_derivatives(m, t, q, v, a);
+        let expected = [
+            mean(contracted(&lambda, |d| first(&at_q(d), &v, &a).0)),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).0),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).1),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(a + d)).0),
+        ];
+        let size = scale(&expected.concat_slices());
+        for (what, (found, expected)) in
+            ["qq", "qv", "vv", "qa"].iter().zip([qq, qv, vv, qa].iter().zip(&expected))
+        {
+            assert_block(&format!("{name}, {seed}: inverse dynamics, {what}"), found, expected, size);
+        }
+
+        let (qq, qv, vv, qf) = m.forward_dynamics_second_derivatives(t, &q, &v, &tau, &lambda);
+        let first =
+            |q: &_, v: &_, tau: &_| RheonomicDerivatives::forward_dynamics_derivatives(m, t, q, v, tau);
+        let expected = [
+            mean(contracted(&lambda, |d| first(&at_q(d), &v, &tau).0)),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).0),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).1),
+            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(tau + d)).0),
+        ];
+        let size = scale(&expected.concat_slices());
+        for (what, (found, expected)) in
+            ["qq", "qv", "vv", "qτ"].iter().zip([qq, qv, vv, qf].iter().zip(&expected))
+        {
+            assert_block(&format!("{name}, {seed}: forward dynamics, {what}"), found, expected, size);
+        }
+
+        let now = at(m, t);
+        let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&q, &v, &u, &lambda);
+        let first = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
+        let by_u = |d: &SVector<f64, NU>| first(&q, &v, &(u + d));
+        let states = [
+            (qq, mean(contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q))),
+            (qv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_q)),
+            (vv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_v)),
+        ];
+        let size = states.iter().fold(1.0_f64, |s, (_, b)| s.max(b.amax()));
+        for (k, (found, expected)) in states.iter().enumerate() {
+            assert_block(&format!("{name}, {seed}: motion, block {k}"), found, expected, size);
+        }
+        assert_block("qu", &qu, &contracted(&lambda, |d| by_u(d).by_q), size);
+        assert_block("vu", &vu, &contracted(&lambda, |d| by_u(d).by_v), size);
+        assert_block("uu", &uu, &contracted(&lambda, |d| by_u(d).by_u), size);
+    }
+}
+
+/// All entries of several matrices.
+trait ConcatSlices {
+    fn concat_slices(&self) -> Vec<f64>;
+}
+
+impl<const N: usize, const NV: usize> ConcatSlices for [SMatrix<f64, NV, NV>; N] {
+    fn concat_slices(&self) -> Vec<f64> {
+        self.iter().flat_map(|m| m.iter().copied()).collect()
+    }
+}
+
+#[test]
+fn first_derivatives_change_as_second_ones_say() {
+    check("driven", &Driven { rate: 3.0 }, 1.0);
+    check("carrier", &Carrier {}, 3.0);
+    check("arm", &Panda, 5.0);
+    check("quadruped", &Solo, 5.0);
+}
