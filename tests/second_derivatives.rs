@@ -3,6 +3,10 @@
 
 use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::{compile, read};
+use std::path::Path;
 use support::random::Random;
 
 /// A flying body with rotors, of which two also turn it by drag, and a pendulum on a ball joint below; forces along lines that
@@ -170,4 +174,36 @@ fn first_derivatives_change_as_second_ones_say() {
     check("carrier", &Carrier {}, 3.0);
     check("arm", &Panda, 5.0);
     check("quadruped", &Solo, 5.0);
+}
+
+/// Operations of first and second derivatives of inverse dynamics.
+fn operations(arguments: &str) -> [usize; 2] {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let source = read(tokens(arguments), tokens("struct Robot;"), folder, &mut cx);
+    let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
+        panic!("{}", cx.messages().join("\n"));
+    };
+    ["inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives"].map(|name| {
+        let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");
+        f.program.counts.total()
+    })
+}
+
+/// They follow from a recursion, so that they cost a small multiple of the first ones.
+#[test]
+fn second_derivatives_cost_about_twice_the_first() {
+    let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
+    for (robot, options, most) in [
+        ("ur5", "base = fixed", 1450),
+        ("panda", fingers, 4800),
+        ("solo12", "base = free", 6700),
+        ("simple_humanoid", "base = free", 26_700),
+    ] {
+        let [first, second] =
+            operations(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, second_derivatives"));
+        println!("{robot}: {first} {second}");
+        assert!(second <= most && second <= 2 * first, "{robot}: {first} and {second}");
+    }
 }

@@ -69,6 +69,7 @@ use std::path::PathBuf;
 /// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
 /// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
 /// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
+/// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' forces, contracted with factors, and what `derivatives` adds |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
 /// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
 /// | `sensitivities` | adds derivatives of the dynamics by the struct's parameters |

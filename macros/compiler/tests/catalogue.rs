@@ -13,7 +13,7 @@ use std::path::Path;
 /// Attribute, name and fields of mechanisms that have, between them, every function.
 const MECHANISMS: [(&str, &str, &str); 5] = [
     (
-        "gravity = -9.81 * y, derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
         "Plain",
         "m: f64,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -22,7 +22,7 @@ const MECHANISMS: [(&str, &str, &str); 5] = [
         #[output(hinge)] angle: Scalar,",
     ),
     (
-        "gravity = -9.81 * y, derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
         "Closed",
         "m: f64,
         #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
@@ -34,7 +34,7 @@ const MECHANISMS: [(&str, &str, &str); 5] = [
         #[joint(coupler.at(2 * x) -> rocker.at(2 * x), about = z)] last: Pin,",
     ),
     (
-        "gravity = -9.81 * z, derivatives, batch",
+        "gravity = -9.81 * z, second_derivatives, batch",
         "Sliding",
         "mu: f64,
         #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
@@ -42,7 +42,7 @@ const MECHANISMS: [(&str, &str, &str); 5] = [
         #[constraint(slips(ball.sphere(1), ground.plane(z)), friction = mu)] lane: Slipping,",
     ),
     (
-        "derivatives, batch",
+        "second_derivatives, batch",
         "Driven",
         "#[joint(ground -> bead, along = x)] slide: Sleeve,
         #[particle(mass = 1)] bead: Particle,

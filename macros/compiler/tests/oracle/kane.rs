@@ -162,6 +162,13 @@ pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
         .collect()
 }
 
+/// The power of the forces `τ` at given rates `λ`: `λᵀ τ`.
+pub fn power(spec: &Spec, state: &State, lambda: &[f64]) -> C {
+    let rates = lambda.iter().map(|x| real(*x)).collect();
+    let partial = State { q: state.q.clone(), v: rates, a: vec![real(0.0); lambda.len()] };
+    generalized(spec, &world(spec, state), &world(spec, &partial))
+}
+
 /// One of Kane's equations: of the speed by which `partial` moves.
 fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
     let mut tau = real(0.0);
@@ -208,6 +215,28 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
 
 /// `q ⊕ i h e`: an imaginary step along one velocity, on the configuration manifold.
 pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
+    step(spec, q, k, C::new(0.0, h))
+}
+
+/// A curve from `q` on the configuration manifold at `h`, which begins along all velocities with these rates.
+pub fn moved(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
+    let along = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
+    let mut q = rates.iter().enumerate().fold(q.to_vec(), along);
+    let mut first = 0;
+    for body in &spec.bodies {
+        let (own, _) = body.kind.sizes();
+        if own >= 4 {
+            let quaternion = &mut q[first + own - 4..first + own];
+            let length = quaternion.iter().map(|x| x * x).sum::<C>().sqrt();
+            quaternion.iter_mut().for_each(|x| *x /= length);
+        }
+        first += own + usize::from(body.slider.is_some());
+    }
+    q
+}
+
+/// `q ⊕ h e` for a step along one velocity whose square is nothing.
+fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
@@ -218,7 +247,7 @@ pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
         (q0, v0) = (q0 + nq, v0 + nv);
         if body.slider.is_some() {
             if v0 == k {
-                stepped[q0] += C::new(0.0, h);
+                stepped[q0] += h;
             }
             (q0, v0) = (q0 + 1, v0 + 1);
         }
@@ -226,8 +255,7 @@ pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
     stepped
 }
 
-fn step_joint(kind: Kind, q: &mut [C], k: usize, h: f64) {
-    let h = C::new(0.0, h);
+fn step_joint(kind: Kind, q: &mut [C], k: usize, h: C) {
     match (kind, k) {
         (Kind::Ball, _) => turn(q, k, h),
         (Kind::Free, 0..3) => {

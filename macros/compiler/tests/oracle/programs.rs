@@ -17,12 +17,18 @@ const TOLERANCE: f64 = 1e-10;
 /// Size of the imaginary step: its square is nothing.
 const STEP: f64 = 1e-40;
 
+/// Step of differences of sixth order.
+const H: f64 = 3e-3;
+
 /// A state, and forces.
 struct Point {
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
     tau: Vec<f64>,
+    lambda: Vec<f64>,
+    /// Rates of configuration, velocity and acceleration: the direction of second derivatives.
+    along: [Vec<f64>; 3],
 }
 
 impl Point {
@@ -31,6 +37,7 @@ impl Point {
         let mut random = Random::new(seed ^ 0x5eed);
         let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
         let (mut q, v, a, tau) = (list(nq, 1.5), list(nv, 1.0), list(nv, 2.0), list(nv, 3.0));
+        let (lambda, along) = (list(nv, 1.0), [list(nv, 0.5), list(nv, 0.5), list(nv, 0.5)]);
         let mut first = 0;
         for body in &spec.bodies {
             let (own, _) = body.kind.sizes();
@@ -39,7 +46,7 @@ impl Point {
             }
             first += own + usize::from(body.slider.is_some());
         }
-        Point { q, v, a, tau }
+        Point { q, v, a, tau, lambda, along }
     }
 }
 
@@ -50,7 +57,7 @@ fn normalise(q: &mut [f64]) {
 
 /// Compiles a mechanism and compares every function of its dynamics with the oracle.
 pub fn check(spec: &Spec, seed: u64) {
-    let (arguments, item) = words::source(spec, "Random", ", derivatives");
+    let (arguments, item) = words::source(spec, "Random", ", second_derivatives");
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
@@ -68,6 +75,10 @@ pub fn check(spec: &Spec, seed: u64) {
     };
     case.check_dynamics();
     case.check_derivatives();
+    // They take longest.
+    if seed.is_multiple_of(5) {
+        case.check_second_derivatives();
+    }
 }
 
 struct Case<'a> {
@@ -92,6 +103,7 @@ impl Case<'_> {
             Quantity::Velocity(k) => self.point.v[k],
             Quantity::Acceleration(k) => self.point.a[k],
             Quantity::Force(k) => self.point.tau[k],
+            Quantity::Given(k) => self.point.lambda[k],
             _ => f64::NAN,
         };
         let program = &function.program;
@@ -112,7 +124,7 @@ impl Case<'_> {
     }
 
     fn check_dynamics(&self) {
-        let Point { q, v, a, tau } = &self.point;
+        let Point { q, v, a, tau, .. } = &self.point;
         let state = State::new(q, v, a);
         let (columns, bias) = kane::mass_and_bias(self.spec, &state.q, &state.v);
         let mass: Vec<f64> = columns.iter().flatten().map(|x| x.re).collect();
@@ -163,5 +175,67 @@ impl Case<'_> {
         }
         let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
         self.close("inverse_dynamics_derivatives", &expected, scale);
+    }
+
+    /// The product of the matrices of second derivatives with a direction, against differences along it (of sixth order) of
+    /// derivatives by imaginary steps, and the other way round.
+    fn check_second_derivatives(&self) {
+        let Point { q, v, a, lambda, along, .. } = &self.point;
+        let (nv, state) = (v.len(), State::new(q, v, a));
+        let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry)).collect();
+        // Differences round relative to what they are differences of.
+        let sizes = ["mass_matrix", "bias_forces", "inverse_dynamics_derivatives"]
+            .map(|name| self.run(name).concat());
+        let scale = sizes.iter().flatten().chain(&expected).fold(1.0_f64, |m, x| m.max(x.abs()));
+        for found in self.run("inverse_dynamics_second_derivatives") {
+            let block = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
+            for i in 0..nv {
+                let row = |b: usize, along: &[f64]| (0..nv).map(|j| block(b, i, j) * along[j]).sum::<f64>();
+                let column = |b: usize| (0..nv).map(|j| block(b, j, i) * along[0][j]).sum::<f64>();
+                let products = [
+                    row(0, &along[0]) + row(1, &along[1]) + row(3, &along[2]),
+                    column(1) + row(2, &along[1]),
+                    column(3),
+                ];
+                for (kind, product) in products.iter().enumerate() {
+                    let expected = expected[kind * nv + i];
+                    assert!(
+                        (product - expected).abs() <= TOLERANCE * scale,
+                        "second derivatives, row {i} of kind {kind}: {product} and {expected} of {scale} with {lambda:?}, {}",
+                        self.name
+                    );
+                }
+            }
+        }
+    }
+
+    /// The second derivative of the power of the factors by one entry of configuration, velocity or acceleration and along the
+    /// direction, the mean of both orders.
+    fn mixed(&self, state: &State, entry: usize) -> f64 {
+        let Point { lambda, along, .. } = &self.point;
+        let nv = lambda.len();
+        let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
+        unit[entry / nv][entry % nv] = 1.0;
+        let slope = |state: &State, along: &[Vec<f64>; 3]| {
+            let all = (0..nv)
+                .fold(state.q.clone(), |q, k| kane::imaginary_step(self.spec, &q, k, STEP * along[0][k]));
+            let add = |list: &[C], rates: &[f64]| -> Vec<C> {
+                list.iter().zip(rates).map(|(x, rate)| x + C::new(0.0, STEP * rate)).collect()
+            };
+            let stepped = State { q: all, v: add(&state.v, &along[1]), a: add(&state.a, &along[2]) };
+            kane::power(self.spec, &stepped, lambda).im / STEP
+        };
+        let difference = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
+            let at = |h: f64| {
+                let add = |list: &[C], rates: &[f64]| -> Vec<C> {
+                    list.iter().zip(rates).map(|(x, rate)| x + real(h * rate)).collect()
+                };
+                let q = kane::moved(self.spec, &state.q, &outer[0], h);
+                slope(&State { q, v: add(&state.v, &outer[1]), a: add(&state.a, &outer[2]) }, inner)
+            };
+            let part = |h: f64| at(h) - at(-h);
+            (part(H) * 45.0 - part(2.0 * H) * 9.0 + part(3.0 * H)) / (60.0 * H)
+        };
+        (difference(along, &unit) + difference(&unit, along)) * 0.5
     }
 }
