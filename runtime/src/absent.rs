@@ -108,13 +108,13 @@ pub trait HasSlipping<'a> {}
 )]
 pub trait HasRegularMass<'a> {}
 
-/// A mechanism whose outputs of accelerations have Jacobians: none so far.
+/// A mechanism whose outputs of accelerations and reactions have Jacobians: none.
 #[diagnostic::on_unimplemented(
-    message = "an output of accelerations or reactions has no Jacobian yet",
+    message = "an output of accelerations or reactions has no Jacobian",
     label = "this output has none",
-    note = "outputs of the configuration and of velocities have one"
+    note = "with the word `derivatives`, an output of accelerations has a function of its name with `_derivatives` after it; one of reactions has none yet"
 )]
-pub trait HasJacobiansOfAccelerations<'a> {}
+pub trait HasJacobian<'a> {}
 
 /// A mechanism that knows its frames: not one that is prepared.
 #[diagnostic::on_unimplemented(

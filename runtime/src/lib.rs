@@ -82,6 +82,7 @@ pub use lanes::Lanes;
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
+pub use outputs::{OutputDerivatives, OutputJacobians, Outputs};
 pub use rheonomic::{At, Rheonomic, at};
 pub use second::{InputSecondOrder, RheonomicSecondDerivatives, SecondDerivatives, SecondOrder};
 #[doc(inline)]
@@ -103,6 +104,7 @@ pub mod integrate;
 pub mod lanes;
 mod lie;
 mod mechanism;
+mod outputs;
 mod private;
 mod product;
 mod rheonomic;
@@ -154,7 +156,7 @@ pub mod __private {
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,
     };
-    pub use crate::private::{constant, put_block};
+    pub use crate::private::{constant, put_block, put_rows};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use crate::second::forward_second_derivatives;
     pub use nalgebra::{

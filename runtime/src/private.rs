@@ -34,6 +34,20 @@ pub fn put_block<T: Real, const N: usize, const K: usize>(
     }
 }
 
+/// Puts rows into a matrix of more of them.
+#[inline(always)]
+pub fn put_rows<T: Real, const ROWS: usize, const R: usize, const C: usize>(
+    into: &mut SMatrix<T, ROWS, C>,
+    first: usize,
+    rows: &SMatrix<T, R, C>,
+) {
+    for (column, from) in into.data.0.iter_mut().zip(&rows.data.0) {
+        for (entry, value) in column.iter_mut().skip(first).zip(from) {
+            *entry = *value;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -16,7 +16,7 @@ pub mod resolve;
 pub mod syntax;
 pub mod vectorise;
 
-use catalogue::{ConstraintFacts, Facts, JACOBIAN};
+use catalogue::{BY_PARAMETERS, ConstraintFacts, DERIVATIVES, Facts, JACOBIAN};
 use diag::{Diagnostic, Diagnostics};
 use emit::{Constraints, Emitted, Interface, emit_failed, emit_mechanism};
 use expr::Graph;
@@ -184,7 +184,22 @@ fn check_outputs(
     cx: &mut Diagnostics,
 ) -> bool {
     let outputs = &description.outputs;
-    let jacobian = |name: &str| format!("{name}{JACOBIAN}");
+    let suffixes = [
+        (JACOBIAN, "is the Jacobian", true),
+        (DERIVATIVES, "gives the derivatives", facts.requests.derivatives),
+        (BY_PARAMETERS, "gives the derivatives by parameters", facts.requests.sensitivities),
+    ];
+    let derived = |name: &str| {
+        let asked = suffixes.iter().filter(|(.., asked)| *asked);
+        let names: Vec<String> = asked.map(|(suffix, ..)| format!("{name}{suffix}")).collect();
+        names.into_iter()
+    };
+    let origin = |name: &str| {
+        let asked = suffixes.iter().filter(|(.., asked)| *asked);
+        asked
+            .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
+            .find(|((suffix, ..), other)| name.strip_suffix(suffix) == Some(other.as_str()))
+    };
     let is_taken = |name: &str| {
         let other = outputs.iter().map(|output| output.name.text.as_str());
         let mut in_lanes = other.filter(|_| facts.requests.batch).map(|other| format!("{other}_lanes"));
@@ -192,10 +207,9 @@ fn check_outputs(
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
-        if let Some(other) = outputs.iter().find(|other| jacobian(&other.name.text) == *text) {
-            let other = &other.name.text;
-            cx.error(name.place.clone(), format!("`{text}` is the Jacobian of the output `{other}`"))
-                .help("each output has a function of its name and one of its name with `_jacobian`");
+        if let Some(((suffix, what, _), other)) = origin(text) {
+            cx.error(name.place.clone(), format!("`{text}` {what} of the output `{other}`"))
+                .help(format!("each output has a function of its name and one of its name with `{suffix}`"));
         } else if description.inertias == syntax::Inertias::None && functions.iter().all(|f| f.name != *text)
         {
             cx.error(
@@ -214,10 +228,10 @@ fn check_outputs(
                 format!("the name `{text}` is taken: every mechanism has this function"),
             )
             .help("choose another name for the output");
-        } else if is_taken(&jacobian(text)) {
+        } else if let Some(other) = derived(text).find(|other| is_taken(other)) {
             cx.error(
                 name.place.clone(),
-                format!("the name `{text}` is taken: every mechanism has `{}`", jacobian(text)),
+                format!("the name `{text}` is taken: every mechanism has `{other}`"),
             )
             .help("choose another name for the output");
         }

@@ -108,9 +108,15 @@ fn expected(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
         names.extend((facts.requests.batch && row.batched).then(|| format!("{}_lanes", row.name)));
     }
     for output in outputs {
-        names.extend([output.clone(), format!("{output}_jacobian")]);
-        let lanes = [format!("{output}_lanes"), format!("{output}_jacobian_lanes")];
-        names.extend(lanes.into_iter().filter(|_| facts.requests.batch));
+        for (suffix, asked) in [
+            ("", true),
+            ("_jacobian", true),
+            ("_derivatives", facts.requests.derivatives),
+            ("_by_parameters", facts.requests.sensitivities),
+        ] {
+            names.extend(asked.then(|| format!("{output}{suffix}")));
+            names.extend((asked && facts.requests.batch).then(|| format!("{output}{suffix}_lanes")));
+        }
     }
     names
 }

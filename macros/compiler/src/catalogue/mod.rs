@@ -16,7 +16,7 @@ mod written;
 
 pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, Facts, Need};
-pub use outputs::{JACOBIAN, REACTION, output, reaction};
+pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, output, reaction};
 pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 

@@ -12,6 +12,12 @@ pub const REACTION: &str = "__reaction_";
 /// What stands after an output's name in that of its Jacobian.
 pub const JACOBIAN: &str = "_jacobian";
 
+/// What stands after an output's name in that of its derivatives.
+pub const DERIVATIVES: &str = "_derivatives";
+
+/// What stands after an output's name in that of its derivatives by the parameters.
+pub const BY_PARAMETERS: &str = "_by_parameters";
+
 fn of_size(size: usize) -> Shape {
     if size == 1 { Shape::Scalar } else { Shape::Vector(size) }
 }
@@ -28,14 +34,16 @@ fn declared(
     Declared { id, name, docs, arguments, shape }
 }
 
-/// The function of an output, and its Jacobian unless it depends on accelerations.
+/// The function of an output, its Jacobian unless it depends on accelerations, and the derivatives that are asked for.
 pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     let mut arguments = vec![Q];
     arguments.extend((uses.velocities || uses.accelerations).then_some(V));
     arguments.extend(uses.accelerations.then_some(A));
     arguments.extend(uses.inputs.then_some(U));
     let about = match uses.accelerations {
-        true => format!("The output `{name}`, of given accelerations. It has no Jacobian yet."),
+        true => format!(
+            "The output `{name}`, of given accelerations. Its derivatives are functions of the word `derivatives`."
+        ),
         false => format!("The output `{name}`."),
     };
     let mut functions =
@@ -48,6 +56,25 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
         let docs = vec![format!("Jacobian of the output `{name}`: {what}.")];
         let shape = Shape::Matrix(size, f.nv);
         functions.push(declared(Id::OutputJacobian, format!("{name}{JACOBIAN}"), &arguments, shape, docs, f));
+    }
+    if f.requests.derivatives {
+        let docs = vec![
+            format!(
+                "Derivatives of the output `{name}` by configuration, velocity, acceleration and input, each while the others stay."
+            ),
+            "Column `i` of the one by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.".to_string(),
+        ];
+        let shape = Shape::Jacobians(size, f.nv, f.nu);
+        let name = format!("{name}{DERIVATIVES}");
+        functions.push(declared(Id::OutputDerivatives, name, &arguments, shape, docs, f));
+    }
+    if f.requests.sensitivities {
+        let docs = vec![format!(
+            "Derivatives of the output `{name}` by the parameters: column `k` by the one that is named `PARAMETERS[k]`."
+        )];
+        let shape = Shape::Matrix(size, f.parameters);
+        let name = format!("{name}{BY_PARAMETERS}");
+        functions.push(declared(Id::OutputByParameters, name, &arguments, shape, docs, f));
     }
     functions
 }

@@ -34,6 +34,8 @@ pub enum Id {
     CentroidalMomentumBias,
     Output,
     OutputJacobian,
+    OutputDerivatives,
+    OutputByParameters,
     Reaction,
     MassMatrixInverse,
     CoriolisMatrix,

@@ -87,6 +87,8 @@ pub enum Shape {
     /// Second derivatives of forces of inputs by configuration twice, configuration and velocity, velocity twice, configuration
     /// and input, velocity and input, input twice.
     InputHessian(usize, usize),
+    /// Derivatives of an output of so many rows by configuration, velocity, acceleration and input.
+    Jacobians(usize, usize, usize),
     /// `M⁻¹`. The outputs are what [`InverseForm`] says.
     Inverse(usize),
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
@@ -134,6 +136,7 @@ impl Shape {
             Shape::Matrix(m, n) => m * n,
             Shape::Pair(n) => 2 * n * n,
             Shape::Hessian(n) => 4 * n * n,
+            Shape::Jacobians(rows, n, m) => rows * (3 * n + m),
             Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
             Shape::Inverse(n) => n * n + parts(n),
             Shape::Forward(n) => 3 * n * n + parts(n),

@@ -134,7 +134,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
             Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
             Id::SlippingResponse => plain(self.dynamics().slipping_response()),
-            Id::Output | Id::OutputJacobian | Id::Reaction => of(&outputs::values(model, declared)),
+            Id::Output
+            | Id::OutputJacobian
+            | Id::OutputDerivatives
+            | Id::OutputByParameters
+            | Id::Reaction => of(&outputs::values(model, declared)),
             Id::MassMatrixInverse => self.derivatives(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivatives(|d| plain(d.coriolis_matrix())),
             Id::InverseDynamicsDerivatives => self.derivatives(|d| plain(d.inverse_dynamics_derivatives())),

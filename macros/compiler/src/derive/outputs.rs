@@ -1,9 +1,10 @@
 //! Outputs: their functions, their Jacobians, and reactions.
 
-use crate::catalogue::{self, Declared, Facts, Id, JACOBIAN, REACTION};
+use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Declared, Facts, Id, JACOBIAN, REACTION};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::kinematics::{symbols_in, time_derivative};
+use crate::mechanics::derivatives::symbolic;
 use crate::mechanics::reactions;
 use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
@@ -35,6 +36,8 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
         Id::OutputJacobian => declared.name.strip_suffix(JACOBIAN),
+        Id::OutputDerivatives => declared.name.strip_suffix(DERIVATIVES),
+        Id::OutputByParameters => declared.name.strip_suffix(BY_PARAMETERS),
         _ => Some(declared.name.as_str()),
     };
     let Some(output) = model.outputs.iter().find(|output| Some(output.name.as_str()) == name) else {
@@ -43,8 +46,31 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     match declared.id {
         Id::Reaction => reactions::resolved(model, &output.values),
         Id::OutputJacobian => jacobian(model, output),
+        Id::OutputDerivatives => derivatives(model, &output.values),
+        Id::OutputByParameters => by_parameters(model, &output.values),
         _ => output.values.clone(),
     }
+}
+
+/// By configuration, velocity, acceleration and input, each column by column.
+fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let by_state = symbolic::derivatives(model, values);
+    let blocks = [
+        (by_state.by_q, model.nv()),
+        (by_state.by_v, model.nv()),
+        (symbolic::by_acceleration(model, values), model.nv()),
+        (symbolic::by_input(model, values), model.nu()),
+    ];
+    let columns = |(rows, width): &(Vec<Vec<Expr<'g>>>, usize)| -> Vec<Expr<'g>> {
+        (0..*width).flat_map(|k| rows.iter().map(move |row| row[k])).collect()
+    };
+    blocks.iter().flat_map(columns).collect()
+}
+
+fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let by = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let column = |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.of(*e)).collect() };
+    (0..model.parameters.len()).flat_map(|k| column(by(k))).collect()
 }
 
 /// The Jacobian column by column: how an output changes with the velocities, or how its rate does if it depends on the

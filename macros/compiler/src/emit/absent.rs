@@ -2,7 +2,7 @@
 
 use super::interface::{ALLOW, Absent, Head, Interface};
 use super::signature::Signature;
-use crate::catalogue::{self, Facts, JACOBIAN, Need, Row};
+use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Facts, JACOBIAN, Need, Row};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -22,11 +22,16 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
         Some(Absent { reason: need.reason()?, functions: names, constants })
     };
     let mut all: Vec<Absent> = catalogue::absent(facts).into_iter().filter_map(of_need).collect();
-    all.push(Absent {
-        reason: "HasJacobiansOfAccelerations",
-        functions: outputs.iter().map(|name| format!("{name}{JACOBIAN}")).collect(),
-        constants: Vec::new(),
-    });
+    let of_outputs =
+        |suffix: &str| -> Vec<String> { outputs.iter().map(|name| format!("{name}{suffix}")).collect() };
+    for (suffix, reason, asked) in [
+        (JACOBIAN, "", true),
+        (DERIVATIVES, "AsksForDerivatives", facts.requests.derivatives),
+        (BY_PARAMETERS, "AsksForSensitivities", facts.requests.sensitivities),
+    ] {
+        let reason = if asked { "HasJacobian" } else { reason };
+        all.push(Absent { reason, functions: of_outputs(suffix), constants: Vec::new() });
+    }
     // Outputs may have such a name.
     for absent in &mut all {
         absent.functions.retain(|name| functions.iter().all(|f| f.name != *name));

@@ -537,6 +537,7 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         Shape::Inverse(_)
         | Shape::Pair(_)
         | Shape::Hessian(_)
+        | Shape::Jacobians(..)
         | Shape::InputHessian(..)
         | Shape::Forward(_)
         | Shape::Linear(..)

@@ -16,7 +16,7 @@ use super::manifold::write_manifold;
 use super::prepared::{Content, write_prepared};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
-use super::{lanes, reactions};
+use super::{lanes, measurements, reactions};
 use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
 use crate::expr::print::Written;
@@ -91,6 +91,13 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
     bodies.write(&mut emitted.text, &interface.shell.ident.to_string(), &Head::new(interface, &s));
     write_absent(&mut emitted.text, interface, &s);
+    measurements::write_impls(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        &output.functions,
+        interface,
+        &s,
+    );
     if let Some(prepared) = &output.prepared {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
         write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
@@ -134,6 +141,13 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     );
     let mut emitted = assemble(interface, &s, &methods, &[], "");
     write_absent(&mut emitted.text, interface, &s);
+    measurements::write_impls(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        functions,
+        interface,
+        &s,
+    );
     if interface.facts.requests.prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
     }

@@ -85,6 +85,13 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => parts(2),
         Shape::Forward(_) | Shape::CalledForward(_) => parts(3),
         Shape::Hessian(_) => parts(4),
+        Shape::Jacobians(..) => {
+            let all = parts(0);
+            let all = all.trim_end_matches("()");
+            let field = |name: &str| format!("{name}: lane_by_lane(|k| all[k].{name})");
+            let fields = ["by_q", "by_v", "by_a", "by_u"].map(field).join(", ");
+            format!("{all}::linkwork::OutputJacobians {{ {fields} }}")
+        }
         Shape::InputHessian(..) => parts(6),
         Shape::Accelerated(_) | Shape::Array(_) | Shape::Record(_) | Shape::Symmetric(_) => return None,
     };

@@ -50,6 +50,16 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
     let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
+        Shape::Jacobians(rows, n, m) => {
+            let by = |k: usize| outputs.matrix(k * rows * n, rows, n);
+            let by_u = outputs.matrix(3 * rows * n, rows, m);
+            format!(
+                "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
+                by(0),
+                by(1),
+                by(2)
+            )
+        }
         Shape::Hessian(n) => {
             format!("({}, {}, {}, {})\n", square(0, n), square(1, n), square(2, n), square(3, n))
         }

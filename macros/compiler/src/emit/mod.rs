@@ -18,6 +18,7 @@ mod item;
 mod lanes;
 mod manifold;
 mod matrices;
+mod measurements;
 mod pieces;
 mod prepared;
 mod reactions;

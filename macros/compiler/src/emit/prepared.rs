@@ -10,7 +10,7 @@ use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
 use super::manifold::write_manifold;
 use super::signature::Signature;
-use super::{constraints, differentiable, lanes, reactions};
+use super::{constraints, differentiable, lanes, measurements, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
 use crate::mechanism::Chart;
@@ -57,6 +57,7 @@ pub fn write_prepared(
     write_impls(&head, out, &name, &methods, i, s);
     bodies.write(out, &name, &head);
     write_absent_of_prepared(out, &name, i, s);
+    measurements::write_impls(out, &name, functions, i, s);
 
     let Head { generics, arguments, bounds } = &head;
     let _ = writeln!(

@@ -56,6 +56,6 @@ fn about(s: &Signature<'_>) -> String {
         _ => "in the motion under the inputs",
     };
     format!(
-        "{motion}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no Jacobian yet."
+        "{motion}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
     )
 }

@@ -107,6 +107,7 @@ impl Signature<'_> {
             Shape::Symmetric(_) => "()".to_string(),
             Shape::Pair(_)
             | Shape::Hessian(_)
+            | Shape::Jacobians(..)
             | Shape::InputHessian(..)
             | Shape::Forward(_)
             | Shape::Linear(..)
@@ -146,6 +147,9 @@ fn several(shape: Shape, s: &Signature<'_>) -> String {
     let square = |n| s.shape(Shape::Square(n));
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square(n)),
+        Shape::Jacobians(rows, n, m) => {
+            format!("::linkwork::OutputJacobians<{}, {rows}, {n}, {m}>", s.scalar.name())
+        }
         Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square(n)),
         Shape::InputHessian(n, m) => {
             let mixed = s.shape(Shape::Matrix(n, m));

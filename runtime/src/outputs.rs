@@ -1,0 +1,125 @@
+//! Outputs of a mechanism for generic code: what its sensors measure, and how that changes.
+
+use crate::{LinearMotion, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// All outputs of a mechanism in one vector of `NY` numbers, but for those that name reactions: what a generic estimator compares
+/// with measurements. `#[mechanism]` implements it for mechanisms with `#[output(…)]`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no outputs, or another number of them",
+    note = "`#[output(expression)] name: Scalar` declares one; reactions are left out"
+)]
+pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: usize> {
+    /// The scalar type.
+    type Scalar: Real;
+
+    /// The name of every entry: that of the output, with `.x`, `.y` and `.z` for the components of a vector.
+    const OUTPUTS: [&'static str; NY];
+
+    /// The outputs at the time `t` (which matters where a function of the mechanism depends on it), of the configuration `q`, the
+    /// velocity `v`, the acceleration `a` and the inputs `u`, in their own units.
+    fn outputs(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SVector<Self::Scalar, NY>;
+}
+
+/// Derivatives of all outputs. `#[mechanism(…, derivatives)]` implements it.
+#[diagnostic::on_unimplemented(
+    message = "the outputs of `{Self}` have no derivatives",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`"
+)]
+pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, const NY: usize>:
+    Outputs<NQ, NV, NU, NY>
+{
+    /// The derivatives of [`outputs`](Outputs::outputs), each by one argument while the others stay.
+    fn output_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> OutputJacobians<Self::Scalar, NY, NV, NU>;
+}
+
+/// Derivatives of outputs of `NY` numbers by configuration, velocity, acceleration and inputs, each while the others stay. Column
+/// `i` of the one by `q` is along `q ⊕ ε eᵢ`, for ball and free joints in body axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputJacobians<T, const NY: usize, const NV: usize, const NU: usize> {
+    /// By configuration, per m and rad.
+    pub by_q: SMatrix<T, NY, NV>,
+    /// By velocity, per m/s and rad/s.
+    pub by_v: SMatrix<T, NY, NV>,
+    /// By acceleration, per m/s² and rad/s².
+    pub by_a: SMatrix<T, NY, NV>,
+    /// By inputs.
+    pub by_u: SMatrix<T, NY, NU>,
+}
+
+impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians<T, NY, NV, NU> {
+    /// All zero.
+    pub fn zeros() -> Self {
+        let (state, by_u) = (SMatrix::zeros(), SMatrix::zeros());
+        Self { by_q: state, by_v: state, by_a: state, by_u }
+    }
+
+    /// Puts those of other outputs into the rows from `first` on; rows that do not fit are left out.
+    pub fn put_rows<const R: usize>(&mut self, first: usize, other: &OutputJacobians<T, R, NV, NU>) {
+        crate::private::put_rows(&mut self.by_q, first, &other.by_q);
+        crate::private::put_rows(&mut self.by_v, first, &other.by_v);
+        crate::private::put_rows(&mut self.by_a, first, &other.by_a);
+        crate::private::put_rows(&mut self.by_u, first, &other.by_u);
+    }
+
+    /// How the outputs change with state and inputs where the acceleration is that of the motion: `∂y/∂q + ∂y/∂a ∂v̇/∂q`, and so
+    /// on. Nothing is left by the acceleration.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    ///
+    /// /// A cart with an accelerometer, pushed and held by a spring.
+    /// #[mechanism(derivatives)]
+    /// struct Cart {
+    ///     #[body(mass = 2)]
+    ///     cart: Body,
+    ///     #[joint(ground -> cart, along = x)]
+    ///     rail: Sleeve,
+    ///     #[acts(on = rail, stiffness = 8)]
+    ///     spring: Spring,
+    ///     #[acts(on = rail)]
+    ///     push: Force,
+    ///     #[output(dot(a(cart / ground / ground), x))]
+    ///     accelerometer: Scalar,
+    /// }
+    ///
+    /// let (q, v, u) = ([0.1].into(), [0.0].into(), [1.0].into());
+    /// let motion = Cart {}.linear_motion(&q, &v, &u);
+    /// let measured = Cart {}.accelerometer_derivatives(&q, &v, &motion.acceleration).in_motion(&motion);
+    /// // −k / m by the position, 1 / m by the push.
+    /// assert!((measured.by_q[0] + 4.0).abs() < 1e-12 && (measured.by_u[0] - 0.5).abs() < 1e-12);
+    /// ```
+    pub fn in_motion(&self, motion: &LinearMotion<T, NV, NU>) -> Self {
+        Self {
+            by_q: self.by_q + self.by_a * motion.by_q,
+            by_v: self.by_v + self.by_a * motion.by_v,
+            by_a: SMatrix::zeros(),
+            by_u: self.by_u + self.by_a * motion.by_u,
+        }
+    }
+
+    /// `C` of `δy = C x + D δu`, with `x` the displacements, then the changes of velocity; `D` is `by_u`. Before, accelerations
+    /// follow from the motion ([`in_motion`](Self::in_motion)). `NX` is `2 NV`, which the type that is asked for says; any other
+    /// does not compile.
+    pub fn c<const NX: usize>(&self) -> SMatrix<T, NY, NX> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many columns as there are velocities") };
+        SMatrix::from_fn(|i, j| {
+            let entry = if j < NV { self.by_q.get((i, j)) } else { self.by_v.get((i, j - NV)) };
+            entry.copied().unwrap_or(T::zero())
+        })
+    }
+}

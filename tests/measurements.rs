@@ -1,0 +1,148 @@
+//! Outputs as measurements: their derivatives against differences, alone and in the motion, and all of them as one vector.
+
+use linkwork::prelude::*;
+use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, index_of};
+use support::random::Random;
+
+/// A flying body with a load on a ball joint, with gyroscope, accelerometer, an altimeter, a current and a camera.
+#[mechanism(gravity = -9.81 * z, derivatives, sensitivities, batch, prepare)]
+struct Carrier {
+    mass: f64,
+    reach: f64,
+    #[body(mass = mass, com = 0.02 * z, inertia = diagonal(0.01 * mass, 0.012 * mass, 0.02 * mass))]
+    frame: Body,
+    #[body(mass = 0.3, com = -reach * z, inertia = diagonal(0.004, 0.005, 0.001))]
+    load: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[joint(frame.at(-0.05 * z) -> load)]
+    hook: Ball,
+    #[acts(on = frame.at(0.2 * x), along = frame.z)]
+    front: Force,
+    #[acts(on = frame, about = frame.z)]
+    drag: Torque,
+    #[output(omega(frame / ground), resolved_in = frame)]
+    gyroscope: Vector,
+    #[output(a(frame.at(0.1 * y) / ground / ground) + 9.81 * z, resolved_in = frame)]
+    accelerometer: Vector,
+    #[output(dot(r(load.at(-reach * z) / ground), z))]
+    altitude: Scalar,
+    #[output(2 * front + drag * drag)]
+    current: Scalar,
+    #[output(v(load.at(-reach * z) / frame / frame), resolved_in = frame)]
+    camera: Vector,
+}
+
+/// A pendulum on a pivot that is driven, with a rate gyroscope on its bob.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Driven {
+    rate: f64,
+    #[point(at = 0.1 * sin(rate * t) * y)]
+    pivot: Point,
+    #[body(mass = 0.7, com = -0.3 * y, inertia = diagonal(0.01, 0.01, 0.02))]
+    bob: Body,
+    #[joint(pivot -> bob, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[output(dot(a(bob.at(-0.5 * y) / ground / ground), bob.x))]
+    swing: Scalar,
+    #[output(sin(rate * t) * rate(hinge))]
+    mixed: Scalar,
+}
+
+const TOLERANCE: f64 = 1e-9;
+
+/// A column of slopes for every direction, by differences of sixth order.
+fn slopes<const N: usize, const NY: usize>(
+    of: impl Fn(&SVector<f64, N>) -> SVector<f64, NY>,
+) -> SMatrix<f64, NY, N> {
+    let step = 2e-3;
+    let columns: [SVector<f64, NY>; N] = std::array::from_fn(|k| {
+        let at = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let part = |s: f64| at(s) - at(-s);
+        (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
+    });
+    SMatrix::from_fn(|i, j| columns[j][i])
+}
+
+fn close<const R: usize, const C: usize>(
+    what: &str,
+    found: &SMatrix<f64, R, C>,
+    expected: &SMatrix<f64, R, C>,
+) {
+    let scale = expected.amax().max(1.0);
+    assert!((found - expected).amax() <= TOLERANCE * scale, "{what}: {found}{expected}");
+}
+
+fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(m: &M)
+where
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64> + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+    M: Outputs<NQ, NV, NU, NY, Scalar = f64>,
+{
+    for seed in 0..3 {
+        let mut random = Random::new(seed);
+        let q = m.integrate(&m.neutral(), &random.vector(1.2));
+        let (v, a, u) = (random.vector(2.0), random.vector(3.0), random.vector(4.0));
+        let t = random.uniform(1.0);
+        let found = m.output_derivatives(t, &q, &v, &a, &u);
+        close("by q", &found.by_q, &slopes(|d| m.outputs(t, &m.integrate(&q, d), &v, &a, &u)));
+        close("by v", &found.by_v, &slopes(|d| m.outputs(t, &q, &(v + d), &a, &u)));
+        close("by a", &found.by_a, &slopes(|d| m.outputs(t, &q, &v, &(a + d), &u)));
+        close("by u", &found.by_u, &slopes(|d| m.outputs(t, &q, &v, &a, &(u + d))));
+
+        // In the motion accelerations follow from state and inputs.
+        let now = at(m, t);
+        let measured = |q: &_, v: &_, u: &_| {
+            let tau = Mechanism::generalized_forces(&now, q, v, u);
+            m.outputs(t, q, v, &Mechanism::forward_dynamics(&now, q, v, &tau), u)
+        };
+        let motion = now.linear_motion(&q, &v, &u);
+        let found = m.output_derivatives(t, &q, &v, &motion.acceleration, &u).in_motion(&motion);
+        close("by q in motion", &found.by_q, &slopes(|d| measured(&m.integrate(&q, d), &v, &u)));
+        close("by v in motion", &found.by_v, &slopes(|d| measured(&q, &(v + d), &u)));
+        close("by u in motion", &found.by_u, &slopes(|d| measured(&q, &v, &(u + d))));
+        assert!(found.by_a.amax() == 0.0);
+    }
+}
+
+#[test]
+fn measurements_change_as_their_derivatives_say() {
+    let carrier = Carrier { mass: 1.3, reach: 0.4 };
+    check(&carrier);
+    check(&carrier.prepare());
+    check(&Driven { rate: 3.0 });
+}
+
+#[test]
+fn measurements_change_with_parameters() {
+    let mut random = Random::new(5);
+    let m = Carrier { mass: 1.3, reach: 0.4 };
+    let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
+    let (v, a) = (random.vector(1.0), random.vector(1.0));
+    assert_eq!(Carrier::PARAMETERS, ["mass", "reach"]);
+    let at = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
+    close("altitude", &m.altitude_by_parameters(&q), &slopes(|d| SVector::from([at(d).altitude(&q)])));
+    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| at(d).camera(&q, &v)));
+    close(
+        "accelerometer",
+        &m.accelerometer_by_parameters(&q, &v, &a),
+        &slopes(|d| at(d).accelerometer(&q, &v, &a)),
+    );
+}
+
+#[test]
+fn all_outputs_stand_in_one_vector() {
+    type All = [&'static str; 11];
+    const NAMES: All = <Carrier as Outputs<11, 9, 2, 11>>::OUTPUTS;
+    assert_eq!(NAMES[0], "gyroscope.x");
+    assert_eq!(index_of(&NAMES, "current"), Some(7));
+    let mut random = Random::new(6);
+    let m = Carrier { mass: 1.3, reach: 0.4 };
+    let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
+    let (v, a, u) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
+    let all: SVector<f64, 11> = m.outputs(0.0, &q, &v, &a, &u);
+    assert_eq!(all.fixed_rows::<3>(3), m.accelerometer(&q, &v, &a));
+    assert_eq!(all[6], m.altitude(&q));
+    assert_eq!(all[7], m.current(&q, &u));
+}
