@@ -30,7 +30,11 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
         (BY_PARAMETERS, "AsksForSensitivities", facts.requests.sensitivities),
     ] {
         let reason = if asked { "HasJacobian" } else { reason };
-        all.push(Absent { reason, functions: of_outputs(suffix), constants: Vec::new() });
+        let mut functions = of_outputs(suffix);
+        if facts.requests.batch {
+            functions.extend(of_outputs(&format!("{suffix}_lanes")));
+        }
+        all.push(Absent { reason, functions, constants: Vec::new() });
     }
     // Outputs may have such a name.
     for absent in &mut all {
