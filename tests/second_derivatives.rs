@@ -2,7 +2,7 @@
 //! axes, driven motion, and inputs in body axes.
 
 use linkwork::prelude::*;
-use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives};
+use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives, discrete};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::{compile, read};
@@ -174,6 +174,45 @@ fn first_derivatives_change_as_second_ones_say() {
     check("carrier", &Carrier {}, 3.0);
     check("arm", &Panda, 5.0);
     check("quadruped", &Solo, 5.0);
+}
+
+/// Second derivatives of steps against differences of their Jacobians.
+fn check_steps<M, S, const NV: usize, const NU: usize>(name: &str, m: &M, method: &S, push: f64)
+where
+    M: RheonomicSecondDerivatives<NV, NV, NU, Scalar = f64>,
+    S: discrete::TwiceDifferentiableStep<f64>,
+{
+    let mut random = Random::new(11);
+    let (q, v) = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let (u, t) = (random.vector::<NU>(push), 0.3);
+    let factors = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let (qq, qv, vv, qu, vu, uu) =
+        discrete::second_order(m, method, t, &q, &v, &u, (&factors.0, &factors.1)).expect("it moves");
+    let gradient = |q: &_, v: &_, u: &_| {
+        discrete::transition(m, method, t, q, v, u).expect("it moves").adjoint(&factors.0, &factors.1)
+    };
+    let transposed =
+        |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
+    let by_q = transposed(slopes(|d: &SVector<f64, NV>| gradient(&(q + d), &v, &u).0));
+    let size = by_q.amax().max(1.0);
+    assert_block(&format!("{name}: qq"), &qq, &by_q, size);
+    let by_v = |d: &SVector<f64, NV>| gradient(&q, &(v + d), &u);
+    assert_block(&format!("{name}: qv"), &qv, &transposed(slopes(|d| by_v(d).0)), size);
+    assert_block(&format!("{name}: vv"), &vv, &transposed(slopes(|d| by_v(d).1)), size);
+    let by_u = |d: &SVector<f64, NU>| gradient(&q, &v, &(u + d));
+    let mixed = |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
+    assert_block(&format!("{name}: qu"), &qu, &mixed(slopes(|d| by_u(d).0)), size);
+    assert_block(&format!("{name}: vu"), &vu, &mixed(slopes(|d| by_u(d).1)), size);
+    let inputs = slopes(|d| by_u(d).2);
+    assert_block(&format!("{name}: uu"), &uu, &SMatrix::from_fn(|i, j| inputs[j][i]), size);
+}
+
+#[test]
+fn jacobians_of_steps_change_as_second_derivatives_say() {
+    check_steps("driven, Rk4", &Driven { rate: 3.0 }, &Rk4::step(0.05), 1.0);
+    check_steps("driven, Euler", &Driven { rate: 3.0 }, &SemiImplicitEuler::step(0.05), 1.0);
+    check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 5.0);
+    check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 5.0);
 }
 
 /// Operations of first and second derivatives of inverse dynamics.

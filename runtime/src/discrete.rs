@@ -40,6 +40,10 @@ use crate::private::{constant, to_f64};
 use crate::{At, Real, Rheonomic, at};
 use nalgebra::{SMatrix, SVector};
 
+mod second;
+
+pub use second::{TwiceDifferentiableStep, second_order};
+
 /// The state after one step of a method under inputs `u` that are held: configuration and velocity.
 ///
 /// With constraints the state is brought onto them as in a simulation. The method's own memory begins anew.

@@ -104,6 +104,7 @@ pub mod integrate;
 pub mod lanes;
 mod lie;
 mod mechanism;
+pub mod optimal;
 mod outputs;
 mod private;
 mod product;

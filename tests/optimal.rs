@@ -1,0 +1,231 @@
+//! The recursion of optimal control: against dense algebra, and as differential dynamic programming, whose iterations converge
+//! quadratically.
+
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::optimal::{Indefinite, Policy, Quadratic, Value, backward};
+use linkwork::prelude::*;
+use linkwork::{RheonomicSecondDerivatives, discrete};
+use support::random::Random;
+
+/// Two links in a vertical plane with a motor at the shoulder alone.
+#[mechanism(gravity = -9.81 * y, second_derivatives)]
+struct Pendubot {
+    #[body(mass = 0.6, com = -0.3 * y, inertia = diagonal(0.02, 0.01, 0.02))]
+    upper: Body,
+    #[body(mass = 0.4, com = -0.25 * y, inertia = diagonal(0.01, 0.01, 0.01))]
+    lower: Body,
+    #[joint(ground -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(-0.6 * y) -> lower, about = z)]
+    elbow: Pin,
+    #[acts(on = shoulder)]
+    motor: Torque,
+}
+
+/// A flying body with two forces.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Flyer {
+    #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
+    frame: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[acts(on = frame.at(0.2 * x), along = frame.z)]
+    front: Force,
+    #[acts(on = frame.at(-0.2 * x + 0.1 * y), along = frame.z)]
+    back: Force,
+}
+
+fn positive<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
+    let m = SMatrix::<f64, N, N>::from_fn(|_, _| random.uniform(1.0));
+    m * m.transpose() + SMatrix::identity() * 0.1
+}
+
+/// The blocks give what dense matrices do.
+#[test]
+fn blocks_obey_riccatis_equation() {
+    let mut random = Random::new(1);
+    let m = Flyer {};
+    let q = m.integrate(&Flyer::neutral(&m), &random.vector(1.0));
+    let (v, u) = (random.vector(1.0), random.vector(3.0));
+    let step = discrete::transition(&m, &Rk4::step(0.1), 0.0, &q, &v, &u).expect("it moves");
+    let (a, b) = (step.a::<12>(), step.b::<12>());
+    let (s, c, r) = (positive::<12>(&mut random), positive::<14>(&mut random), 0.3);
+    let (g, w) = (random.vector::<14>(1.0), random.vector::<12>(1.0));
+    let block =
+        |m: &SMatrix<f64, 14, 14>, i: usize, j: usize| m.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
+    let mixed = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
+    let cost = Quadratic {
+        q: g.fixed_rows::<6>(0).into_owned(),
+        v: g.fixed_rows::<6>(6).into_owned(),
+        u: g.fixed_rows::<2>(12).into_owned(),
+        qq: block(&c, 0, 0),
+        qv: block(&c, 0, 1),
+        vv: block(&c, 1, 1),
+        qu: mixed(0),
+        vu: mixed(1),
+        uu: c.fixed_view::<2, 2>(12, 12).into_owned(),
+    };
+    let part = |i: usize, j: usize| s.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
+    let after = Value {
+        q: w.fixed_rows::<6>(0).into_owned(),
+        v: w.fixed_rows::<6>(6).into_owned(),
+        qq: part(0, 0),
+        qv: part(0, 1),
+        vv: part(1, 1),
+    };
+    for r in [0.0, r] {
+        let (policy, found) = backward(&step, &cost, &after, r).expect("it is convex");
+        let xx = c.fixed_view::<12, 12>(0, 0) + a.transpose() * s * a;
+        let ux = c.fixed_view::<2, 12>(12, 0) + b.transpose() * s * a;
+        let uu = c.fixed_view::<2, 2>(12, 12) + b.transpose() * s * b;
+        let (x, du) = (g.fixed_rows::<12>(0) + a.transpose() * w, g.fixed_rows::<2>(12) + b.transpose() * w);
+        let inverse = (uu + SMatrix::<f64, 2, 2>::identity() * r).try_inverse().expect("it is positive");
+        let (k, gain) = (-inverse * du, -inverse * ux);
+        let scale = xx.amax();
+        assert!((policy.change - k).amax() < 1e-12 * k.amax());
+        assert!((policy.by_q - gain.fixed_view::<2, 6>(0, 0)).amax() < 1e-12 * gain.amax());
+        assert!((policy.by_v - gain.fixed_view::<2, 6>(0, 6)).amax() < 1e-12 * gain.amax());
+        assert!((policy.expected[0] - du.dot(&k)).abs() < 1e-12 * du.dot(&k).abs());
+        assert!((policy.expected[1] - 0.5 * k.dot(&(uu * k))).abs() < 1e-12 * du.dot(&k).abs());
+        // Costs to go under this policy, whatever it is.
+        let to_go = xx + gain.transpose() * uu * gain + gain.transpose() * ux + ux.transpose() * gain;
+        let slope = x + gain.transpose() * (uu * k + du) + ux.transpose() * k;
+        assert!((found.qq - to_go.fixed_view::<6, 6>(0, 0)).amax() < 1e-12 * scale);
+        assert!((found.qv - to_go.fixed_view::<6, 6>(0, 6)).amax() < 1e-12 * scale);
+        assert!((found.vv - to_go.fixed_view::<6, 6>(6, 6)).amax() < 1e-12 * scale);
+        assert!((found.q - slope.fixed_rows::<6>(0)).amax() < 1e-12 * scale);
+        assert!((found.v - slope.fixed_rows::<6>(6)).amax() < 1e-12 * scale);
+    }
+}
+
+#[test]
+fn costs_that_are_not_convex_are_errors() {
+    let step = discrete::transition(
+        &Pendubot {},
+        &Rk4::step(0.01),
+        0.0,
+        &[0.1, 0.2].into(),
+        &[0.0, 0.0].into(),
+        &[0.0].into(),
+    );
+    let (step, mut cost) = (step.expect("it moves"), Quadratic::zeros());
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        cost.uu[0] = bad;
+        assert_eq!(backward(&step, &cost, &Value::zeros(), 0.0), Err(Indefinite { input: 0 }), "{bad}");
+    }
+}
+
+const STEPS: usize = 60;
+type State = (SVector<f64, 2>, SVector<f64, 2>);
+
+/// A problem of the pendubot: from hanging at rest to a position, with costs on the way.
+struct Problem {
+    method: SemiImplicitEuler<f64>,
+    goal: SVector<f64, 2>,
+}
+
+impl Problem {
+    fn total(&self, states: &[State], inputs: &[SVector<f64, 1>]) -> f64 {
+        let (q, v) = states[STEPS];
+        let effort: f64 = inputs.iter().map(|u| 0.5 * 1e-3 * u[0] * u[0]).sum();
+        effort + 50.0 * (q - self.goal).norm_squared() + 5.0 * v.norm_squared()
+    }
+
+    fn last(&self, (q, v): &State) -> Value<f64, 2> {
+        let one = SMatrix::<f64, 2, 2>::identity();
+        Value { q: (q - self.goal) * 100.0, v: v * 10.0, qq: one * 100.0, vv: one * 10.0, ..Value::zeros() }
+    }
+
+    /// Policies from the last instant to the first; the largest component of the gradient by the inputs, too.
+    fn policies<M>(
+        &self,
+        m: &M,
+        states: &[State],
+        inputs: &[SVector<f64, 1>],
+        curved: bool,
+    ) -> Option<(Vec<Policy<f64, 2, 1>>, f64)>
+    where
+        M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
+    {
+        let (mut to_go, mut policies, mut slope) = (self.last(&states[STEPS]), Vec::new(), 0.0_f64);
+        // The gradient along the trajectory itself: factors of the curvature, and what is zero at the optimum.
+        let mut adjoint = (to_go.q, to_go.v);
+        for ((q, v), u) in states.iter().zip(inputs).rev() {
+            let step = discrete::transition(m, &self.method, 0.0, q, v, u).expect("it moves");
+            let mut cost = Quadratic::zeros();
+            (cost.u, cost.uu[0]) = (u * 1e-3, 1e-3);
+            if curved {
+                let factors = (&adjoint.0, &adjoint.1);
+                let curvature =
+                    discrete::second_order(m, &self.method, 0.0, q, v, u, factors).expect("it moves");
+                cost = cost.with_curvature(&curvature);
+            }
+            let policy;
+            (policy, to_go) = backward(&step, &cost, &to_go, 0.0).ok()?;
+            let (by_q, by_v, by_u) = step.adjoint(&adjoint.0, &adjoint.1);
+            slope = slope.max((by_u + cost.u).amax());
+            adjoint = (by_q, by_v);
+            policies.push(policy);
+        }
+        policies.reverse();
+        Some((policies, slope))
+    }
+
+    fn rollout<M>(
+        &self,
+        m: &M,
+        states: &[State],
+        inputs: &[SVector<f64, 1>],
+        policies: &[Policy<f64, 2, 1>],
+        length: f64,
+    ) -> (Vec<State>, Vec<SVector<f64, 1>>)
+    where
+        M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
+    {
+        let (mut all, mut new) = (vec![states[0]], Vec::new());
+        for ((policy, u), (q, v)) in policies.iter().zip(inputs).zip(states) {
+            let (now_q, now_v) = all[all.len() - 1];
+            let change = policy.change * length + policy.by_q * (now_q - q) + policy.by_v * (now_v - v);
+            new.push(u + change);
+            all.push(discrete::step(m, &self.method, 0.0, &now_q, &now_v, &(u + change)).expect("it moves"));
+        }
+        (all, new)
+    }
+}
+
+/// With curvature the gradient's exponent doubles near the optimum; without, it shrinks by a factor each time.
+#[test]
+fn dynamic_programming_converges_quadratically() {
+    let m = Pendubot {};
+    let problem = Problem { method: SemiImplicitEuler::step(0.02), goal: [0.9, 0.4].into() };
+    let slopes = |curved_from: usize| {
+        let mut inputs = vec![SVector::from([0.5]); STEPS];
+        let mut states = vec![(SVector::from([0.0, 0.0]), SVector::from([0.0, 0.0]))];
+        for u in &inputs {
+            let (q, v) = states[states.len() - 1];
+            states.push(discrete::step(&m, &problem.method, 0.0, &q, &v, u).expect("it moves"));
+        }
+        let mut slopes = Vec::new();
+        for iteration in 0..200 {
+            let curved = iteration >= curved_from;
+            let Some((policies, slope)) = problem.policies(&m, &states, &inputs, curved) else { break };
+            slopes.push(slope);
+            if slope < 1e-12 {
+                break;
+            }
+            let now = problem.total(&states, &inputs);
+            let tried = (0..20).map(|k| problem.rollout(&m, &states, &inputs, &policies, 0.5_f64.powi(k)));
+            let mut better = tried.filter(|(states, inputs)| problem.total(states, inputs) < now + 1e-12);
+            let Some(next) = better.next() else { break };
+            (states, inputs) = next;
+        }
+        slopes
+    };
+    let (newton, gauss) = (slopes(5), slopes(usize::MAX));
+    println!("{newton:?}\n{gauss:?}");
+    // From the fifth on: below a multiple of the square of that before, until rounding.
+    let quadratic = newton[5..].windows(2).all(|w| w[1] < 1e3 * w[0] * w[0] + 1e-13);
+    assert!(quadratic && newton[newton.len() - 1] < 1e-12 && newton.len() < 10, "{newton:?}");
+    // Without curvature: a factor of 2 to 4 each.
+    assert!(gauss.len() > 20 && gauss[8..].windows(2).all(|w| w[1] > 0.2 * w[0]), "{gauss:?}");
+}
