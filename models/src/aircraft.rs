@@ -35,7 +35,7 @@ pub struct Aircraft {
     pub chord: f64,
     /// Lift coefficient at zero angle of attack.
     pub cl_0: f64,
-    /// Its slope with the angle of attack, 1/rad.
+    /// Slope of the lift coefficient with the angle of attack, 1/rad.
     pub cl_alpha: f64,
     /// Drag coefficient without lift.
     pub cd_0: f64,
@@ -43,11 +43,12 @@ pub struct Aircraft {
     pub cd_induced: f64,
     /// Coefficient of the pitching moment at zero angle of attack.
     pub cm_0: f64,
-    /// Its slope with the angle of attack, 1/rad, negative if stable.
+    /// Slope of the pitching moment's coefficient with the angle of attack, 1/rad, negative if stable.
     pub cm_alpha: f64,
-    /// Its slope with the pitch rate, made dimensionless by half the chord over the speed.
+    /// Slope of the pitching moment's coefficient with the pitch rate, which half the chord over the speed makes
+    /// dimensionless.
     pub cm_rate: f64,
-    /// Its slope with the elevator's angle, 1/rad.
+    /// Slope of the pitching moment's coefficient with the elevator's angle, 1/rad.
     pub cm_elevator: f64,
 
     elevator: Input,

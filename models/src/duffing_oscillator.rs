@@ -24,7 +24,7 @@ pub struct DuffingOscillator {
     pub beta: f64,
     /// Amplitude of the force, N.
     pub drive: f64,
-    /// Its angular frequency, rad/s.
+    /// Angular frequency of the force, rad/s.
     pub frequency: f64,
 
     #[body(mass = mass)]

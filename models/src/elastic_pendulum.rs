@@ -19,7 +19,7 @@ pub struct ElasticPendulum {
     pub mass: f64,
     /// Stiffness of the spring, N/m.
     pub stiffness: f64,
-    /// Its free length, m.
+    /// Free length of the spring, m.
     pub free_length: f64,
 
     length: Coordinate,

@@ -8,8 +8,8 @@ use linkwork::mechanism;
 ///
 /// - Coordinates: `motor`, the arm's angle `φ` about the vertical z; `elbow`, the pendulum's angle `θ` from hanging
 ///   about the arm; both rad. Input: `drive`, a torque on the arm, N·m.
-/// - Mass matrix of uniform rods (arm `M`, `r`; pendulum `m`, `l`): `M₁₁ = ⅓ M r² + m r² + ⅓ m l² sin² θ`,
-///   `M₁₂ = ½ m r l cos θ`, `M₂₂ = ⅓ m l²`.
+/// - Mass matrix of uniform rods (mass and length of the arm `M`, `r`, of the pendulum `m`, `l`):
+///   `M₁₁ = ⅓ M r² + m r² + ⅓ m l² sin² θ`, `M₁₂ = ½ m r l cos θ`, `M₂₂ = ⅓ m l²`.
 /// - Bias forces: `h₁ = ⅔ m l² sin θ cos θ θ̇ φ̇ − ½ m r l sin θ θ̇²`, `h₂ = −⅓ m l² sin θ cos θ φ̇² + ½ m g l sin θ`.
 /// - With the arm free, small swings have the frequency `√(½ m g l M₁₁ / (M₁₁ M₂₂ − M₁₂²))`, taken at `θ = 0`.
 #[mechanism(gravity = -g * z)]

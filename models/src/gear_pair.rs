@@ -6,7 +6,8 @@ use linkwork::mechanism;
 ///
 /// - Coordinates: `pinion` and `wheel`, the angles of the two gears about z, rad. Input: `motor`, a torque on the pinion,
 ///   N·m. They turn against each other: `r₁ θ₁ + r₂ θ₂ = 0`, a length of arc.
-/// - `(J₁ + (r₁/r₂)² J₂) θ̈₁ = M`, and the multiplier is the force between the teeth, `(r₁ J₂ / r₂²) θ̈₁`, N.
+/// - With the motor's torque `M`: `(J₁ + (r₁/r₂)² J₂) θ̈₁ = M`, and the multiplier of `teeth` is the force between the
+///   teeth, `−(r₁ J₂ / r₂²) θ̈₁`, N: negative where it holds the pinion back.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GearPair {

@@ -7,8 +7,9 @@ use linkwork::mechanism;
 ///
 /// - Configuration: place and unit quaternion of `flight`, the free joint from the centre of attraction; velocity:
 ///   linear and angular, in the satellite's axes.
-/// - With `r` the place and `n = r/|r|`: force `−μ m r / r³` (and the small part of the same origin as the torque),
-///   torque `3 μ / r³ · n × I n`, to second order in size over distance.
+/// - At the place `r`, with `n = r/|r|` and the inertia matrix `I`, the torque of gravity is `3 μ / r³ · n × I n`, to
+///   second order in size over distance. The force is `−μ m r / r³` and a part of second order, which `I` decides as
+///   it does the torque.
 /// - On a circular orbit with the rate `Ω = √(μ/r³)`, one axis up (yaw), one forward (roll), one across (pitch), the
 ///   satellite stays so; small oscillations in pitch have the frequency `Ω √(3 (I_roll − I_yaw) / I_pitch)`. Stable if
 ///   the long axis is up.

@@ -7,8 +7,9 @@ use linkwork::{Real, mechanism};
 ///
 /// - Configuration: the unit quaternion of the ball joint `tip`; velocity: the angular velocity in the top's axes; z is
 ///   the axis of the top, and up in the ground.
-/// - Euler's equations about the fixed point: `M = diag(A, A, C)` with `A = transverse + m h²`, and
-///   `h(q, ω) = ω × M ω − h e₃ × m g`, all in the top's axes.
+/// - Euler's equations about the fixed point, all in the top's axes, with the height `h` of the centre of mass above
+///   the tip and the moments of inertia `C` about the axis and `A = transverse + m h²` across it: the mass matrix is
+///   `M = diag(A, A, C)`, the bias forces are `ω × M ω − h e₃ × m g`.
 /// - Steady precession `Ω` at the inclination `θ` with the axial spin `n`: `A Ω² cos θ − C n Ω + m g h = 0`.
 /// - Upright it sleeps if `C² n² > 4 A m g h`.
 ///

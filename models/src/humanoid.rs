@@ -1,6 +1,6 @@
 use linkwork::mechanism;
 
-/// A simple humanoid: a floating base, two legs with six joints, a waist, two arms with seven.
+/// A simple humanoid: a floating base, two legs with six joints each, a waist with three, two arms with seven each.
 ///
 /// Source: `simple_humanoid_description` of LAAS-CNRS (BSD-2-Clause) by way of `example-robot-data` 5.0.0; see the head
 /// of `urdf/simple_humanoid.urdf`.

@@ -21,7 +21,7 @@ pub struct KapitzaPendulum {
     pub length: f64,
     /// Amplitude of the pivot's vibration, m.
     pub amplitude: f64,
-    /// Its angular frequency, rad/s.
+    /// Angular frequency of the pivot's vibration, rad/s.
     pub frequency: f64,
 
     #[point(at = amplitude * cos(frequency * t) * y)]

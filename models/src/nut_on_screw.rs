@@ -7,8 +7,8 @@ use linkwork::mechanism;
 ///
 /// - Coordinate: `thread`, the angle `θ` of the nut, rad; it rises by the pitch `p` each radian, `2π p` each turn.
 ///   Input: `spanner`, a torque on the nut, N·m.
-/// - Equation of motion: `(J + m p²) θ̈ + m g p = τ`. It falls with the constant acceleration `g / (1 + J / (m p²))`,
-///   and is held by the torque `m g p`.
+/// - Equation of motion, with the nut's moment of inertia `J` about the screw: `(J + m p²) θ̈ + m g p = τ`. It falls
+///   with the constant acceleration `g / (1 + J / (m p²))`, and is held by the torque `m g p`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NutOnScrew {
@@ -16,7 +16,7 @@ pub struct NutOnScrew {
     pub g: f64,
     /// Mass of the nut, kg.
     pub mass: f64,
-    /// Its outer radius, m, for a disk of that size.
+    /// Radius of the nut, a uniform disk, m.
     pub radius: f64,
     /// Rise in a radian, m.
     pub pitch: f64,

@@ -23,9 +23,9 @@ macro_rules! pendulum_chain {
             /// Acceleration of free fall, m/s².
             pub g: f64,
             $(
-                /// Mass of a particle, kg, counted from the top.
+                /// Mass of the particle with this number from the top, kg.
                 pub $m: f64,
-                /// Length of the rod above it, m.
+                /// Length of the rod that holds the particle with this number from the top, m.
                 pub $l: f64,
             )+
             $(

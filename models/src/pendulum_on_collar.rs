@@ -8,8 +8,9 @@ use linkwork::mechanism;
 ///
 /// - Coordinates: `collar.slide`, the height `s` at which the spring is slack at zero, m; `collar.turn`, `φ`, rad;
 ///   `hinge`, the angle `θ` of the arm from hanging, about the sleeve's x, rad.
-/// - Mass matrix (sleeve `M`, `J`; weight `m` at `l`): `M₁₁ = M + m`, `M₁₃ = m l sin θ`, `M₂₂ = J + m l² sin² θ`,
-///   `M₃₃ = m l²`, others zero. Potential energy `(M + m) g s + ½ k s² − m g l cos θ`.
+/// - Mass matrix (mass `M` and moment of inertia `J` of the sleeve; weight `m` on an arm of length `l`):
+///   `M₁₁ = M + m`, `M₁₃ = m l sin θ`, `M₂₂ = J + m l² sin² θ`, `M₃₃ = m l²`, others zero. Potential energy
+///   `(M + m) g s + ½ k s² − m g l cos θ`.
 /// - Steady turning at `Ω`: `cos θ = g / (l Ω²)`, `s = −(M + m) g / k`. The angular momentum `M₂₂ φ̇` is conserved.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]

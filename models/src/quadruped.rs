@@ -21,7 +21,7 @@ pub struct Solo12;
 ///
 /// Source: `anymal_b_simple_description` (BSD-3-Clause) by way of `example-robot-data` 5.0.0; see the head of
 /// `urdf/anymal_b.urdf`. Hutter et al., *ANYmal – a highly mobile and dynamic quadrupedal robot*, IROS 2016. (The file
-/// places next to nothing in `base`, with an inertia that no body has; it is taken as it is.)
+/// gives `base` hardly any mass, and an inertia matrix that no body can have; `inertia = trust` takes it as it is.)
 ///
 /// - Configuration: position and quaternion of the base, then the legs LF, LH, RF, RH (left, right; front, hind), each
 ///   with HAA (hip abduction, about x), HFE (hip flexion, about y) and KFE (knee flexion, about y), rad.

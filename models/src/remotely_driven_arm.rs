@@ -7,7 +7,8 @@ use linkwork::mechanism;
 /// driven link).
 ///
 /// - Coordinates: `p1` and `p2`, the angles of both links from x, rad; y points up. Inputs: `motor1` and `motor2`,
-///   torques on the links from the ground (a motor's own times the gear ratio), N·m.
+///   torques on the links from the ground (a motor's own times the gear ratio), N·m. Output: `hand`, the place of the
+///   forearm's end, m.
 /// - With uniform links and rotors `J` behind gears of ratio `n`: `M₁₁ = (⅓ m₁ + m₂) l₁² + n² J`,
 ///   `M₁₂ = ½ m₂ l₁ l₂ cos(p₂ − p₁)`, `M₂₂ = ⅓ m₂ l₂² + n² J`.
 /// - `h₁ = −½ m₂ l₁ l₂ sin(p₂ − p₁) ṗ₂² + (½ m₁ + m₂) g l₁ cos p₁`,

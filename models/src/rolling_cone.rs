@@ -7,8 +7,9 @@ use linkwork::mechanism;
 ///
 /// - Configuration: place of the apex and unit quaternion of `pose`; velocity: linear and angular, in the cone's axes,
 ///   whose z points from the apex to the base. z of the ground points up, the plane falls towards x.
-/// - With the precession `θ`, the angle of the line of contact from the fall line, `T = 3 m h² θ̇² (1 + 5 cos² α) / 40` and
-///   `U = −¾ m g h cos α sin β cos θ`: small swings have the frequency `√(5 g cos α sin β / (h (1 + 5 cos² α)))`.
+/// - With the precession `θ`, the angle of the line of contact from the fall line, the kinetic energy is
+///   `3 m h² θ̇² (1 + 5 cos² α) / 40`, the potential energy `−¾ m g h cos α sin β cos θ`: small swings have the
+///   frequency `√(5 g cos α sin β / (h (1 + 5 cos² α)))`.
 /// - The multiplier `contact.normal` is the normal force `N`, and `contact.tilt` its moment about the apex: the resultant
 ///   acts at the distance `contact.tilt / N`, which lies on the cone as long as the cone does not tip over its rim.
 #[mechanism(gravity = -g * z)]

@@ -9,7 +9,7 @@ use linkwork::mechanism;
 /// - Coordinates: `pose.x`, `pose.y` of the rod's middle, m, and its angle `pose.angle` from the level, rad; y points
 ///   up. The lower end is a ball.
 /// - With the contact at `(c, d)` from the middle, where `c = −l cos θ` and `d = −l sin θ − r`, and the part
-///   `σ = s / √(s² + v₀²)` of the slip `s`, the normal force `N` fulfils
+///   `σ = s / √(s² + v₀²)` of the slip `s` (`v₀` is 1 mm/s), the normal force `N` fulfils
 ///   `(1/m + c²/J + μ σ c d / J) N = g − l sin θ θ̇²`: where the bracket is not positive, friction jams. For a thin rod
 ///   this needs `μ > 4/3`.
 #[mechanism(gravity = -g * y)]

@@ -16,7 +16,7 @@ pub fn assert_near<const R: usize, const C: usize>(
     assert!(error <= tolerance, "error {error:e}: found {found} expected {expected}");
 }
 
-/// The same for a number.
+/// Holds a number that was generated against the closed form: relative to it, or absolute below one.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
@@ -77,7 +77,7 @@ pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
     placed(Vector3::z(), angle, d)
 }
 
-/// A turn about x and a displacement along it: the other half.
+/// A turn about x and a displacement along it: the other half of a Denavit–Hartenberg step.
 pub fn about_x(angle: f64, a: f64) -> Isometry3<f64> {
     placed(Vector3::x(), angle, a)
 }

@@ -15,7 +15,7 @@ use linkwork::mechanism;
 pub struct WilberforcePendulum {
     /// Mass of the weight, kg.
     pub mass: f64,
-    /// Its moment of inertia about the vertical, kg·m².
+    /// Moment of inertia of the weight about the vertical, kg·m².
     pub inertia: f64,
     /// Stiffness of the spring along its axis, N/m.
     pub stiffness: f64,
