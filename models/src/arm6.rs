@@ -13,37 +13,3 @@ use linkwork::mechanism;
 #[mechanism(urdf = "urdf/ur5.urdf", derivatives, packed)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ur5;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{about_x, about_z, assert_near};
-    use linkwork::nalgebra::Isometry3;
-    use linkwork::prelude::*;
-    use std::f64::consts::FRAC_PI_2;
-
-    #[test]
-    fn tool_by_denavit_and_hartenberg() {
-        let robot = Ur5;
-        let q = SVector::from([0.4, -1.1, 1.7, -0.6, 2.2, 0.9]);
-        let d = [0.089159, 0.0, 0.0, 0.10915, 0.09465, 0.0823];
-        let a = [0.0, -0.425, -0.39225, 0.0, 0.0, 0.0];
-        let alpha = [FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, -FRAC_PI_2, 0.0];
-        let mut tool = Isometry3::identity();
-        for k in 0..6 {
-            tool = tool * about_z(q[k], d[k]) * about_x(alpha[k], a[k]);
-        }
-        let base = robot.frame_placement(frame!(Ur5, "base"), &q);
-        let found = base.inverse() * robot.frame_placement(frame!(Ur5, "tool0"), &q);
-        assert_near(found.to_homogeneous(), tool.to_homogeneous(), 1e-10);
-    }
-
-    #[test]
-    fn weight_of_the_stretched_arm() {
-        // Stretched out level along x, as at zero: the lift joint carries m₂, m₃ and the three wrist bodies.
-        let robot = Ur5;
-        let h = robot.bias_forces(&robot.neutral(), &SVector::zeros());
-        let moment = 8.393 * 0.28 + 2.275 * (0.425 + 0.25) + (1.219 + 1.219 + 0.1879) * (0.425 + 0.39225);
-        assert_near(h.fixed_rows::<2>(0).into_owned(), SVector::from([0.0, -9.81 * moment]), 1e-10);
-    }
-}

@@ -33,34 +33,3 @@ pub struct GearPair {
     #[acts(on = pinion)]
     motor: Torque,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::assert_near;
-    use linkwork::prelude::*;
-
-    const G: GearPair =
-        GearPair { small_inertia: 2e-4, large_inertia: 3e-3, small_radius: 0.02, large_radius: 0.05 };
-
-    #[test]
-    fn reduced_inertia_and_tooth_force() {
-        assert_eq!((GearPair::NC, GearPair::NP), (1, 1));
-        let ratio: f64 = 0.4;
-        let torque = 0.3;
-        let expected = torque / (2e-4 + ratio * ratio * 3e-3);
-        let (q, v) = (SVector::from([0.5, -0.2]), SVector::from([10.0, -4.0]));
-        assert!(G.constraint_residuals(&q).amax() < 1e-17);
-        let (a, force) = G.constrained_dynamics(&q, &v, &G.generalized_forces(&q, &[torque].into()));
-        assert_near(a, [expected, -ratio * expected].into(), 1e-13);
-        // The teeth push the pinion back.
-        assert_near(force, [-ratio / 0.05 * 3e-3 * expected].into(), 1e-13);
-    }
-
-    /// From any angles to the nearest at which the teeth mesh.
-    #[test]
-    fn meshes() {
-        let q = G.assemble(&[1.0, 0.3].into(), &[0]).expect("the wheel can follow");
-        assert_near(q, [1.0, -0.4].into(), 1e-15);
-    }
-}

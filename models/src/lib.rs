@@ -1,7 +1,8 @@
 //! Ready-made mechanisms for Linkwork, from the textbook's first page to humanoid robots.
 //!
 //! Each has a file of its own that states the problem, its source, its parameters and, where there is one, the
-//! closed form of its motion; a test beside it holds the generated equations against that closed form.
+//! closed form of its motion; a test of the same name in `tests/gallery` holds the generated equations against that closed
+//! form.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -201,8 +202,6 @@ mod sliding_rod;
 mod spherical_pendulum;
 mod spring_chain;
 mod stewart_platform;
-#[cfg(test)]
-mod testing;
 mod tuned_suspension;
 mod two_bodies;
 mod wilberforce_pendulum;

@@ -1,0 +1,46 @@
+use crate::testing::{assert_close, assert_near, precisely};
+use linkwork::prelude::*;
+use linkwork_models::BeadOnSpinningHoop;
+use std::f64::consts::TAU;
+
+const H: BeadOnSpinningHoop = BeadOnSpinningHoop { g: 9.81, mass: 0.3, radius: 0.4, spin: 8.0 };
+
+#[test]
+fn equation_of_motion() {
+    let mr2 = H.mass * H.radius * H.radius;
+    for (t, theta, rate) in [(0.0, 0.4_f64, 1.0), (3.7, -2.2, 0.6)] {
+        let (q, v) = (SVector::from([theta]), SVector::from([rate]));
+        let (s, c) = theta.sin_cos();
+        let bias = H.mass * H.g * H.radius * s - mr2 * H.spin * H.spin * s * c;
+        assert_near(H.mass_matrix(t, &q), SMatrix::<f64, 1, 1>::new(mr2), 1e-15);
+        assert_near(H.bias_forces(t, &q, &v), SVector::from([bias]), 1e-14);
+        let speed2 = rate * rate + H.spin * H.spin * s * s;
+        assert_close(H.kinetic_energy(t, &q, &v), mr2 * speed2 / 2.0, 1e-14);
+    }
+}
+
+#[test]
+fn oscillation_about_the_tilted_equilibrium() -> Result<(), Error> {
+    let tilt = (H.g / (H.radius * H.spin * H.spin)).acos();
+    let end = simulate(&H)
+        .from([tilt + 1e-4], [0.0])
+        .method(precisely())
+        .until_crossing(Crossing::Falling, |_, _, v| v[0])
+        .finish()?;
+    assert_close(end.t, TAU / (H.spin * tilt.sin()), 1e-7);
+    Ok(())
+}
+
+#[test]
+fn jacobis_integral_is_conserved() -> Result<(), Error> {
+    let jacobi = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
+        let speed2 = v[0] * v[0] - (H.spin * q[0].sin()).powi(2);
+        H.mass * H.radius * (H.radius * speed2 / 2.0 - H.g * q[0].cos())
+    };
+    let start = jacobi(&[0.2].into(), &[0.5].into());
+    for sample in simulate(&H).from([0.2], [0.5]).method(precisely()).duration(3.0).sample_every(0.5) {
+        let Sample { q, v, .. } = sample?;
+        assert_close(jacobi(&q, &v), start, 1e-10);
+    }
+    Ok(())
+}

@@ -1,0 +1,49 @@
+use crate::testing::{assert_close, precisely};
+use linkwork::{frame, prelude::*};
+use linkwork_models::BricardLinkage;
+
+const B: BricardLinkage = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
+
+/// The rods begin in corners of a cube of one metre, as in the benchmark.
+#[test]
+fn starts_along_the_edges_of_a_cube() {
+    let q = B.neutral();
+    let placed = [
+        (B.frame_placement(frame!(BricardLinkage, "rod1"), &q), [0.0, 0.0, 0.0]),
+        (B.frame_placement(frame!(BricardLinkage, "rod2"), &q), [1.0, 0.0, 0.0]),
+        (B.frame_placement(frame!(BricardLinkage, "rod3"), &q), [1.0, -1.0, 0.0]),
+        (B.frame_placement(frame!(BricardLinkage, "rod4"), &q), [1.0, -1.0, 1.0]),
+        (B.frame_placement(frame!(BricardLinkage, "rod5"), &q), [0.0, -1.0, 1.0]),
+    ];
+    for (rod, corner) in placed {
+        assert_eq!(rod.translation.vector, SVector::from(corner));
+    }
+}
+
+#[test]
+fn one_condition_follows_from_the_others() {
+    assert_eq!((BricardLinkage::NV, BricardLinkage::NP, BricardLinkage::NS), (5, 1, 1));
+    let q = B.neutral();
+    assert!(B.constraint_residuals(&q).amax() < 1e-15);
+    let rows = B.constraint_jacobian(&q);
+    let rank = (rows.transpose() * rows).symmetric_eigenvalues().iter().filter(|e| **e > 1e-9).count();
+    assert_eq!(rank, 4);
+}
+
+/// Released from the cube it swings for ten seconds, through positions where all rods lie in one plane.
+#[test]
+fn swings() -> Result<(), Error> {
+    let start = B.potential_energy(&B.neutral());
+    let run = simulate(&B).method(precisely()).duration(10.0).sample_every(0.25);
+    let mut farthest = 0.0_f64;
+    for sample in run {
+        let Sample { q, v, .. } = sample?;
+        assert_close(B.kinetic_energy(&q, &v) + B.potential_energy(&q), start, 1e-10);
+        let (odd, even) = (q[0].sin(), q[1].sin());
+        assert_close(odd + even + odd * even, 0.0, 1e-12);
+        assert!((q[2] - q[0]).abs().max((q[4] - q[0]).abs()).max((q[3] - q[1]).abs()) < 1e-11, "{q}");
+        farthest = farthest.max(q[0]);
+    }
+    assert!(farthest > 3.0, "{farthest}");
+    Ok(())
+}

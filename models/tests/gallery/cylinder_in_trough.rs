@@ -1,0 +1,26 @@
+use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use linkwork::prelude::*;
+use linkwork_models::CylinderInTrough;
+
+const C: CylinderInTrough = CylinderInTrough { g: 9.81, mass: 1.7, radius: 0.1, width: 0.25, trough: 0.6 };
+
+#[test]
+fn equation_of_motion() {
+    let (phi, rate) = (0.8_f64, 2.1);
+    let (q, v) = (SVector::from([phi]), SVector::from([rate]));
+    assert_near(C.mass_matrix(&q), SMatrix::<f64, 1, 1>::new(1.5 * 1.7 * 0.25), 1e-15);
+    assert_near(C.bias_forces(&q, &v), SVector::from([1.7 * 9.81 * 0.5 * phi.sin()]), 1e-14);
+}
+
+#[test]
+fn period_of_a_longer_pendulum() -> Result<(), Error> {
+    let start = 1.2_f64;
+    let end = simulate(&C)
+        .from([start], [0.0])
+        .method(precisely())
+        .until_crossing(Crossing::Falling, |_, _, v| v[0])
+        .finish()?;
+    let length = 1.5 * (C.trough - C.radius);
+    assert_close(end.t, 4.0 * (length / C.g).sqrt() * elliptic((start / 2.0).sin().powi(2)), 1e-9);
+    Ok(())
+}

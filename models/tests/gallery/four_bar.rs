@@ -1,0 +1,85 @@
+use crate::testing::{assert_close, drift, precisely};
+use linkwork::prelude::*;
+use linkwork_models::FourBar;
+
+/// Grashof's crank and rocker.
+const L: FourBar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
+
+/// The open branch with a given crank angle.
+fn at(input: f64) -> SVector<f64, 3> {
+    L.assemble(&[input, 0.9 - input, 1.8].into(), &[0]).expect("the crank goes all the way round")
+}
+
+/// Positions by Freudenstein's equation, rates by its derivative, all the way round.
+#[test]
+fn freudensteins_equation() {
+    assert_eq!((FourBar::NC, FourBar::NP, FourBar::NS), (2, 1, 1));
+    let FourBar { a, b, c, d, .. } = L;
+    for k in 0..24 {
+        let q = at(f64::from(k) * std::f64::consts::PI / 12.0);
+        let (crank, coupler, rocker) = (q[0], q[0] + q[1], q[2]);
+        let constant = (a * a - b * b + c * c + d * d) / (2.0 * a * c);
+        let cosine = d / a * rocker.cos() - d / c * crank.cos() + constant;
+        assert_close(cosine, (crank - rocker).cos(), 1e-13);
+
+        let v = L.project_velocity(&q, &[2.0, 0.0, 0.0].into()).expect("no dead centre");
+        let sine = (coupler - rocker).sin();
+        assert_close(v[2] / v[0], a * (coupler - crank).sin() / (c * sine), 1e-12);
+        assert_close((v[0] + v[1]) / v[0], a * (rocker - crank).sin() / (b * sine), 1e-12);
+    }
+}
+
+/// At rest the motor carries what lifting the links takes, by virtual work.
+#[test]
+fn holding_torque() {
+    let FourBar { g, density, a, b, c, .. } = L;
+    let q = at(0.7);
+    let v = L.project_velocity(&q, &[1.0, 0.0, 0.0].into()).expect("no dead centre");
+    let rates = [q[0].cos(), (q[0] + q[1]).cos() * (v[0] + v[1]) / v[0], q[2].cos() * v[2] / v[0]];
+    let lift = density * a * a / 2.0 * rates[0]
+        + density * b * (a * rates[0] + b / 2.0 * rates[1])
+        + density * c * c / 2.0 * rates[2];
+    let tau = L.generalized_forces(&q, &[g * lift].into());
+    let acceleration = L.forward_dynamics(&q, &SVector::zeros(), &tau);
+    assert!(acceleration.amax() < 1e-12, "{acceleration}");
+}
+
+fn energy(q: &SVector<f64, 3>, v: &SVector<f64, 3>) -> f64 {
+    L.kinetic_energy(q, v) + L.potential_energy(q)
+}
+
+fn start() -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let q = at(0.7);
+    (q, L.project_velocity(&q, &[12.0, 0.0, 0.0].into()).expect("no dead centre"))
+}
+
+/// The error of a method of order four falls by 2⁴ when its step is halved, constraints included.
+#[test]
+fn order_of_the_integrator() -> Result<(), Error> {
+    let (q, v) = start();
+    let exact = simulate(&L).from(q, v).method(precisely()).duration(1.0).finish()?;
+    assert_close(energy(&exact.q, &exact.v), energy(&q, &v), 1e-10);
+    let errors = |h: f64| -> Result<[f64; 2], Error> {
+        let end = simulate(&L).from(q, v).method(Rk4::step(h)).duration(1.0).finish()?;
+        Ok([(end.q - exact.q).norm(), energy(&end.q, &end.v) - energy(&q, &v)])
+    };
+    let (coarse, fine) = (errors(4e-4)?, errors(2e-4)?);
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        let ratio = coarse / fine;
+        assert!((14.0..18.0).contains(&ratio), "{coarse:e} / {fine:e} = {ratio}");
+    }
+    Ok(())
+}
+
+/// A million steps leave the loop as closed as the first one. The energy drifts in proportion to time, and less by the
+/// power of the step that the order says.
+#[test]
+fn a_million_steps() -> Result<(), Error> {
+    let (q, still) = (at(0.7), SVector::zeros());
+    let [tenth, all] = drift(&L, &q, &still, 1e-3, 1_000_000)?;
+    assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
+    let [[_, coarse], [_, fine]] =
+        [drift(&L, &q, &still, 8e-3, 5_000)?, drift(&L, &q, &still, 4e-3, 10_000)?];
+    assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
+    Ok(())
+}

@@ -1,0 +1,77 @@
+use crate::testing::{assert_close, assert_near, drift, precisely};
+use linkwork::prelude::*;
+use linkwork_models::RollingDisk;
+
+const D: RollingDisk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
+
+/// At the origin with a lean and an angular velocity `u` in the leaning axes, the contact at rest.
+fn state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
+    let ((s, c), r) = (lean.sin_cos(), D.radius);
+    let rates = [u[2] / c, u[0], u[1] - u[2] * s / c];
+    let v = [r * u[1], -r * u[0] * c, -r * u[0] * s, rates[0], rates[1], rates[2]];
+    ([0.0, 0.0, r * c, 0.0, lean, 0.7].into(), v.into())
+}
+
+#[test]
+fn accelerations() {
+    assert_eq!((RollingDisk::NC, RollingDisk::NH, RollingDisk::NP, RollingDisk::NS), (3, 1, 5, 3));
+    let (lean, u): (f64, _) = (0.35, [0.7, -3.0, 1.3]);
+    let (q, v) = state(lean, u);
+    assert!(D.constraint_residuals(&q).amax() < 1e-15);
+    assert!(D.constraint_rates(&q, &v).amax() < 1e-14);
+    let (r, (s, c)) = (D.radius, lean.sin_cos());
+    let rates = [
+        (4.0 * D.g * s + 6.0 * r * u[1] * u[2] - r * u[2] * u[2] * s / c) / (5.0 * r),
+        -2.0 * u[0] * u[2] / 3.0,
+        (-2.0 * u[1] + u[2] * s / c) * u[0],
+    ];
+    let heading = (rates[2] + v[3] * s * v[4]) / c;
+    let roll = rates[1] - heading * s - v[3] * c * v[4];
+    let found = D.forward_dynamics(&q, &v, &SVector::zeros());
+    assert_near(found.fixed_rows::<3>(3).into_owned(), [heading, rates[0], roll].into(), 1e-13);
+}
+
+/// Below the critical speed one exponent is positive, above it small leans oscillate; the others are zero.
+#[test]
+fn stability_of_rolling_straight() {
+    let critical = (D.g * D.radius / 3.0).sqrt();
+    for speed in [0.3 * critical, 0.99 * critical, 1.01 * critical, 3.0 * critical] {
+        let (q, v) = state(0.0, [0.0, speed / D.radius, 0.0]);
+        let linear = D.linearize(&q, &v, &SVector::zeros(), &[3, 4, 5]).expect("regular");
+        assert_eq!(linear.speeds, [3, 4, 5]);
+        let square = 4.0 * D.g / (5.0 * D.radius) - 2.4 * (speed / D.radius).powi(2);
+        // Of the characteristic polynomial λ⁶ (λ² − s²): its traces.
+        let squared = linear.a * linear.a;
+        assert_close(linear.a.trace(), 0.0, 1e-12);
+        assert_close(squared.trace(), 2.0 * square, 1e-12);
+        assert_close((squared * linear.a).trace(), 0.0, 1e-12);
+        assert_close((squared * squared).trace(), 2.0 * square * square, 1e-12);
+        let growth = linear.a.complex_eigenvalues().iter().map(|e| e.re).fold(0.0, f64::max);
+        assert_eq!(growth > 1e-2, speed < critical, "{growth} at {speed} m/s");
+    }
+}
+
+/// In circles with a steady lean: `u₁` does not change.
+#[test]
+fn rolls_in_circles() -> Result<(), Error> {
+    let (lean, turning) = (0.3_f64, 2.5);
+    let across = turning * lean.cos();
+    let spin = (across * across * lean.tan() - 4.0 * D.g / D.radius * lean.sin()) / (6.0 * across);
+    let (q, v) = state(lean, [0.0, spin, across]);
+    let period = 2.0 * std::f64::consts::PI / turning;
+    let end = simulate(&D).from(q, v).method(precisely()).duration(period).finish()?;
+    assert_near(end.v, v, 1e-9);
+    assert_near(end.q.fixed_rows::<3>(0).into_owned(), q.fixed_rows::<3>(0).into_owned(), 1e-8);
+    Ok(())
+}
+
+/// Nodding about the steady circle, a million steps long: it keeps touching the table and does not slip.
+#[test]
+fn a_million_steps() -> Result<(), Error> {
+    let (q, v) = state(0.35, [0.4, -1.5, 2.4]);
+    let [tenth, all] = drift(&D, &q, &v, 1e-3, 1_000_000)?;
+    assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
+    let [[_, coarse], [_, fine]] = [drift(&D, &q, &v, 8e-3, 5_000)?, drift(&D, &q, &v, 4e-3, 10_000)?];
+    assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
+    Ok(())
+}

@@ -1,0 +1,64 @@
+use crate::testing::{assert_close, assert_near};
+use linkwork::prelude::*;
+use linkwork_models::SliderCrank;
+
+const S: SliderCrank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
+
+/// A function of the crank's angle with its first and second derivative.
+type Course = [f64; 3];
+
+/// Rod's angle, x of its centre, y of its centre, piston.
+fn closed_form(theta: f64) -> [Course; 4] {
+    let SliderCrank { r, l, .. } = S;
+    let (s, c) = theta.sin_cos();
+    let phi = (-r / l * s).asin();
+    let (sp, cp) = phi.sin_cos();
+    let first = -r / l * c / cp;
+    let second = (r / l * s + sp * first * first) / cp;
+    // What lies at `r` along the crank and at `k` along the rod.
+    let along =
+        |k: f64| [r * c + k * cp, -r * s - k * sp * first, -r * c - k * (cp * first * first + sp * second)];
+    [[phi, first, second], along(l / 2.0), [r / 2.0 * s, r / 2.0 * c, -r / 2.0 * s], along(l)]
+}
+
+fn state(theta: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let [rod, .., piston] = closed_form(theta);
+    let q = [theta, rod[0] - theta, piston[0]];
+    (q.into(), [rate, (rod[1] - 1.0) * rate, piston[1] * rate].into())
+}
+
+#[test]
+fn piston_is_where_the_closed_form_says() {
+    assert_eq!((SliderCrank::NC, SliderCrank::NP, SliderCrank::NU), (2, 1, 1));
+    for k in 0..12 {
+        let theta = 0.1 + f64::from(k) * std::f64::consts::PI / 6.0;
+        let (q, v) = state(theta, 300.0);
+        let s = theta.sin();
+        assert_close(q[2], S.r * theta.cos() + (S.l * S.l - S.r * S.r * s * s).sqrt(), 1e-15);
+        let found = S.assemble(&[theta, -theta, 0.1].into(), &[0]).expect("the crank goes round");
+        assert_near(found, q, 1e-13);
+        let found = S.project_velocity(&q, &[300.0, -300.0, 0.0].into()).expect("no dead centre");
+        assert_near(found / found[0], v / 300.0, 1e-13);
+    }
+}
+
+/// Acceleration by Eksergian's equation, and the power that the motor hands over.
+#[test]
+fn reduced_inertia() {
+    let SliderCrank { g, r, l, m_crank, m_rod, m_piston } = S;
+    let (theta, rate, torque) = (0.8, 120.0, 7.0);
+    let courses = closed_form(theta);
+    let [rod, x, y, piston] = courses;
+    let masses = [m_rod * l * l / 12.0, m_rod, m_rod, m_piston];
+    let sum = |f: fn(&Course) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
+    let inertia = m_crank * r * r / 3.0 + sum(|c| c[1] * c[1]);
+    let lift = g * (m_crank * r / 2.0 * theta.cos() + m_rod * y[1]);
+    let expected = (torque - sum(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
+
+    let (q, v) = state(theta, rate);
+    assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
+    let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
+    let along = |c: &Course| c[1] * expected + c[2] * rate * rate;
+    assert_near(a, [expected, along(&rod) - expected, along(&piston)].into(), 1e-12);
+    assert_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);
+}

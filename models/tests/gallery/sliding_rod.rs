@@ -1,0 +1,74 @@
+use crate::testing::{assert_close, assert_near};
+use linkwork::prelude::*;
+use linkwork_models::SlidingRod;
+
+const R: SlidingRod = SlidingRod { g: 9.81, mass: 0.3, half: 0.5, radius: 0.01, friction: 0.4 };
+
+/// Leaning at an angle, its end sliding at a speed, turning at a rate.
+fn state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let [c, d] = arm(angle);
+    ([0.0, -d, angle].into(), [slip + rate * d, -rate * c, rate].into())
+}
+
+/// The contact from the middle.
+fn arm(angle: f64) -> [f64; 2] {
+    [-R.half * angle.cos(), -R.half * angle.sin() - R.radius]
+}
+
+/// `1/m + c²/J + μ σ c d / J`
+fn pressed(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
+    let ([c, d], inertia) = (arm(angle), rod.mass * rod.half * rod.half / 3.0);
+    let part = slip / slip.hypot(1e-3);
+    1.0 / rod.mass + c * c / inertia + rod.friction * part * c * d / inertia
+}
+
+#[test]
+fn slides_under_its_normal_force() {
+    assert_eq!((SlidingRod::NC, SlidingRod::NS), (1, 2));
+    for (slip, rate) in [(0.7, 0.0), (-0.7, 0.5), (1e-3, -0.8), (0.0, 0.0)] {
+        let (q, v) = state(0.6, slip, rate);
+        assert!(R.constraint_residuals(&q).amax() < 1e-16 && R.constraint_rates(&q, &v).amax() < 1e-16);
+        let (a, lambda) = R.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
+        let [c, d] = arm(0.6);
+        // The end's centre goes round the middle.
+        let normal = (R.g - R.half * 0.6_f64.sin() * rate * rate) / pressed(&R, 0.6, slip);
+        let drag = -R.friction * normal * slip / slip.hypot(1e-3);
+        assert_close(lambda[0], normal, 1e-12);
+        let turn = (c * normal - d * drag) * 3.0 / (R.mass * R.half * R.half);
+        assert_near(a, [drag / R.mass, normal / R.mass - R.g, turn].into(), 1e-12);
+    }
+}
+
+/// A rough floor under a rod that is pushed ahead: steep it slides, flat it jams, and pulled it always slides.
+#[test]
+fn jams() {
+    let rough = SlidingRod { friction: 1.8, ..R };
+    let mut seen = [0; 2];
+    for k in 1..15 {
+        let angle = 0.1 * f64::from(k);
+        for slip in [-1.0, 1.0] {
+            let (q, v) = state(angle, slip, 0.0);
+            let found = rough.try_constrained_dynamics(&q, &v, &SVector::zeros());
+            let jams = pressed(&rough, angle, slip) <= 0.0;
+            seen[usize::from(jams)] += 1;
+            let jammed = Err(ConstraintError::Jammed { constraint: "floor.normal" });
+            assert_eq!(found.is_err(), jams, "at {angle}");
+            assert!(!jams || found == jammed);
+            assert_eq!(rough.forward_dynamics(&q, &v, &SVector::zeros())[0].is_nan(), jams);
+        }
+    }
+    assert!(seen[0] > 14 && seen[1] > 3, "{seen:?}");
+    // So the simulation stops there, and says why; with every method.
+    let (q, v) = state(0.8, -1.0, 0.0);
+    assert!(pressed(&rough, 0.8, -1.0) <= 0.0);
+    let stops = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {
+        Err(Error::Constraint { reason, .. }) => {
+            reason == ConstraintError::Jammed { constraint: "floor.normal" }
+        }
+        _ => false,
+    };
+    let run = || simulate(&rough).from(q, v).duration(0.1);
+    assert!(stops(run().finish()) && stops(run().method(Rk4::step(1e-3)).finish()));
+    assert!(stops(run().method(ImplicitMidpoint::step(1e-3)).finish()));
+    assert!(stops(run().method(Rosenbrock::step(1e-3)).finish()));
+}

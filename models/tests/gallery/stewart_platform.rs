@@ -1,0 +1,112 @@
+use crate::testing::assert_near;
+use linkwork::nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
+use linkwork::prelude::*;
+use linkwork_models::StewartPlatform;
+
+/// Angles of feet and heads on their circles, degrees.
+const LEGS: [(f64, f64); 6] =
+    [(10.0, 50.0), (110.0, 70.0), (130.0, 170.0), (230.0, 190.0), (250.0, 290.0), (350.0, 310.0)];
+
+const P: StewartPlatform = StewartPlatform {
+    g: 9.81,
+    base_radius: 0.8,
+    platform_radius: 0.5,
+    platform_mass: 30.0,
+    across: 1.5,
+    axial: 2.5,
+    leg_mass: 2.0,
+    leg: 0.6,
+};
+
+fn on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
+    let (s, c) = degrees.to_radians().sin_cos();
+    Vector3::new(radius * c, radius * s, 0.0)
+}
+
+/// A pose off all symmetries.
+fn pose() -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Vector3::new(0.1, -0.05, 0.9).into(),
+        UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
+    )
+}
+
+/// The legs as vectors from foot to head.
+fn legs(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
+    LEGS.map(|(foot, head)| {
+        let head = pose * linkwork::nalgebra::Point3::from(on_circle(P.platform_radius, head));
+        head.coords - on_circle(P.base_radius, foot)
+    })
+}
+
+/// Inverse kinematics: along the leg is `(sin b, −sin a cos b, cos a cos b)`.
+fn configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatform::NQ }> {
+    let mut q = P.neutral();
+    q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
+    q.fixed_rows_mut::<4>(3).copy_from(&pose.rotation.coords);
+    for (k, leg) in legs(pose).into_iter().enumerate() {
+        let n = leg.normalize();
+        let angles = [(-n.y).atan2(n.z), n.x.asin(), leg.norm()];
+        q.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
+    }
+    q
+}
+
+#[test]
+fn inverse_kinematics() {
+    assert_eq!((StewartPlatform::NV, StewartPlatform::NC), (24, 18));
+    assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
+    let q = configuration(&pose());
+    assert!(P.constraint_residuals(&q).amax() < 1e-15);
+    // From a level platform, the pose held.
+    let mut guess = configuration(&Isometry3::translation(0.0, 0.0, 0.9));
+    guess.fixed_rows_mut::<7>(0).copy_from(&q.fixed_rows::<7>(0));
+    assert_near(P.assemble(&guess, &[0, 1, 2, 3, 4, 5]).expect("the legs reach"), q, 1e-13);
+    // Forward kinematics: the lengths held.
+    let lengths = [8, 11, 14, 17, 20, 23];
+    let guess = P.integrate(&q, &SVector::from_fn(|k, _| if lengths.contains(&k) { 0.0 } else { 0.02 }));
+    assert_near(P.assemble(&guess, &lengths).expect("a pose is near"), q, 1e-12);
+}
+
+/// Rows: how the height of weights, and the lengths, change with the platform's velocity in its own axes.
+#[test]
+fn forces_by_virtual_work() {
+    let pose = pose();
+    let (mut lengths, mut weight) = (Matrix6::zeros(), Vector6::zeros());
+    weight[2] = P.platform_mass;
+    for (k, (leg, (_, head))) in legs(&pose).into_iter().zip(LEGS).enumerate() {
+        let arm = pose.rotation * on_circle(P.platform_radius, head);
+        let (length, n) = (leg.norm(), leg.normalize());
+        let row = |f: Vector3<f64>| {
+            let torque = arm.cross(&f);
+            Vector6::new(f.x, f.y, f.z, torque.x, torque.y, torque.z)
+        };
+        lengths.set_column(k, &row(n));
+        // A point at a fixed distance along the leg rises as the head does across the leg; one at a fixed distance
+        // from the head as the head does, less that.
+        let across = (Vector3::z() - n * n.z) * (P.leg / 2.0 / length);
+        weight += row(across) * P.leg_mass + row(Vector3::z() - across) * P.leg_mass;
+    }
+    let forces = lengths.lu().solve(&(weight * P.g)).expect("not singular");
+    let (q, still) = (configuration(&pose), SVector::zeros());
+    let a = P.forward_dynamics(&q, &still, &P.generalized_forces(&q, &forces));
+    assert!(a.amax() < 1e-11, "{a}");
+    // A little less and the platform sinks.
+    let a = P.forward_dynamics(&q, &still, &P.generalized_forces(&q, &(forces * 0.9)));
+    let up = pose.rotation * Vector3::new(a[0], a[1], a[2]);
+    assert!(up.z < -0.1, "{up}");
+}
+
+#[test]
+fn energy_is_conserved() -> Result<(), Error> {
+    let q = configuration(&pose());
+    let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
+    v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
+    let v = P.project_velocity(&q, &v).expect("regular");
+    let energy = |q: &_, v: &_| P.kinetic_energy(q, v) + P.potential_energy(q);
+    let end = simulate(&P).from(q, v).method(Rk4::step(1e-3)).duration(0.2).finish()?;
+    let change = energy(&end.q, &end.v) - energy(&q, &v);
+    assert!(change.abs() < 1e-8 * P.kinetic_energy(&end.q, &end.v), "{change}");
+    assert!(P.constraint_residuals(&end.q).amax() < 1e-14);
+    Ok(())
+}
