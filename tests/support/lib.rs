@@ -3,7 +3,6 @@
 pub mod compare;
 pub mod mechanisms;
 pub mod model;
-pub mod package;
 pub mod random;
 pub mod robots;
 pub mod simulate;

@@ -1,7 +1,7 @@
-//! The choice of instructions at run time: the program in `dispatch/` compares both ways.
+//! The choice of instructions at run time: the program in `tests/dispatch` compares both ways.
 #![cfg(unix)]
 
-use support::package::cargo;
+use linkwork_programs::cargo;
 
 #[test]
 fn both_ways_agree() {

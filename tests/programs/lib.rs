@@ -1,4 +1,4 @@
-//! Packages of their own, beside the tests, that tests build or run.
+//! Packages of their own, in the folders beside this one, that tests build or run.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 /// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`, which is
 /// `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless something is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join(package).join("Cargo.toml");
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
     let cargo = |network: &[&str]| {
         Command::new(env!("CARGO"))
             .args(command)

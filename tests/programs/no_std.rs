@@ -1,10 +1,10 @@
 //! Generated code needs no standard library and no allocator, and there is no way to a panic in it: the program in
-//! `no_std/` has a panic handler that cannot be linked.
+//! `tests/no_std` has a panic handler that cannot be linked.
 #![cfg(unix)]
 
+use linkwork_programs::cargo;
 use std::path::Path;
 use std::process::{Command, Output};
-use support::package::cargo;
 
 /// Builds the program with these features.
 fn build(features: &str) -> Output {
