@@ -4,6 +4,7 @@
 
 #[path = "../macros/compiler/tests/oracle/jet.rs"]
 mod jet;
+#[allow(dead_code, reason = "the compiler's own test of the oracle needs the rest")]
 #[path = "../macros/compiler/tests/oracle/kane.rs"]
 mod kane;
 #[path = "accelerations/mechanisms.rs"]
