@@ -87,7 +87,7 @@ fn doc_comments_stand_beside_what_they_describe() {
         "|output|`place`|m|Whereitis.|",
         "\"Whereitis.\\n\\nTheoutput`place`.\"",
         "\"Whatitfeels.\\n\\nTheoutput`load`,inthemotionundertheinputs",
-        "\"Howitspeedsup.\\n\\nTheoutput`jolt`,ofgivenaccelerations.IthasnoJacobianyet.\"",
+        "\"Howitspeedsup.\\n\\nTheoutput`jolt`,ofgivenaccelerations.Itsderivativesarefunctionsoftheword`derivatives`.\"",
     ] {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
