@@ -84,6 +84,7 @@ use std::path::PathBuf;
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
 /// | `passive = honour` or `ignore` | damping and friction of the file's joints; honour if not given |
 /// | `mimic = follow` or `independent` | joints with a `mimic` tag; follow if not given |
+/// | `limits = honour` or `ignore` | limits of the file's joints, which the trait `linkwork::Limits` gives; honour if not given |
 /// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
 /// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
 /// | `lock = ["joint", …]` | joints frozen at zero |

@@ -13,6 +13,7 @@
 //! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
 //! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
 //! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |
+//! | bounds | [`Limit`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
 //! | expressions | [`Scalar`], [`Vector`], [`Potential`], [`Rayleigh`] |
 //!
@@ -268,6 +269,19 @@ pub enum Coordinate {}
 /// A field `elevator: Input` without attribute, for use in the values of forces and torques. Its unit follows from its use.
 pub enum Input {}
 
+/// What a coordinate, its velocity and the generalized force on it stay within, for controllers and planners.
+///
+/// `#[limit(on = joint, from = low, to = high, max_speed = s, max_effort = f)]`: on a joint with one degree of freedom, on
+/// `joint.coordinate` or on a `Coordinate`; the least and the largest value, m or rad, the largest magnitude of the velocity, m/s
+/// or rad/s, and of the generalized force, N or N·m, each optional, numbers or expressions of the parameters. The trait
+/// [`Limits`](crate::Limits) gives them as vectors, with functions that clamp. Several limits of one coordinate hold together, those
+/// of a file too. A limit exerts no force.
+///
+/// Errors: numbers of which the lower is above the upper, and negative magnitudes, do not compile.
+#[doc(alias = "joint limit")]
+#[doc(alias = "range")]
+pub enum Limit {}
+
 /// Axes without a place, turned by expressions.
 ///
 /// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or `ground`
@@ -413,5 +427,5 @@ macro_rules! derivable {
 derivable! {
     Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
     Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
-    Holonomic Nonholonomic Rolling Slipping Scalar Vector
+    Limit Holonomic Nonholonomic Rolling Slipping Scalar Vector
 }

@@ -79,6 +79,7 @@ pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives}
 pub use frame::{FrameIndex, Frames, NamedFrame, index_of};
 #[doc(inline)]
 pub use lanes::Lanes;
+pub use limits::Limits;
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
@@ -103,6 +104,7 @@ pub mod guide;
 pub mod integrate;
 pub mod lanes;
 mod lie;
+mod limits;
 mod mechanism;
 pub mod optimal;
 mod outputs;
@@ -123,15 +125,15 @@ mod trigonometry;
 pub mod prelude {
     pub use crate::elements::{
         Attraction, Ball, Body, Collar, Coordinate, Dashpot, Force, Frame, Free, Friction, Gravity,
-        Holonomic, Inerter, Input, Nonholonomic, Particle, Pin, Planar, Potential, Rayleigh, Rolling, Screw,
-        Sleeve, Slipping, Slot, Spring, Stage, Torque, Universal, Weld,
+        Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential, Rayleigh, Rolling,
+        Screw, Sleeve, Slipping, Slot, Spring, Stage, Torque, Universal, Weld,
     };
     pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
     pub use crate::{
-        Batch, Constrained, ConstraintError, Derivatives, Mechanism, Real, SecondDerivatives, at, frame,
-        index, mechanism,
+        Batch, Constrained, ConstraintError, Derivatives, Limits, Mechanism, Real, SecondDerivatives, at,
+        frame, index, mechanism,
     };
     pub use nalgebra::{SMatrix, SVector};
 }
@@ -157,6 +159,7 @@ pub mod __private {
         ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
         free_tangent_rate,
     };
+    pub use crate::limits::{at_least, at_most};
     pub use crate::private::{constant, put_block, put_rows};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use crate::second::forward_second_derivatives;

@@ -113,6 +113,8 @@ fn merge(description: &mut Description, imported: import::Imported, cx: &mut Dia
     }
     description.bodies.extend(own_bodies);
     description.joints.extend(own_joints);
+    // Those of the file come first.
+    description.limits.splice(0..0, imported.limits);
     description.snapped = imported.snapped;
     description.ground_frame = imported.is_ground;
     if description.gravity.is_none() {
@@ -251,6 +253,7 @@ impl Source {
             frames: m.frames.iter().map(|f| f.name.clone()).collect(),
             units: m.units.clone(),
             constraints: Constraints::of(m),
+            limits: emit::Limited::of(m),
             absent: emit::absent(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
@@ -269,6 +272,7 @@ impl Source {
             frames: Vec::new(),
             structure: d.joints.iter().map(structure_line).collect(),
             constraints: Constraints::default(),
+            limits: Vec::new(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: mechanism::Units::default(),
             facts: Facts::default(),

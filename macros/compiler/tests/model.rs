@@ -39,6 +39,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             base: Base::Fixed,
             honour_passive: true,
             follow_mimic: true,
+            honour_limits: true,
             inertias: Inertias::Check,
             inputs: false,
             lock: Vec::new(),

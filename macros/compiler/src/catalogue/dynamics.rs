@@ -16,6 +16,12 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .alone(),
+    Row::derived(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
+        timeless: true,
+        shape: Shape::Array(f.limits),
+        ..Declaration::default()
+    })
+    .alone(),
     Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),

@@ -32,6 +32,8 @@ pub enum Need {
     RegularMass,
     /// Contacts that slip.
     Slipping,
+    /// Limits of coordinates.
+    Limits,
     /// Derivatives of forward dynamics by calls of other functions.
     Calls,
     /// Passive forces that the other functions call.
@@ -40,7 +42,7 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 15] = [
+    pub const ALL: [Need; 16] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
@@ -54,6 +56,7 @@ impl Need {
         Need::RegularMass,
         Need::Constraints,
         Need::Slipping,
+        Need::Limits,
         Need::Calls,
         Need::PassiveCalls,
     ];
@@ -74,7 +77,7 @@ impl Need {
             Need::Batch => "AsksForBatch",
             Need::RegularMass => "HasRegularMass",
             Need::Slipping => "HasSlipping",
-            Need::Calls | Need::PassiveCalls => return None,
+            Need::Limits | Need::Calls | Need::PassiveCalls => return None,
         })
     }
 }
@@ -108,6 +111,8 @@ pub struct Facts {
     pub bodies: usize,
     /// How many base parameters there are.
     pub base: usize,
+    /// How many bounds limits have.
+    pub limits: usize,
     /// How many parameters the struct has.
     pub parameters: usize,
     /// Row and column of the entries of the mass matrix in its lower triangle that are not always zero, column by column.
@@ -148,6 +153,7 @@ impl Facts {
             kinematic: model.kinematic,
             requests,
             constraints,
+            limits: model.limit_values().len(),
             parameters: model.parameters.len(),
             ..Facts::default()
         }
@@ -169,6 +175,7 @@ impl Facts {
             Need::Batch => self.requests.batch,
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
+            Need::Limits => self.limits > 0,
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),
         }

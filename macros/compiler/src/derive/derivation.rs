@@ -110,6 +110,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let known = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {
             Id::Neutral => of(&neutral(model)),
+            Id::Limits => of(&model.limit_values()),
             Id::GeneralizedForces => of(&forces::generalized_forces(model, joints)),
             Id::DissipatedPower => of(&[power::dissipated(model)]),
             Id::ControlPower => of(&[power::control(model, joints)]),

@@ -1,6 +1,7 @@
 //! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
 
 use super::interface::Interface;
+use super::limits;
 use crate::catalogue::Id;
 use crate::derive::{Function, Output};
 use crate::expr::Symbol;
@@ -34,6 +35,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         }
     }
     units(&mut text, interface);
+    limits::write_docs(&mut text, &interface.limits, &interface.velocities);
     constraints(&mut text, interface);
     if !interface.snapped.is_empty() {
         text.push_str("\n# Rounded numbers\n\nOther than in the file, by `snap`:\n\n");

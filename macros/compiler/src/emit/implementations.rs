@@ -2,7 +2,7 @@
 
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
-use super::{constraints, differentiable, lanes};
+use super::{constraints, differentiable, lanes, limits};
 use crate::catalogue;
 use std::fmt::Write;
 
@@ -17,6 +17,13 @@ pub fn write_impls(
 ) {
     let Head { generics, arguments, bounds } = head;
     let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::Limits<{}, {}> for {name}{arguments} {bounds} {{",
+        s.nq, s.nv
+    );
+    limits::write_trait(out, &i.limits, s);
+    out.push_str("}\n");
     if i.facts.kinematic {
         return;
     }

@@ -1,6 +1,7 @@
 //! What the outside sees of a mechanism, and what stands around generated implementations.
 
 use super::constraints::Constraints;
+use super::limits::Limited;
 use super::signature::Signature;
 use crate::catalogue::{Argument, Facts, Row};
 use crate::mechanism::Units;
@@ -25,6 +26,8 @@ pub struct Interface<'a> {
     pub structure: Vec<String>,
     /// The constraints.
     pub constraints: Constraints,
+    /// The limits of coordinates.
+    pub limits: Vec<Limited>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
     /// Units of all of these and of the parameters.

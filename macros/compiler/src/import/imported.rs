@@ -1,7 +1,7 @@
 //! What is made of a file.
 
 use crate::diag::Place;
-use crate::syntax::{Body, Joint};
+use crate::syntax::{Body, Joint, Limit};
 
 /// What a file describes.
 #[derive(Clone, Debug)]
@@ -10,6 +10,8 @@ pub struct Imported {
     pub bodies: Vec<Body>,
     /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
     pub joints: Vec<Joint>,
+    /// Limits of the joints.
+    pub limits: Vec<Limit>,
     /// The file's root is the ground itself.
     pub is_ground: bool,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.

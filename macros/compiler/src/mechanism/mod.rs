@@ -6,6 +6,7 @@ mod constraint;
 mod element;
 mod gradients;
 mod inertia;
+mod limit;
 mod link;
 mod model;
 mod passive;
@@ -17,6 +18,7 @@ pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission
 pub use element::{CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
 pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;
+pub use limit::Limit;
 pub use link::{Chart, Coordinate, Link, LinkId, Motion, NamedFrame, Space};
 pub use model::{Model, OutputValue, Released, Uses};
 pub use passive::PassiveForces;

@@ -4,6 +4,7 @@ use super::constraint::{Constraint, SolvedSide};
 use super::element::{CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::gradients::Gradients;
 use super::inertia::Inertia;
+use super::limit::Limit;
 use super::link::{Chart, Link, NamedFrame, Space};
 use super::passive::PassiveForces;
 use super::units::Units;
@@ -46,6 +47,8 @@ pub struct Model<'g> {
     pub velocities: Vec<(String, Place)>,
     /// Name of every entry of `u`.
     pub inputs: Vec<(String, Input<'g>)>,
+    /// Limits, one for each entry of `v` that has any.
+    pub limits: Vec<Limit<'g>>,
     /// Named frames.
     pub frames: Vec<NamedFrame<'g>>,
     /// Springs.
@@ -131,6 +134,11 @@ impl<'g> Model<'g> {
     /// Number of entries of `u`.
     pub fn nu(&self) -> usize {
         self.inputs.len()
+    }
+
+    /// The bounds of all limits, in their order.
+    pub fn limit_values(&self) -> Vec<Expr<'g>> {
+        self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
     }
 
     /// Number of constraints on configurations.

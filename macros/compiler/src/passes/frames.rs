@@ -163,6 +163,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         inertances: _,
         outputs: _,
         released: _,
+        limits: _,
         units: _,
     } = model;
     for frame in frames {

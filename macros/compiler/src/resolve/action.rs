@@ -372,6 +372,24 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
+    /// The coordinate that a limit is on, and whether it is an angle, if that is known.
+    pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
+        let joint = on.name().and_then(|name| self.joint_coordinates(name));
+        if joint.is_some_and(|coordinates| coordinates.is_empty()) {
+            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.spelt()))
+                .help("limits are on joints with plain coordinates: not on a Ball, Free or Weld, and not on what closes a loop");
+            return None;
+        }
+        match self.target(on, cx)? {
+            Target::Coordinate(coordinate, angle) => Some((coordinate, angle)),
+            Target::Point(_) => {
+                cx.error(on.place.clone(), "a Limit is on the coordinate of a joint, but this is a place")
+                    .help("name a joint, as in `on = hinge`");
+                None
+            }
+        }
+    }
+
     /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
     fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {

@@ -79,6 +79,7 @@ fn build<'g>(
     match order.and_then(|order| Some((order, builder.know_motion()?))) {
         Some((order, moving)) => {
             builder.add_actions(moving, cx);
+            builder.add_limits(cx);
             let solved = builder.add_solved(cx);
             let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
             builder.add_expressions(constrained, cx);
@@ -123,6 +124,7 @@ fn empty_model<'g>(
         configuration: Vec::new(),
         velocities: Vec::new(),
         inputs: Vec::new(),
+        limits: Vec::new(),
         frames: Vec::new(),
         springs: Vec::new(),
         dashpots: Vec::new(),

@@ -18,6 +18,7 @@ mod freedom;
 mod functions;
 mod inertia;
 mod joint;
+mod limit;
 mod masses;
 mod motion;
 mod names;

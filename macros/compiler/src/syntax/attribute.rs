@@ -18,7 +18,7 @@ use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type}
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 15] = [
+const OPTIONS: [&str; 16] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -28,6 +28,7 @@ const OPTIONS: [&str; 15] = [
     "base",
     "passive",
     "mimic",
+    "limits",
     "inertia",
     "inputs",
     "lock",
@@ -172,6 +173,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         particles: Vec::new(),
         joints: Vec::new(),
         actions: Vec::new(),
+        limits: Vec::new(),
         coordinates: Vec::new(),
         inputs: Vec::new(),
         frames: Vec::new(),
@@ -332,7 +334,7 @@ fn read_options(
         unify_scalar(scalar, found, place, cx);
     }
     let path = arguments.take_text("urdf", cx);
-    let file_only = ["base", "passive", "mimic", "inputs", "lock", "snap"];
+    let file_only = ["base", "passive", "mimic", "limits", "inputs", "lock", "snap"];
     if path.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -352,6 +354,7 @@ fn read_options(
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
+    let ignore_limits = choice("limits", ["honour", "ignore"]).unwrap_or(false);
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &asked, description, cx);
@@ -364,6 +367,7 @@ fn read_options(
         base: if base { Base::Free } else { Base::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
+        honour_limits: !ignore_limits,
         inertias: description.inertias,
         inputs: !no_inputs,
         lock,
@@ -496,6 +500,7 @@ fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<Stri
     names.extend(description.particles.iter().map(|p| &p.name));
     names.extend(description.joints.iter().map(|j| &j.name));
     names.extend(description.actions.iter().map(|a| &a.name));
+    names.extend(description.limits.iter().map(|l| &l.name));
     names.extend(description.coordinates.iter().map(|c| &c.name));
     names.extend(description.frames.iter().map(|f| &f.name));
     names.extend(description.points.iter().map(|p| &p.name));

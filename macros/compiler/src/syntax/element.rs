@@ -6,6 +6,7 @@ use super::constraint::read_constraint;
 use super::expression::parse_expr;
 use super::joint::read_joint;
 use super::joint_kind;
+use super::limit::read_limit;
 use super::{
     ActionKind, Body, ConstraintKind, Definition, Description, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, words,
@@ -17,13 +18,14 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
 /// The attributes of the language.
-pub const ATTRIBUTES: [&str; 12] = [
+pub const ATTRIBUTES: [&str; 13] = [
     "body",
     "particle",
     "frame",
     "point",
     "joint",
     "acts",
+    "limit",
     "energy",
     "dissipation",
     "constraint",
@@ -37,11 +39,12 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 12] = [
+const OTHERS: [(&str, &[&str]); 13] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
     ("Point", &["point"]),
+    ("Limit", &["limit"]),
     ("Potential", &["energy"]),
     ("Rayleigh", &["dissipation"]),
     ("Holonomic", &["constraint"]),
@@ -284,6 +287,7 @@ fn example(attribute: &str) -> &'static str {
         "body" => "`#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]`",
         "particle" => "`#[particle(mass = m, at = body.at(l * x))]`",
         "joint" => "`#[joint(parent -> child, about = z)]`",
+        "limit" => "`#[limit(on = joint, from = a, to = b)]`",
         _ => "`#[acts(on = joint, …)]`",
     }
 }
@@ -391,6 +395,7 @@ fn read_other(
             arguments.finish("a Point", &["on", "at"], cx);
             description.points.push(Point { name, on, at });
         }
+        "Limit" => read_limit(name, arguments, description, cx),
         "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
         "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
         "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),

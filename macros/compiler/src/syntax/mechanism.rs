@@ -95,6 +95,8 @@ pub struct UrdfOptions {
     pub honour_passive: bool,
     /// Mimic joints follow their masters.
     pub follow_mimic: bool,
+    /// Limits of the file are kept.
+    pub honour_limits: bool,
     /// What is made of mass properties.
     pub inertias: Inertias,
     /// Every moving joint with one degree of freedom is an input.

@@ -14,6 +14,7 @@ pub mod guard;
 pub mod home;
 pub mod joint;
 pub mod joint_kind;
+pub mod limit;
 pub mod mechanism;
 pub mod skipped;
 pub mod sound;
@@ -175,6 +176,8 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// Force elements and inputs.
     pub actions: Vec<Action>,
+    /// Limits of coordinates.
+    pub limits: Vec<Limit>,
     /// Coordinates of their own.
     pub coordinates: Vec<FreeCoordinate>,
     /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs themselves.
@@ -278,6 +281,23 @@ pub struct FreeCoordinate {
     pub name: Name,
     /// How many joints are declared before it.
     pub joints_before: usize,
+}
+
+/// Bounds of a coordinate.
+#[derive(Clone, Debug)]
+pub struct Limit {
+    /// Its name; that of the joint if it comes from a file.
+    pub name: Name,
+    /// The joint, or the coordinate of a joint, or a coordinate of its own.
+    pub on: Expr,
+    /// Least value.
+    pub from: Option<Expr>,
+    /// Largest value.
+    pub to: Option<Expr>,
+    /// Largest rate, in both directions.
+    pub max_speed: Option<Expr>,
+    /// Largest force or torque, in both directions.
+    pub max_effort: Option<Expr>,
 }
 
 /// A frame: axes without a place.

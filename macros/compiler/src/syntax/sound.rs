@@ -79,6 +79,7 @@ impl Reading {
         d.particles.retain(|p| kept(&p.name));
         d.joints.retain(|j| kept(&j.name));
         d.actions.retain(|a| kept(&a.name));
+        d.limits.retain(|l| kept(&l.name));
         d.coordinates.retain(|c| kept(&c.name));
         d.inputs.retain(kept);
         d.frames.retain(|f| kept(&f.name));

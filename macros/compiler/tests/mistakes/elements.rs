@@ -77,7 +77,7 @@ const OTHERS: &[Row] = &[
     ("Belt", "unknown element type `Belt`", "Holonomic"),
     ("Rope", "unknown element type `Rope`", "energy = k / 2 * pow(max(stretch, 0), 2)"),
     ("Tendon", "unknown element type `Tendon`", "max(stretch, 0)"),
-    ("Limit", "unknown element type `Limit`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
+    ("EndStop", "unknown element type `EndStop`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
     ("EndStop", "unknown element type `EndStop`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
     ("Contact", "unknown element type `Contact`", "`Rolling` or `Slipping`"),
     ("Wheel", "unknown element type `Wheel`", "rolls(wheel.circle(radius, y), ground.plane(z))"),

@@ -206,7 +206,7 @@ const ROWS: &[Row] = &[
     (
         "#[joint(ground -> arm, about = z, limit = 1)] hinge: Pin",
         "a Pin has no argument `limit`",
-        "min(stretch - low, 0)",
+        "`#[limit(on = hinge, from = a, to = b)] range: Limit`",
     ),
     (
         "#[joint(ground -> arm, about = z, torque = 1)] hinge: Pin",

@@ -27,6 +27,7 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         base: if robot.free { Base::Free } else { Base::Fixed },
         honour_passive: true,
         follow_mimic: true,
+        honour_limits: true,
         inertias: Inertias::Check,
         inputs: true,
         lock: robot.locked().map(name).collect(),

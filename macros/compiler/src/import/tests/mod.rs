@@ -23,6 +23,7 @@ fn defaults() -> UrdfOptions {
         base: Base::Fixed,
         honour_passive: true,
         follow_mimic: true,
+        honour_limits: true,
         inertias: Inertias::Check,
         inputs: false,
         lock: Vec::new(),

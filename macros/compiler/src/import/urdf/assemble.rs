@@ -24,11 +24,17 @@ pub(super) fn assemble(
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
+    let mut limits = Vec::new();
     for (joint, child) in &order.joints {
+        limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
+            Motion::Frozen(_) => None,
+            Motion::Own => joint.limits.of_joint(&joint.name, false),
+            Motion::Follows(_) => joint.limits.of_joint(&joint.name, true),
+        }));
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints, is_ground, snapped: robot.snapped }
+    Imported { bodies, joints, limits, is_ground, snapped: robot.snapped }
 }
 
 /// The joint that holds the root, which no URDF file names.

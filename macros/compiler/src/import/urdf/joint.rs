@@ -1,5 +1,6 @@
 //! `<joint>` → [`FileJoint`]: what the file says of one joint, before locks and followers are looked at.
 
+use super::limit::{FileLimits, read_limits};
 use super::origin::{Origin, read_origin};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
@@ -36,6 +37,8 @@ pub(super) struct FileJoint {
     pub(super) axis: Placed<[f64; 3]>,
     /// Whom it follows, if the user wants to know.
     pub(super) mimic: Option<Mimic>,
+    /// Its limits.
+    pub(super) limits: FileLimits,
     /// Viscous damping, not zero.
     pub(super) damping: Option<Expr>,
     /// Coulomb friction, not zero.
@@ -45,13 +48,18 @@ pub(super) struct FileJoint {
 impl FileJoint {
     /// True if one number says where the joint stands.
     pub(super) fn has_coordinate(&self) -> bool {
-        matches!(self.kind, JointKind::Pin | JointKind::Sleeve)
+        has_coordinate(self.kind)
     }
 
     /// True if it moves about or along its axis.
     pub(super) fn has_axis(&self) -> bool {
         has_axis(self.kind)
     }
+}
+
+/// True if one number says where joints of the kind stand.
+fn has_coordinate(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Pin | JointKind::Sleeve)
 }
 
 /// True if joints of the kind move about or along an axis.
@@ -64,8 +72,8 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     check_attributes(node, &["name", "type"], &[], cx);
     let joint = name(node, "name", cx);
     let kind = read_type(node, cx);
-    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
-    let [origin, parent, child, axis, dynamics, mimic] = children(node, known, cx);
+    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
+    let [origin, parent, child, axis, dynamics, mimic, limit] = children(node, known, cx);
     let origin = read_origin(origin, node, cx);
     let parent = read_end(parent, node, "parent", cx);
     let child = read_end(child, node, "child", cx);
@@ -76,8 +84,10 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     let [damping, friction] =
         read_dynamics(dynamics.filter(|_| moves && options.honour_passive), word, kind, cx);
     let mimic = mimic.filter(|_| moves && options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));
+    let limit = limit.filter(|_| has_coordinate(kind) && options.honour_limits);
+    let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
-    Some(FileJoint { name, kind, word, parent, child, origin, axis, mimic, damping, friction })
+    Some(FileJoint { name, kind, word, parent, child, origin, axis, mimic, limits, damping, friction })
 }
 
 fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {

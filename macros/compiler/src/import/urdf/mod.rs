@@ -12,6 +12,7 @@ use robot::Robot;
 
 mod assemble;
 mod joint;
+mod limit;
 mod link;
 mod motion;
 mod names;

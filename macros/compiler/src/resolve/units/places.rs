@@ -11,7 +11,7 @@ use crate::resolve::contact::FORMS;
 use crate::resolve::inertia::SOLIDS;
 use crate::syntax::{
     Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
-    Target,
+    Limit, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -74,6 +74,7 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     for action in &d.actions {
         places.action(action, inference);
     }
+    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.limit(l, inference));
     for constraint in &d.constraints {
         places.constraint(constraint, inference);
     }
@@ -208,6 +209,18 @@ impl<'a> Places<'a> {
         if let Some(force) = force {
             self.element(action, &work, &force, inference);
         }
+    }
+
+    fn limit(&mut self, limit: &'a Limit, inference: &Inference<'a>) {
+        let Some(q) = coordinate(&limit.on, inference) else { return };
+        let [length, speed, effort] = match (q.is_plain(), q.is_known()) {
+            (true, _) => ["rad", "rad/s", "N·m"],
+            (_, true) => ["m", "m/s", "N"],
+            _ => [""; 3],
+        };
+        self.all(limit.from.iter().chain(&limit.to), &q, length);
+        self.maybe(&limit.max_speed, q.over(&TIME), speed);
+        self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
     }
 
     fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {

@@ -6,7 +6,8 @@ pub type Words = &'static [(&'static str, &'static str)];
 
 const ONE_SIDED: &str =
     "what only pulls is a `Spring` given by its energy: `energy = k / 2 * pow(max(stretch, 0), 2)`";
-const END_STOP: &str = "the language has no limits; an end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
+const END_STOP: &str = "an end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`; a bound that only controllers read is a `Limit`";
+const LIMITED: &str = "a limit is a field of its own: `#[limit(on = NAME, from = a, to = b)] range: Limit`";
 const RATIO: &str =
     "a ratio of two coordinates is a constraint: `#[constraint(second + ratio * first = 0)] gear: Holonomic`";
 const CONTROL: &str = "what a controller decides is an input, `Force`, `Torque` or `Input`; the controller itself is Rust of your own";
@@ -72,7 +73,8 @@ pub const ELEMENTS: Words = &[
     ("constraint constraints", CONSTRAINT),
     ("gear gears gearbox belt pulley transmission differential coupler mimic rackandpinion", RATIO),
     ("rope cable tendon string chain wire muscle thread", ONE_SIDED),
-    ("limit limits stop endstop bumper hardstop", END_STOP),
+    ("limits range bounds jointlimit jointlimits", "Limit"),
+    ("stop endstop bumper hardstop", END_STOP),
     ("contact contacts collision collider impact", TOUCH),
     (
         "wheel roller tire tyre",
@@ -142,7 +144,10 @@ pub const JOINT: Words = &[
         "what drives a joint is a field of its own: `#[acts(on = NAME)] motor: Torque`",
     ),
     ("force", "what drives a joint is a field of its own: `#[acts(on = NAME)] motor: Force`"),
-    ("limit limits lower upper range min max", END_STOP),
+    (
+        "limit limits lower upper range min max from to maxspeed maxvelocity maxeffort maxtorque maxforce",
+        LIMITED,
+    ),
     ("ratio mimic gear", RATIO),
     (
         "coordinate coordinates q name symbol speed speeds",
@@ -229,6 +234,19 @@ pub const TORQUE: Words = &[
     ("magnitude torque tau moment vector expression", "value"),
     ("at point position location", "a torque has no point: write `on = body`"),
     ("max min limit limits saturation", SATURATION),
+];
+
+/// Arguments of a limit.
+pub const LIMIT: Words = &[
+    (ON, "on"),
+    ("lower low min minimum least start lowerlimit", "from"),
+    ("upper high max maximum most end upperlimit", "to"),
+    ("velocity speed rate maxvelocity vmax maxrate", "max_speed"),
+    ("effort force torque maxforce maxtorque fmax taumax", "max_effort"),
+    (
+        "restitution stiffness damping",
+        "a limit exerts no force; an end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`",
+    ),
 ];
 
 /// Arguments of a point.

@@ -1,0 +1,112 @@
+//! The limits of the coordinates.
+
+use super::signature::Signature;
+use crate::mechanism::{Limit, Model};
+use std::fmt::Write;
+
+/// Where the bounds of an entry of `v` stand among the values of the hidden function, and its coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Limited {
+    /// Index of the coordinate in `q`.
+    q: usize,
+    /// Index in `v`.
+    v: usize,
+    /// Lower, upper, speed, effort: index of the value, and the value if it is a number.
+    bounds: [Option<(usize, Option<f64>)>; 4],
+}
+
+impl Limited {
+    /// All that are limited, in the order of the values.
+    pub fn of(model: &Model<'_>) -> Vec<Limited> {
+        let mut next = 0;
+        let mut place = |limit: &Limit<'_>| {
+            let bounds = limit.bounds().map(|bound| {
+                let found = (next, bound?.value());
+                next += 1;
+                Some(found)
+            });
+            Limited { q: limit.q, v: limit.v, bounds }
+        };
+        model.limits.iter().map(&mut place).collect()
+    }
+
+    /// Where a bound stands.
+    fn index(&self, which: usize) -> Option<usize> {
+        self.bounds.get(which).copied().flatten().map(|(k, _)| k)
+    }
+}
+
+/// The functions of the trait, with the sign of their infinity.
+const FUNCTIONS: [(&str, &str); 4] = [
+    ("lower_limits", "NEG_INFINITY"),
+    ("upper_limits", "INFINITY"),
+    ("velocity_limits", "INFINITY"),
+    ("effort_limits", "INFINITY"),
+];
+
+/// The functions of the runtime's trait of limits; those that are not written say that there are none.
+pub fn write_trait(out: &mut String, limited: &[Limited], s: &Signature<'_>) {
+    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(out, "type Scalar = {scalar};");
+    for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
+        if limited.iter().all(|limit| limit.index(which).is_none()) {
+            continue;
+        }
+        let entry = |v: usize| {
+            let limit = limited.iter().find(|limit| limit.v == v);
+            match limit.and_then(|limit| limit.index(which)) {
+                Some(k) => format!("limits[{k}]"),
+                None => "none".to_string(),
+            }
+        };
+        let entries: Vec<String> = (0..s.nv).map(entry).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {name}(&self) -> {v} {{
+            let limits = self.__limits();
+            let none = ::linkwork::__private::constant::<{scalar}>(f64::{infinity});
+            ::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([[{}]]))\n}}",
+            entries.join(", ")
+        );
+    }
+    if limited.iter().all(|limit| limit.index(0).is_none() && limit.index(1).is_none()) {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn clamp_configuration(&self, q: &{q}) -> {q} {{\nlet limits = self.__limits();\nlet [mut q] = q.data.0;"
+    );
+    for limit in limited {
+        let k = limit.q;
+        for (which, function) in [(0, "at_least"), (1, "at_most")] {
+            if let Some(bound) = limit.index(which) {
+                let _ = writeln!(out, "q[{k}] = ::linkwork::__private::{function}(q[{k}], limits[{bound}]);");
+            }
+        }
+    }
+    out.push_str(
+        "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([q]))\n}\n",
+    );
+}
+
+/// A table for the struct's documentation.
+pub fn write_docs(text: &mut String, limited: &[Limited], velocities: &[String]) {
+    if limited.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n# Limits\n\nSI units; forces are generalized ones.\n\n| | from | to | speed | force |\n| --- | ---: | ---: | ---: | ---: |\n",
+    );
+    for limit in limited {
+        let name = velocities.get(limit.v).map_or("", String::as_str);
+        let _ = write!(text, "| `{name}` |");
+        for bound in limit.bounds {
+            let _ = match bound {
+                Some((_, Some(number))) => write!(text, " {number} |"),
+                Some((_, None)) => write!(text, " by parameters |"),
+                None => write!(text, " |"),
+            };
+        }
+        text.push('\n');
+    }
+}

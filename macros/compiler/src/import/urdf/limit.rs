@@ -1,0 +1,80 @@
+//! `<limit>` of a joint → bounds of its coordinate.
+
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, number};
+use crate::import::imported::Placed;
+use crate::syntax::{Expr, ExprKind, Limit, Name};
+
+/// What a file says of the limits of a joint; nothing where it bounds nothing.
+#[derive(Default)]
+pub(super) struct FileLimits {
+    lower: Option<Placed<f64>>,
+    upper: Option<Placed<f64>>,
+    velocity: Option<Placed<f64>>,
+    effort: Option<Placed<f64>>,
+}
+
+/// What to do with limits that are none.
+const IGNORE: &str = "to leave limits out, write `#[mechanism(…, limits = ignore)]`";
+
+/// Reads the limits of a joint that has one coordinate; `continuous` ones have no ends.
+pub(super) fn read_limits(
+    node: Option<Node<'_>>,
+    joint: Option<&Name>,
+    continuous: bool,
+    cx: &mut Cx<'_>,
+) -> FileLimits {
+    let Some(node) = node else { return FileLimits::default() };
+    check_attributes(node, &[], &["lower", "upper", "velocity", "effort"], cx);
+    let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
+    let mut end = |which: &str, infinite: &str| ends.then(|| bound(node, which, infinite, cx)).flatten();
+    let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));
+    let name = joint.map_or_else(String::new, |name| format!(" of joint {}", quote(&name.text)));
+    if let (Some(low), Some(high)) = (&lower, &upper)
+        && low.value > high.value
+    {
+        let message = format!("`lower`{name} is {}, above its `upper`, which is {}", low.value, high.value);
+        cx.error(&low.place, message, |d| d.help("without one of the two it is 0").help(IGNORE));
+    }
+    let mut size = |which: &str| {
+        let found = node.has_attribute(which).then(|| bound(node, which, "inf", cx)).flatten()?;
+        if found.value < 0.0 {
+            let message = format!("negative `{which}`{name}: {}", found.value);
+            cx.error(&found.place, message, |d| d.help(IGNORE));
+        }
+        Some(found)
+    };
+    let (velocity, effort) = (size("velocity"), size("effort"));
+    FileLimits { lower, upper, velocity, effort }
+}
+
+/// A number, or infinity, which bounds nothing; 0 if it is not written.
+fn bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+    let Some(text) = node.attribute(which) else {
+        return Some(Placed { value: 0.0, place: cx.place(node.range().start) });
+    };
+    let plain = text.trim().trim_start_matches('+').to_ascii_lowercase();
+    if plain == infinite || plain == format!("{infinite}inity") {
+        return None;
+    }
+    number(node, which, cx)
+}
+
+impl FileLimits {
+    /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's motion, and not
+    /// what drives it.
+    pub(super) fn of_joint(&self, joint: &Name, follows: bool) -> Option<Limit> {
+        let expression =
+            |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));
+        let limit = Limit {
+            name: joint.clone(),
+            on: Expr { kind: ExprKind::Name(joint.text.clone()), place: joint.place.clone() },
+            from: expression(&self.lower),
+            to: expression(&self.upper),
+            max_speed: expression(&self.velocity),
+            max_effort: expression(&self.effort).filter(|_| !follows),
+        };
+        let bounds = [&limit.from, &limit.to, &limit.max_speed, &limit.max_effort];
+        bounds.iter().any(|bound| bound.is_some()).then_some(limit)
+    }
+}

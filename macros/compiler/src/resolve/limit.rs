@@ -1,0 +1,120 @@
+//! Limits → bounds of the entries of `q` and `v`. Several limits of one entry hold together.
+
+use super::builder::Builder;
+use crate::diag::Diagnostics;
+use crate::expr::{Expr as Value, Extreme};
+use crate::mechanism::{Coordinate, Limit};
+use crate::syntax::{self, Expr};
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds all limits to the model.
+    pub fn add_limits(&mut self, cx: &mut Diagnostics) {
+        for limit in &self.description.limits {
+            let Some((coordinate, angle)) = self.coordinate(&limit.on, cx) else { continue };
+            let bounds =
+                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check(limit, bounds, cx));
+            if let Some(bounds) = bounds {
+                self.bound(limit, &coordinate, bounds, cx);
+            }
+        }
+    }
+
+    /// The values of the four bounds; `None` after a mistake.
+    fn bounds(
+        &self,
+        limit: &syntax::Limit,
+        angle: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<[Option<Value<'g>>; 4]> {
+        let mut good = true;
+        let mut read = |e: &Option<Expr>, angle: bool| {
+            let e = e.as_ref()?;
+            // A file's numbers are in radians, however many turns they are.
+            let value = match angle && e.place.file.is_none() {
+                true => self.scope.plane_angle(e, cx),
+                false => self.scope.scalar(e, cx),
+            };
+            good &= value.is_some();
+            value
+        };
+        let bounds = [
+            read(&limit.from, angle),
+            read(&limit.to, angle),
+            read(&limit.max_speed, false),
+            read(&limit.max_effort, false),
+        ];
+        good.then_some(bounds)
+    }
+
+    /// Adds bounds of `ratio × q + offset`.
+    fn bound(
+        &mut self,
+        limit: &syntax::Limit,
+        c: &Coordinate,
+        [from, to, speed, effort]: [Option<Value<'g>>; 4],
+        cx: &mut Diagnostics,
+    ) {
+        let num = |x: f64| self.scope.graph.num(x);
+        let own = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
+        let (from, to) = (from.map(own), to.map(own));
+        let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
+        let speed = speed.map(|speed| speed / num(c.ratio.abs()));
+        let effort = effort.map(|effort| effort * num(c.ratio.abs()));
+        let found = Limit { q: c.q, v: c.v, lower, upper, speed, effort };
+        let Some(known) = self.model.limits.iter_mut().find(|known| known.v == c.v) else {
+            self.model.limits.push(found);
+            return;
+        };
+        let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.extreme(which, b)),
+            (a, b) => a.or(b),
+        };
+        let both = Limit {
+            lower: tighter(Extreme::Max, known.lower, found.lower),
+            upper: tighter(Extreme::Min, known.upper, found.upper),
+            speed: tighter(Extreme::Min, known.speed, found.speed),
+            effort: tighter(Extreme::Min, known.effort, found.effort),
+            ..found
+        };
+        let leaves_room = |limit: &Limit<'_>| room(limit).is_none_or(|room| room > 0.0);
+        if leaves_room(known) && leaves_room(&found) && !leaves_room(&both) {
+            let name = self.model.velocities.get(c.v).map_or("", |(name, _)| name.as_str());
+            let place = if limit.on.place.file.is_some() { &limit.name.place } else { &limit.on.place };
+            let error = cx.error(place.clone(), format!("the limits of `{name}` leave it no room"));
+            match limit.name.text == name || limit.on.place.file.is_none() {
+                true => error.help("all limits of a coordinate hold together, those of a file too"),
+                false => error.help(format!(
+                    "`{}` follows it and has limits of its own; to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+                    limit.name.text
+                )),
+            };
+        }
+        *known = both;
+    }
+}
+
+/// The distance between the bounds of a coordinate, if both are numbers.
+fn room(limit: &Limit<'_>) -> Option<f64> {
+    Some(limit.upper?.value()? - limit.lower?.value()?)
+}
+
+/// Reports bounds that nothing can keep.
+fn check(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
+    let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
+    if let (Some(low), Some(high), Some(e)) = (from, to, &limit.to)
+        && low > high
+    {
+        cx.error(e.place.clone(), format!("`to` is {high}, less than `from`, which is {low}"))
+            .help("`from` is the lower bound, `to` the upper one");
+        return false;
+    }
+    for (key, value, e) in [("max_speed", speed, &limit.max_speed), ("max_effort", effort, &limit.max_effort)]
+    {
+        if let (Some(value), Some(e)) = (value.filter(|value| *value < 0.0), e) {
+            cx.error(e.place.clone(), format!("a `{key}` cannot be negative, but it is {value}"))
+                .help("it bounds both directions: write its magnitude");
+            return false;
+        }
+    }
+    true
+}
