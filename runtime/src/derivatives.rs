@@ -1,5 +1,6 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
+use crate::blocks::{add_product, is_zero, product};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{At, Mechanism, Real, Rheonomic};
@@ -103,14 +104,21 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
         let (force_by_q, force_by_v, force_by_u) = Derivatives::generalized_forces_derivatives(self, q, v, u);
         let (turning, _) = Derivatives::tangent_rate_derivatives(self, &SVector::zeros(), v);
-        LinearMotion {
+        let mut motion = LinearMotion {
             acceleration: Mechanism::forward_dynamics(self, q, v, &tau),
-            by_q: by_q + by_force * force_by_q,
-            by_v: by_v + by_force * force_by_v,
-            by_u: by_force * force_by_u,
+            by_q,
+            by_v,
+            by_u: product(&by_force, &force_by_u),
             // The tangent space moves along, so that the bracket counts twice.
             turning: turning * constant::<Self::Scalar>(2.0),
+        };
+        // Most inputs push along joints.
+        for (by_state, of_force) in [(&mut motion.by_q, &force_by_q), (&mut motion.by_v, &force_by_v)] {
+            if !is_zero(of_force) {
+                add_product(by_state, &by_force, of_force);
+            }
         }
+        motion
     }
 }
 

@@ -34,6 +34,7 @@
 //! # }
 //! ```
 
+use crate::blocks::{add_product, product, zeros};
 use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives, column, entry};
 use crate::integrate::{Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Steered, System};
 use crate::private::{constant, to_f64};
@@ -162,6 +163,9 @@ pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub v_by_v: SMatrix<T, NV, NV>,
     /// How the velocity changes with the inputs.
     pub v_by_u: SMatrix<T, NV, NU>,
+    /// The period `h`, s, of a step with `q⁺ = q + h v⁺` ([`SemiImplicitEuler`] in plain coordinates): its derivatives follow from
+    /// those of the velocity, which halves what [`backward`](crate::optimal::backward) has to do.
+    pub chained: Option<T>,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
@@ -229,12 +233,13 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
         (by_b, b): (&SMatrix<T, NV, NV>, &Self),
     ) -> Self {
-        Self {
-            value,
-            by_q: by_a * a.by_q + by_b * b.by_q,
-            by_v: by_a * a.by_v + by_b * b.by_v,
-            by_u: by_a * a.by_u + by_b * b.by_u,
+        let mut sum = Self { value, by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        for (by, part) in [(by_a, a), (by_b, b)] {
+            add_product(&mut sum.by_q, by, &part.by_q);
+            add_product(&mut sum.by_v, by, &part.by_v);
+            add_product(&mut sum.by_u, by, &part.by_u);
         }
+        sum
     }
 }
 
@@ -254,13 +259,19 @@ where
     /// The configuration `q ⊕ displacement` with how it moves.
     fn moved(&self, displacement: &Sensitive<T, NV, NU>) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         let q = self.mechanism.integrate(self.q, &displacement.value);
+        if NQ == NV {
+            // Plain coordinates: a displacement is added.
+            let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
+            return (q, Sensitive { by_q, ..*displacement });
+        }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives(&displacement.value);
-        let motion = Sensitive {
+        let mut motion = Sensitive {
             value: displacement.value,
-            by_q: by_q + by_dv * displacement.by_q,
-            by_v: by_dv * displacement.by_v,
-            by_u: by_dv * displacement.by_u,
+            by_q,
+            by_v: product(&by_dv, &displacement.by_v),
+            by_u: product(&by_dv, &displacement.by_u),
         };
+        add_product(&mut motion.by_q, &by_dv, &displacement.by_q);
         (q, motion)
     }
 
@@ -293,6 +304,7 @@ where
             v_by_q: v.by_q,
             v_by_v: v.by_v,
             v_by_u: v.by_u,
+            chained: None,
         }
     }
 
@@ -315,10 +327,30 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (h, start) = (self.length(), Start { mechanism, t, q, u });
-        let before = Sensitive::velocity(v);
-        let v = before.plus(h, &start.acceleration(T::zero(), &start.here(), &before));
-        start.end(&v.scaled(h), &v)
+        let h = self.length();
+        let motion = at(mechanism, t).linear_motion(q, v, u);
+        let after = Sensitive {
+            value: v + motion.acceleration * h,
+            by_q: motion.by_q * h,
+            by_v: SMatrix::identity() + motion.by_v * h,
+            by_u: motion.by_u * h,
+        };
+        let displacement = after.scaled(h);
+        if NQ != NV {
+            return Start { mechanism, t, q, u }.end(&displacement, &after);
+        }
+        // q + h v⁺.
+        Transition {
+            q: mechanism.integrate(q, &displacement.value),
+            v: after.value,
+            q_by_q: SMatrix::identity() + displacement.by_q,
+            q_by_v: displacement.by_v,
+            q_by_u: displacement.by_u,
+            v_by_q: after.by_q,
+            v_by_v: after.by_v,
+            v_by_u: after.by_u,
+            chained: Some(h),
+        }
     }
 }
 

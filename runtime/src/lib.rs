@@ -93,6 +93,7 @@ pub use simulate::simulate;
 pub mod absent;
 mod arithmetic;
 pub mod batch;
+mod blocks;
 pub mod constraint;
 mod derivatives;
 pub mod discrete;

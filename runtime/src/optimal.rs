@@ -42,9 +42,12 @@
 //! # }
 //! ```
 
+use crate::arithmetic::{Arithmetic, Compiled};
+use crate::blocks::{add_multiple, add_product, make_symmetric, product, transposed};
 use crate::discrete::Transition;
+use crate::private::constant;
 use crate::{InputSecondOrder, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Costs to second order about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) · Hessian (δq, δv, δu)`, in units of
 /// the user's. Displacements of ball and free joints are in body axes.
@@ -169,108 +172,205 @@ pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     after: &Value<T, NV>,
     regularisation: T,
 ) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-    // The rows of S [A B].
-    let rows = |by_q: &SMatrix<T, NV, NV>, by_v: &SMatrix<T, NV, NV>| {
-        (after.qq * by_q + after.qv * by_v, after.qv.tr_mul(by_q) + after.vv * by_v)
+    let before = match step.chained {
+        Some(h) => chained(step, cost, after, h),
+        None => general(step, cost, after),
     };
-    let (q_by_q, v_by_q) = rows(&step.q_by_q, &step.v_by_q);
-    let (q_by_v, v_by_v) = rows(&step.q_by_v, &step.v_by_v);
-    let q_by_u = after.qq * step.q_by_u + after.qv * step.v_by_u;
-    let v_by_u = after.qv.tr_mul(&step.q_by_u) + after.vv * step.v_by_u;
-    // The costs of state and inputs before the step.
-    let uu = cost.uu + step.q_by_u.tr_mul(&q_by_u) + step.v_by_u.tr_mul(&v_by_u);
-    let uq = cost.qu.transpose() + step.q_by_u.tr_mul(&q_by_q) + step.v_by_u.tr_mul(&v_by_q);
-    let uv = cost.vu.transpose() + step.q_by_u.tr_mul(&q_by_v) + step.v_by_u.tr_mul(&v_by_v);
-    let (back_q, back_v, back_u) = step.adjoint(&after.q, &after.v);
-    let (q, v, u) = (cost.q + back_q, cost.v + back_v, cost.u + back_u);
-    let (factor, pivots) = factors(&uu, regularisation)?;
-    let change = -solve(&factor, &pivots, &u);
-    let (by_q, by_v) = (-solve(&factor, &pivots, &uq), -solve(&factor, &pivots, &uv));
-    let linear = u.dot(&change);
-    let quadratic = (uu * change).dot(&change) * crate::private::constant(0.5);
-    // With K = −Quu⁻¹ Qux the costs to go are Qxx + Qxuᵀ K, exactly so without regularisation; with it, two more terms.
-    let (ru, rq, rv) = match regularisation == T::zero() {
-        true => (SVector::zeros(), SMatrix::zeros(), SMatrix::zeros()),
-        false => (change * -regularisation, by_q * -regularisation, by_v * -regularisation),
-    };
-    let half = |m: SMatrix<T, NV, NV>| (m + m.transpose()) * crate::private::constant::<T>(0.5);
-    let to_go = Value {
-        q: q + uq.tr_mul(&change) + by_q.tr_mul(&ru),
-        v: v + uv.tr_mul(&change) + by_v.tr_mul(&ru),
-        qq: half(
-            cost.qq
-                + step.q_by_q.tr_mul(&q_by_q)
-                + step.v_by_q.tr_mul(&v_by_q)
-                + uq.tr_mul(&by_q)
-                + by_q.tr_mul(&rq),
-        ),
-        qv: cost.qv
-            + step.q_by_q.tr_mul(&q_by_v)
-            + step.v_by_q.tr_mul(&v_by_v)
-            + uq.tr_mul(&by_v)
-            + by_q.tr_mul(&rv),
-        vv: half(
-            cost.vv
-                + step.q_by_v.tr_mul(&q_by_v)
-                + step.v_by_v.tr_mul(&v_by_v)
-                + uv.tr_mul(&by_v)
-                + by_v.tr_mul(&rv),
-        ),
-    };
-    Ok((Policy { change, by_q, by_v, expected: [linear, quadratic] }, to_go))
+    before.minimised(regularisation)
 }
 
-/// `L` and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`.
+/// The costs before a step by state and inputs, those after it included; blocks with inputs have these as their rows.
+struct Before<T, const NV: usize, const NU: usize> {
+    q: SVector<T, NV>,
+    v: SVector<T, NV>,
+    u: SVector<T, NU>,
+    qq: SMatrix<T, NV, NV>,
+    qv: SMatrix<T, NV, NV>,
+    vv: SMatrix<T, NV, NV>,
+    uq: SMatrix<T, NU, NV>,
+    uv: SMatrix<T, NU, NV>,
+    uu: SMatrix<T, NU, NU>,
+}
+
+/// For any step.
+fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    step: &Transition<T, NQ, NV, NU>,
+    cost: &Quadratic<T, NV, NU>,
+    after: &Value<T, NV>,
+) -> Before<T, NV, NU> {
+    let mut before = Before::of(cost);
+    let vq = transposed(&after.qv);
+    // Column by column of blocks: the rows of S [A B], then what the rows of [A B]ᵀ make of them.
+    let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
+    let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
+    let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
+    let by_q = rows(after, &vq, &step.q_by_q, &step.v_by_q);
+    add_both(&mut before.qq, &q_by_q, &v_by_q, &by_q);
+    add_both(&mut before.uq, &q_by_u, &v_by_u, &by_q);
+    let by_v = rows(after, &vq, &step.q_by_v, &step.v_by_v);
+    add_both(&mut before.qv, &q_by_q, &v_by_q, &by_v);
+    add_both(&mut before.vv, &q_by_v, &v_by_v, &by_v);
+    add_both(&mut before.uv, &q_by_u, &v_by_u, &by_v);
+    let by_u = rows(after, &vq, &step.q_by_u, &step.v_by_u);
+    add_both(&mut before.uu, &q_by_u, &v_by_u, &by_u);
+    let gradient = (after.q, after.v);
+    add_both(&mut before.q, &q_by_q, &v_by_q, &gradient);
+    add_both(&mut before.v, &q_by_v, &v_by_v, &gradient);
+    add_both(&mut before.u, &q_by_u, &v_by_u, &gradient);
+    before
+}
+
+/// The rows of configuration and velocity of `S X`.
+fn rows<T: Real, const NV: usize, const C: usize>(
+    after: &Value<T, NV>,
+    vq: &SMatrix<T, NV, NV>,
+    q: &SMatrix<T, NV, C>,
+    v: &SMatrix<T, NV, C>,
+) -> (SMatrix<T, NV, C>, SMatrix<T, NV, C>) {
+    let (mut of_q, mut of_v) = (product(&after.qq, q), product(vq, q));
+    add_product(&mut of_q, &after.qv, v);
+    add_product(&mut of_v, &after.vv, v);
+    (of_q, of_v)
+}
+
+/// Adds the products with the rows of configuration and velocity.
+fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    q: &SMatrix<T, R, NV>,
+    v: &SMatrix<T, R, NV>,
+    (of_q, of_v): &(SMatrix<T, NV, C>, SMatrix<T, NV, C>),
+) {
+    add_product(sum, q, of_q);
+    add_product(sum, v, of_v);
+}
+
+/// For a step with `q⁺ = q + h v⁺`: with `G` the derivatives of `v⁺`, `A = [1 0; 0 0] + H G_x` and `B = H G_u`, `H = [h; 1]`, so that
+/// `W = Hᵀ S H` takes the place of `S`.
+fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    step: &Transition<T, NQ, NV, NU>,
+    cost: &Quadratic<T, NV, NU>,
+    after: &Value<T, NV>,
+    h: T,
+) -> Before<T, NV, NU> {
+    let mut before = Before::of(cost);
+    let vq = transposed(&after.qv);
+    // Z = h S_qq + S_qv, W = h (Z + S_vq) + S_vv.
+    let (mut z, mut w) = (after.qv, after.vv);
+    add_multiple(&mut z, h, &after.qq);
+    add_multiple(&mut w, h, &z);
+    add_multiple(&mut w, h, &vq);
+    let (by_q, by_v, by_u) = (&step.v_by_q, &step.v_by_v, &step.v_by_u);
+    let (q_rows, v_rows, u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
+    // W G_q + Zᵀ, W G_v, W G_u.
+    let mut of_q = transposed(&z);
+    add_product(&mut of_q, &w, by_q);
+    add_multiple(&mut before.qq, T::one(), &after.qq);
+    add_product(&mut before.qq, &z, by_q);
+    add_product(&mut before.qq, &q_rows, &of_q);
+    add_product(&mut before.uq, &u_rows, &of_q);
+    let of_v = product(&w, by_v);
+    add_product(&mut before.qv, &z, by_v);
+    add_product(&mut before.qv, &q_rows, &of_v);
+    add_product(&mut before.vv, &v_rows, &of_v);
+    add_product(&mut before.uv, &u_rows, &of_v);
+    add_product(&mut before.uu, &u_rows, &product(&w, by_u));
+    let mut gradient = after.v;
+    add_multiple(&mut gradient, h, &after.q);
+    add_multiple(&mut before.q, T::one(), &after.q);
+    add_product(&mut before.q, &q_rows, &gradient);
+    add_product(&mut before.v, &v_rows, &gradient);
+    add_product(&mut before.u, &u_rows, &gradient);
+    before
+}
+
+impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {
+    /// Those of the instant alone.
+    fn of(cost: &Quadratic<T, NV, NU>) -> Self {
+        let Quadratic { q, v, u, qq, qv, vv, uu, .. } = *cost;
+        Self { q, v, u, qq, qv, vv, uq: transposed(&cost.qu), uv: transposed(&cost.vu), uu }
+    }
+
+    /// The best change of the inputs, and what the costs then are.
+    fn minimised(self, regularisation: T) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
+        let Before { mut q, mut v, u, mut qq, mut qv, mut vv, uq, uv, uu } = self;
+        let (factor, pivots) = factors(&uu, regularisation)?;
+        let (mut change, mut by_q, mut by_v) = (u, uq, uv);
+        solve(&factor, &pivots, &mut change);
+        solve(&factor, &pivots, &mut by_q);
+        solve(&factor, &pivots, &mut by_v);
+        let linear = u.dot(&change);
+        // (Q_uu + r) change = −Q_u.
+        let quadratic = (linear + regularisation * change.dot(&change)) * constant(-0.5);
+        // With K = −Q_uu⁻¹ Q_ux the costs to go are Q_xx + Q_xu K; with regularisation r, less by r Kᵀ K.
+        let (mut q_rows, mut v_rows) = (transposed(&uq), transposed(&uv));
+        if regularisation != T::zero() {
+            add_multiple(&mut q_rows, -regularisation, &transposed(&by_q));
+            add_multiple(&mut v_rows, -regularisation, &transposed(&by_v));
+        }
+        add_product(&mut q, &q_rows, &change);
+        add_product(&mut v, &v_rows, &change);
+        add_product(&mut qq, &q_rows, &by_q);
+        add_product(&mut qv, &q_rows, &by_v);
+        add_product(&mut vv, &v_rows, &by_v);
+        make_symmetric(&mut qq);
+        make_symmetric(&mut vv);
+        Ok((Policy { change, by_q, by_v, expected: [linear, quadratic] }, Value { q, v, qq, qv, vv }))
+    }
+}
+
+/// `L` below the diagonal and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`.
 fn factors<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
     regularisation: T,
 ) -> Result<(SMatrix<T, N, N>, SVector<T, N>), Indefinite> {
-    let (mut l, mut inverse) = (*matrix, SVector::zeros());
+    let (mut l, mut inverse) = (matrix.data.0, [T::zero(); N]);
     for j in 0..N {
-        let pivot = l.data.0[j][j] + regularisation;
+        let column = l[j];
+        let pivot = column[j] + regularisation;
         if !(pivot > T::zero() && pivot.is_finite()) {
             return Err(Indefinite { input: j });
         }
-        let over = T::one() / pivot;
-        inverse.data.0[0][j] = over;
-        let column = l.data.0[j];
+        inverse[j] = T::one() / pivot;
+        let mut scaled = column;
+        scaled.iter_mut().for_each(|x| *x *= inverse[j]);
+        // Whole columns: what stands above the diagonal is read by nothing.
         for k in j + 1..N {
-            let factor = column[k] * over;
-            for i in k..N {
-                l.data.0[k][i] -= column[i] * factor;
+            for (entry, x) in l[k].iter_mut().zip(&column) {
+                *entry = Compiled::neg_mul_add(*x, scaled[k], *entry);
             }
-            l.data.0[j][k] = factor;
         }
+        l[j] = scaled;
     }
-    Ok((l, inverse))
+    let storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
+    Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// `(L D Lᵀ)⁻¹ B`.
+/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`, row by row, so that all columns go at once.
+#[inline(never)]
 fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
-    b: &SMatrix<T, N, C>,
-) -> SMatrix<T, N, C> {
-    // Row by row, so that all columns go at once.
-    let mut rows: [[T; C]; N] = core::array::from_fn(|i| core::array::from_fn(|c| b.data.0[c][i]));
+    b: &mut SMatrix<T, N, C>,
+) {
+    let (l, inverse) = (&l.data.0, &inverse.data.0[0]);
+    let mut rows = transposed(b).data.0;
     for j in 0..N {
         let row = rows[j];
         for i in j + 1..N {
-            let factor = l.data.0[j][i];
-            for c in 0..C {
-                rows[i][c] -= row[c] * factor;
+            for (entry, x) in rows[i].iter_mut().zip(&row) {
+                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
             }
         }
     }
     for j in (0..N).rev() {
-        let mut row = rows[j].map(|x| x * inverse.data.0[0][j]);
+        let mut row = rows[j];
+        row.iter_mut().for_each(|x| *x *= -inverse[j]);
         for i in j + 1..N {
-            let factor = l.data.0[j][i];
-            for c in 0..C {
-                row[c] -= rows[i][c] * factor;
+            for (entry, x) in row.iter_mut().zip(&rows[i]) {
+                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
             }
         }
         rows[j] = row;
     }
-    SMatrix::from_fn(|i, c| rows[i][c])
+    *b = transposed(&SMatrix::from_array_storage(ArrayStorage(rows)));
 }

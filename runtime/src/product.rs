@@ -2,6 +2,7 @@
 //! matrices, and skip what is known to be zero.
 
 mod column;
+pub(crate) use column::{part, put};
 mod inverse;
 
 use crate::Real;

@@ -1,6 +1,8 @@
 //! Second derivatives of the dynamics for generic code: differential dynamic programming, Newton's method on trajectories.
 
+use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
 use crate::forward::each_function;
+use crate::private::constant;
 use crate::{At, Derivatives, Real, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
@@ -93,15 +95,18 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
             SecondDerivatives::forward_dynamics_second_derivatives(self, q, v, &tau, lambda);
         let more =
             SecondDerivatives::generalized_forces_second_derivatives(self, q, v, u, &(inverse * lambda));
-        let turned = by_force * tau_by_q;
-        (
-            qq + turned + turned.transpose() + more.0,
-            qv + by_force * tau_by_v + more.1,
-            vv + more.2,
-            by_force * tau_by_u + more.3,
-            more.4,
-            more.5,
-        )
+        let (mut all_qq, mut all_qv) = (qq + more.0, qv + more.1);
+        if !is_zero(&tau_by_q) {
+            let turned = product(&by_force, &tau_by_q);
+            add_multiple(&mut all_qq, constant(1.0), &turned);
+            add_multiple(&mut all_qq, constant(1.0), &transposed(&turned));
+        }
+        if !is_zero(&tau_by_v) {
+            add_product(&mut all_qv, &by_force, &tau_by_v);
+        }
+        let mut qu = more.3;
+        add_product(&mut qu, &by_force, &tau_by_u);
+        (all_qq, all_qv, vv + more.2, qu, more.4, more.5)
     }
 }
 
@@ -153,9 +158,12 @@ pub fn forward_second_derivatives<T: Real, const NV: usize>(
     lambda: &SVector<T, NV>,
     inverse_dynamics: impl FnOnce(&SVector<T, NV>) -> SecondOrder<T, NV>,
 ) -> SecondOrder<T, NV> {
-    let (qq, qv, vv, qa) = inverse_dynamics(&-(inverse * lambda));
-    let turned = qa * by_q;
-    (qq + turned + turned.transpose(), qv + qa * by_v, vv, qa * inverse)
+    let (mut qq, mut qv, vv, qa) = inverse_dynamics(&-(inverse * lambda));
+    let turned = product(&qa, by_q);
+    add_multiple(&mut qq, T::one(), &turned);
+    add_multiple(&mut qq, T::one(), &transposed(&turned));
+    add_product(&mut qv, &qa, by_v);
+    (qq, qv, vv, product(&qa, inverse))
 }
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize> SecondDerivatives<NQ, NV, NU> for &M

@@ -150,7 +150,7 @@ fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
 
 /// So many numbers from one on, or as many earlier as there are too few.
 #[inline(always)]
-fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
+pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
     let rest = column.get(from.min(column.len().saturating_sub(W))..).unwrap_or(&[]);
     let mut numbers = [T::zero(); W];
     if let Some(all) = rest.first_chunk() {
@@ -165,7 +165,11 @@ fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Ve
 
 /// The same for writing.
 #[inline(always)]
-fn put<A: Arithmetic, T: Real, const W: usize>(register: &Vector<A, T, W>, column: &mut [T], from: usize) {
+pub fn put<A: Arithmetic, T: Real, const W: usize>(
+    register: &Vector<A, T, W>,
+    column: &mut [T],
+    from: usize,
+) {
     let rest = column.get_mut(from.min(column.len().saturating_sub(W))..).unwrap_or(&mut []);
     let numbers = register.numbers();
     if let Some(all) = rest.first_chunk_mut() {

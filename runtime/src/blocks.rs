@@ -1,0 +1,162 @@
+//! Products of matrices of fixed sizes for loops of the runtime, without copies. nalgebra's own add columns one by one, and
+//! multiply transposed matrices entry by entry.
+
+use crate::Real;
+use crate::arithmetic::dispatch::{Evaluate, dispatch};
+use crate::arithmetic::{Arithmetic, Compiled, Vector};
+use crate::product::{part, put};
+use core::array::{from_mut, from_ref};
+use nalgebra::{ArrayStorage, SMatrix};
+
+/// `C += A B`. A function of its own for each size: a few dozen products written out one after another are longer than the
+/// instruction cache.
+#[inline(never)]
+pub fn add_product<T: Real, const R: usize, const K: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    a: &SMatrix<T, R, K>,
+    b: &SMatrix<T, K, C>,
+) {
+    dispatch::<0, T, _, _>(&Product { a, b }, sum);
+}
+
+/// What is multiplied.
+struct Product<'a, T, const R: usize, const K: usize, const C: usize> {
+    a: &'a SMatrix<T, R, K>,
+    b: &'a SMatrix<T, K, C>,
+}
+
+impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut SMatrix<T, R, C>>
+    for Product<'_, T, R, K, C>
+{
+    type Output = ();
+
+    /// Eight rows of four columns at a time, or as many as are left, which leaves registers for what is added.
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
+        let (columns, a, b) = (&mut sum.data.0, rolled(&self.a.data.0), &self.b.data.0);
+        let mut from = 0;
+        for _ in 0..R / 8 {
+            strip::<A, T, 8, R, K, C>(columns, a, b, from);
+            from += 8;
+        }
+        if R % 8 >= 4 {
+            strip::<A, T, 4, R, K, C>(columns, a, b, from);
+            from += 4;
+        }
+        if R % 4 >= 2 {
+            strip::<A, T, 2, R, K, C>(columns, a, b, from);
+            from += 2;
+        }
+        if R % 2 == 1 {
+            strip::<A, T, 1, R, K, C>(columns, a, b, from);
+        }
+    }
+}
+
+/// A list whose length the compiler does not know: it would write out its loops.
+#[inline(always)]
+fn rolled<T>(list: &[T]) -> &[T] {
+    core::hint::black_box(list)
+}
+
+/// So many rows from one on, of all columns.
+#[inline(always)]
+fn strip<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+    columns: &mut [[T; R]; C],
+    a: &[[T; R]],
+    b: &[[T; K]; C],
+    from: usize,
+) {
+    let (fours, rest) = columns.as_chunks_mut::<4>();
+    let (factors, last) = b.as_chunks::<4>();
+    for (columns, b) in fours.iter_mut().zip(factors) {
+        tile::<A, T, W, 4, R, K>(columns, a, b, from);
+    }
+    for (column, b) in rest.iter_mut().zip(last) {
+        tile::<A, T, W, 1, R, K>(from_mut(column), a, from_ref(b), from);
+    }
+}
+
+/// So many rows from one on, of some columns.
+#[inline(always)]
+fn tile<A: Arithmetic, T: Real, const W: usize, const G: usize, const R: usize, const K: usize>(
+    columns: &mut [[T; R]; G],
+    a: &[[T; R]],
+    b: &[[T; K]; G],
+    from: usize,
+) {
+    let mut all: [Vector<A, T, W>; G] = core::array::from_fn(|g| part(&columns[g], from));
+    for (k, column) in a.iter().enumerate() {
+        let x = part::<A, T, W>(column, from);
+        for (entry, factors) in all.iter_mut().zip(b) {
+            if let Some(factor) = factors.get(k) {
+                *entry = A::mul_add(x, A::splat(*factor), *entry);
+            }
+        }
+    }
+    for (column, register) in columns.iter_mut().zip(&all) {
+        put(register, column, from);
+    }
+}
+
+/// `A B`.
+#[inline]
+pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
+    a: &SMatrix<T, R, K>,
+    b: &SMatrix<T, K, C>,
+) -> SMatrix<T, R, C> {
+    let mut sum = zeros();
+    add_product(&mut sum, a, b);
+    sum
+}
+
+/// Whether all entries are zero.
+#[inline]
+pub fn is_zero<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
+    a.data.0.iter().all(|column| column.iter().all(|x| *x == T::zero()))
+}
+
+/// Zeros, without nalgebra's own construction entry by entry.
+#[inline]
+pub fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+    SMatrix::from_array_storage(ArrayStorage([[T::zero(); R]; C]))
+}
+
+/// `Aᵀ`.
+#[inline(never)]
+pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> SMatrix<T, C, R> {
+    let mut turned = [[T::zero(); C]; R];
+    for (j, column) in a.data.0.iter().enumerate() {
+        for (row, x) in turned.iter_mut().zip(column) {
+            if let Some(entry) = row.get_mut(j) {
+                *entry = *x;
+            }
+        }
+    }
+    SMatrix::from_array_storage(ArrayStorage(turned))
+}
+
+/// `A += s B`.
+#[inline]
+pub fn add_multiple<T: Real, const R: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    s: T,
+    b: &SMatrix<T, R, C>,
+) {
+    for (entry, x) in sum.data.0.as_flattened_mut().iter_mut().zip(b.data.0.as_flattened()) {
+        *entry = Compiled::mul_add(*x, s, *entry);
+    }
+}
+
+/// A matrix and its transpose become their mean: rounding must not grow from instant to instant.
+#[inline(never)]
+pub fn make_symmetric<T: Real, const N: usize>(m: &mut SMatrix<T, N, N>) {
+    let half = crate::private::constant::<T>(0.5);
+    let columns = &mut m.data.0;
+    for j in 0..N {
+        for i in 0..j {
+            let mean = (columns[j][i] + columns[i][j]) * half;
+            (columns[j][i], columns[i][j]) = (mean, mean);
+        }
+    }
+}
