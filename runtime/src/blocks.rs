@@ -6,7 +6,7 @@ use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled, Vector};
 use crate::product::{part, put};
 use core::array::{from_mut, from_ref};
-use nalgebra::{ArrayStorage, SMatrix};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// `C += A B`. A function of its own for each size: a few dozen products written out one after another are longer than the
 /// instruction cache.
@@ -159,4 +159,62 @@ pub fn make_symmetric<T: Real, const N: usize>(m: &mut SMatrix<T, N, N>) {
             (columns[j][i], columns[i][j]) = (mean, mean);
         }
     }
+}
+
+/// `L` below the diagonal and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`; which pivot is not positive
+/// otherwise.
+pub fn factors<T: Real, const N: usize>(
+    matrix: &SMatrix<T, N, N>,
+    regularisation: T,
+) -> Result<(SMatrix<T, N, N>, SVector<T, N>), usize> {
+    let (mut l, mut inverse) = (matrix.data.0, [T::zero(); N]);
+    for j in 0..N {
+        let column = l[j];
+        let pivot = column[j] + regularisation;
+        if !(pivot > T::zero() && pivot.is_finite()) {
+            return Err(j);
+        }
+        inverse[j] = T::one() / pivot;
+        let mut scaled = column;
+        scaled.iter_mut().for_each(|x| *x *= inverse[j]);
+        // Whole columns: what stands above the diagonal is read by nothing.
+        for k in j + 1..N {
+            for (entry, x) in l[k].iter_mut().zip(&column) {
+                *entry = Compiled::neg_mul_add(*x, scaled[k], *entry);
+            }
+        }
+        l[j] = scaled;
+    }
+    let storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
+    Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
+}
+
+/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`, row by row, so that all columns go at once.
+#[inline(never)]
+pub fn solve<T: Real, const N: usize, const C: usize>(
+    l: &SMatrix<T, N, N>,
+    inverse: &SVector<T, N>,
+    b: &mut SMatrix<T, N, C>,
+) {
+    let (l, inverse) = (&l.data.0, &inverse.data.0[0]);
+    let mut rows = transposed(b).data.0;
+    for j in 0..N {
+        let row = rows[j];
+        for i in j + 1..N {
+            for (entry, x) in rows[i].iter_mut().zip(&row) {
+                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
+            }
+        }
+    }
+    for j in (0..N).rev() {
+        let mut row = rows[j];
+        row.iter_mut().for_each(|x| *x *= -inverse[j]);
+        for i in j + 1..N {
+            for (entry, x) in row.iter_mut().zip(&rows[i]) {
+                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
+            }
+        }
+        rows[j] = row;
+    }
+    *b = transposed(&SMatrix::from_array_storage(ArrayStorage(rows)));
 }

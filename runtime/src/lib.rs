@@ -52,6 +52,7 @@
 //! - [`Mechanism`]: what every mechanism offers; [`Constrained`] what those with closed loops or rolling offer besides.
 //! - [`Derivatives`]: first derivatives for generic code; [`discrete`]: single steps and their Jacobians, for estimators and
 //!   optimal control.
+//! - [`inverse_kinematics`]: configurations that put frames where they should be; [`optimal`]: the recursion of optimal control.
 //! - [`simulate()`]: motion over time; [`integrate`] holds the integrators.
 //! - [`batch`]: many states of a mechanism at once, in [`Lanes`].
 //! - [`rotation`]: Euler angles, quaternions and other parameters of rotations.
@@ -103,6 +104,7 @@ mod frame;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 pub mod integrate;
+pub mod inverse_kinematics;
 pub mod lanes;
 mod lie;
 mod limits;

@@ -42,12 +42,11 @@
 //! # }
 //! ```
 
-use crate::arithmetic::{Arithmetic, Compiled};
-use crate::blocks::{add_multiple, add_product, make_symmetric, product, transposed};
+use crate::blocks::{add_multiple, add_product, factors, make_symmetric, product, solve, transposed};
 use crate::discrete::Transition;
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
-use nalgebra::{ArrayStorage, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 /// Costs to second order about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) · Hessian (δq, δv, δu)`, in units of
 /// the user's. Displacements of ball and free joints are in body axes.
@@ -293,7 +292,7 @@ impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {
     /// The best change of the inputs, and what the costs then are.
     fn minimised(self, regularisation: T) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
         let Before { mut q, mut v, u, mut qq, mut qv, mut vv, uq, uv, uu } = self;
-        let (factor, pivots) = factors(&uu, regularisation)?;
+        let (factor, pivots) = factors(&uu, regularisation).map_err(|input| Indefinite { input })?;
         let (mut change, mut by_q, mut by_v) = (u, uq, uv);
         solve(&factor, &pivots, &mut change);
         solve(&factor, &pivots, &mut by_q);
@@ -316,61 +315,4 @@ impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {
         make_symmetric(&mut vv);
         Ok((Policy { change, by_q, by_v, expected: [linear, quadratic] }, Value { q, v, qq, qv, vv }))
     }
-}
-
-/// `L` below the diagonal and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`.
-fn factors<T: Real, const N: usize>(
-    matrix: &SMatrix<T, N, N>,
-    regularisation: T,
-) -> Result<(SMatrix<T, N, N>, SVector<T, N>), Indefinite> {
-    let (mut l, mut inverse) = (matrix.data.0, [T::zero(); N]);
-    for j in 0..N {
-        let column = l[j];
-        let pivot = column[j] + regularisation;
-        if !(pivot > T::zero() && pivot.is_finite()) {
-            return Err(Indefinite { input: j });
-        }
-        inverse[j] = T::one() / pivot;
-        let mut scaled = column;
-        scaled.iter_mut().for_each(|x| *x *= inverse[j]);
-        // Whole columns: what stands above the diagonal is read by nothing.
-        for k in j + 1..N {
-            for (entry, x) in l[k].iter_mut().zip(&column) {
-                *entry = Compiled::neg_mul_add(*x, scaled[k], *entry);
-            }
-        }
-        l[j] = scaled;
-    }
-    let storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
-    Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
-}
-
-/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`, row by row, so that all columns go at once.
-#[inline(never)]
-fn solve<T: Real, const N: usize, const C: usize>(
-    l: &SMatrix<T, N, N>,
-    inverse: &SVector<T, N>,
-    b: &mut SMatrix<T, N, C>,
-) {
-    let (l, inverse) = (&l.data.0, &inverse.data.0[0]);
-    let mut rows = transposed(b).data.0;
-    for j in 0..N {
-        let row = rows[j];
-        for i in j + 1..N {
-            for (entry, x) in rows[i].iter_mut().zip(&row) {
-                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
-            }
-        }
-    }
-    for j in (0..N).rev() {
-        let mut row = rows[j];
-        row.iter_mut().for_each(|x| *x *= -inverse[j]);
-        for i in j + 1..N {
-            for (entry, x) in row.iter_mut().zip(&rows[i]) {
-                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
-            }
-        }
-        rows[j] = row;
-    }
-    *b = transposed(&SMatrix::from_array_storage(ArrayStorage(rows)));
 }

@@ -1,0 +1,293 @@
+//! Inverse kinematics: a configuration that puts one or several frames where they should be, within the limits of the joints.
+//!
+//! [`InverseKinematics::reach`] minimises the weighted squares of what is left to the targets, by the method of Levenberg and
+//! Marquardt on the configuration manifold (Sugihara, *Solvability-unconcerned inverse kinematics by the Levenberg–Marquardt
+//! method*, IEEE Transactions on Robotics 27, 2011). Coordinates that would leave their [`Limits`] are held at them. What the
+//! targets leave open stays near a posture. Nothing is allocated, and the number of iterations is bounded: each takes a placement
+//! and a Jacobian of every target, and solves `NV` linear equations.
+//!
+//! ```
+//! use linkwork::inverse_kinematics::{InverseKinematics, Target};
+//! use linkwork::prelude::*;
+//! use linkwork::{Frames, index_of};
+//!
+//! #[mechanism(urdf = "../models/urdf/ur5.urdf")]
+//! pub struct Ur5;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let tool = index_of(<Ur5 as Frames<6, 6>>::FRAMES, "tool0").ok_or("it is one of the file's links")?;
+//! // Where the tool is in some configuration is in reach.
+//! let there = [0.4, -1.2, 1.5, -0.6, 1.3, 0.2].into();
+//! let placement = Ur5.placement_of(tool, 0.0, &there).ok_or("it is a frame")?;
+//! let start = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0].into();
+//! let found = InverseKinematics::new().reach(&Ur5, 0.0, &[Target::pose(tool, placement)], &start)?;
+//! let reached = Ur5.placement_of(tool, 0.0, &found.q).ok_or("it is a frame")?;
+//! assert!((reached.translation.vector - placement.translation.vector).norm() < 1e-6);
+//! assert!((reached.rotation.matrix() - placement.rotation.matrix()).amax() < 1e-6);
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::blocks::{add_product, factors, solve, transposed, zeros};
+use crate::limits::at_least;
+use crate::private::{constant, to_f64};
+use crate::{Frames, Limits, Real, Rheonomic};
+use nalgebra::{IsometryMatrix3, SMatrix, SVector, UnitQuaternion};
+
+/// Where a frame should be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<T: Real> {
+    /// Number of the frame: its place in [`Frames::FRAMES`] ([`index_of`](crate::index_of)).
+    pub frame: usize,
+    /// Its placement in the ground: axes, and origin, m.
+    pub placement: IsometryMatrix3<T>,
+    /// Weight of the distance, 1/m; zero if the position does not matter.
+    pub position: T,
+    /// Weight of the angle, 1/rad; zero if the orientation does not matter.
+    pub orientation: T,
+}
+
+impl<T: Real> Target<T> {
+    /// Position and orientation, a metre as heavy as a radian.
+    pub fn pose(frame: usize, placement: IsometryMatrix3<T>) -> Self {
+        Self { frame, placement, position: T::one(), orientation: T::one() }
+    }
+
+    /// Position alone, m.
+    pub fn position(frame: usize, position: SVector<T, 3>) -> Self {
+        let placement = IsometryMatrix3::from_parts(position.into(), nalgebra::Rotation3::identity());
+        Self { frame, placement, position: T::one(), orientation: T::zero() }
+    }
+}
+
+/// A configuration that reaches the targets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached<T, const NQ: usize> {
+    /// The configuration.
+    pub q: SVector<T, NQ>,
+    /// Iterations that it took.
+    pub iterations: usize,
+}
+
+/// Why no configuration was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unreached<T, const NQ: usize> {
+    /// There is no frame of this number.
+    UnknownFrame {
+        /// Which target.
+        target: usize,
+    },
+    /// A weight or a placement of a target, or the placement of its frame at the start, is not finite; or a weight is negative.
+    NotFinite {
+        /// Which target.
+        target: usize,
+    },
+    /// Targets are out of reach, contradict each other, or lie beyond a barrier of the limits for this start.
+    OutOfReach {
+        /// The nearest configuration that was found.
+        q: SVector<T, NQ>,
+        /// What is left there of the largest distance whose weight is not zero, m.
+        position: f64,
+        /// What is left there of the largest angle whose weight is not zero, rad.
+        orientation: f64,
+        /// Iterations that were made.
+        iterations: usize,
+    },
+}
+
+impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::UnknownFrame { target } => write!(f, "target {target} names a frame that does not exist"),
+            Self::NotFinite { target } => {
+                write!(f, "target {target} has a weight or a placement that is negative or not finite")
+            }
+            Self::OutOfReach { position, orientation, iterations, .. } => write!(
+                f,
+                "the targets were not reached in {iterations} iterations: {position:.3e} m and {orientation:.3e} rad are left"
+            ),
+        }
+    }
+}
+
+impl<T: core::fmt::Debug, const NQ: usize> core::error::Error for Unreached<T, NQ> {}
+
+/// The settings of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InverseKinematics<T> {
+    /// Distance that may be left, m.
+    pub position: T,
+    /// Angle that may be left, rad.
+    pub orientation: T,
+    /// Most iterations.
+    pub iterations: usize,
+}
+
+impl<T: Real> Default for InverseKinematics<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// How strong the pull to the posture is beside the targets: it fades with what is left, so that it does not keep them from being
+/// met.
+const PULL: f64 = 1e-3;
+
+/// What is left to all targets, half of its weighted squares first.
+struct Left<T, const NV: usize> {
+    cost: T,
+    position: T,
+    orientation: T,
+    /// `Jᵀ W e` and `Jᵀ W J`.
+    gradient: SVector<T, NV>,
+    normal: SMatrix<T, NV, NV>,
+}
+
+impl<T: Real> InverseKinematics<T> {
+    /// A millionth of a metre and of a radian, within 100 iterations.
+    pub fn new() -> Self {
+        Self { position: constant(1e-6), orientation: constant(1e-6), iterations: 100 }
+    }
+
+    /// A configuration that puts the frames of the targets where they say, at the time `t`, s (which matters to what is driven in
+    /// time). The search begins at `start`, clamped to the limits, and stays near it in what the targets leave open.
+    ///
+    /// # Errors
+    ///
+    /// [`Unreached`] says which target makes no sense, or what is left after the last iteration.
+    pub fn reach<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        targets: &[Target<T>],
+        start: &SVector<T, NQ>,
+    ) -> Result<Reached<T, NQ>, Unreached<T, NQ>>
+    where
+        M: Rheonomic<NQ, NV, NU, Scalar = T> + Frames<NQ, NV, Scalar = T> + Limits<NQ, NV, Scalar = T>,
+    {
+        let mut q = mechanism.clamp_configuration(start);
+        let mut left = self.left(mechanism, t, targets, &q)?;
+        let (mut damping, mut pull) = (constant::<T>(1e-3), constant::<T>(PULL));
+        for iterations in 0..=self.iterations {
+            if left.position <= self.position && left.orientation <= self.orientation {
+                return Ok(Reached { q, iterations });
+            }
+            if iterations == self.iterations {
+                break;
+            }
+            let posture = mechanism.difference(&q, start) * (pull * left.cost);
+            let step = step(mechanism, &q, &left, (damping + pull) * left.cost, &posture);
+            let tried = mechanism.clamp_configuration(&mechanism.integrate(&q, &step));
+            let next = self.left(mechanism, t, targets, &tried)?;
+            if next.cost < left.cost {
+                (q, left) = (tried, next);
+                damping = at_least(damping * constant(0.3), constant(1e-9));
+                pull = constant(PULL);
+            } else {
+                // Where the pull leads away from the targets, it is they that count.
+                damping *= constant(8.0);
+                pull = T::zero();
+            }
+        }
+        let (position, orientation) = (to_f64(left.position), to_f64(left.orientation));
+        Err(Unreached::OutOfReach { q, position, orientation, iterations: self.iterations })
+    }
+
+    fn left<M, const NQ: usize, const NV: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        targets: &[Target<T>],
+        q: &SVector<T, NQ>,
+    ) -> Result<Left<T, NV>, Unreached<T, NQ>>
+    where
+        M: Frames<NQ, NV, Scalar = T>,
+    {
+        let zero = T::zero();
+        let mut left =
+            Left { cost: zero, position: zero, orientation: zero, gradient: zeros(), normal: zeros() };
+        for (target, wanted) in targets.iter().enumerate() {
+            let found =
+                mechanism.placement_of(wanted.frame, t, q).zip(mechanism.jacobian_of(wanted.frame, t, q));
+            let Some((placement, mut jacobian)) = found else {
+                return Err(Unreached::UnknownFrame { target });
+            };
+            let distance = wanted.placement.translation.vector - placement.translation.vector;
+            // By way of a quaternion: the cosine of a small angle has lost it.
+            let turn = wanted.placement.rotation * placement.rotation.inverse();
+            let angle = UnitQuaternion::from_rotation_matrix(&turn).scaled_axis();
+            let weights = [wanted.position, wanted.orientation];
+            let mut error = SVector::<T, 6>::zeros();
+            for k in 0..3 {
+                error[k] = distance[k] * weights[0];
+                error[k + 3] = angle[k] * weights[1];
+            }
+            let cost = error.norm_squared() * constant(0.5);
+            if !cost.is_finite() || weights.iter().any(|w| *w < zero) {
+                return Err(Unreached::NotFinite { target });
+            }
+            for column in &mut jacobian.data.0 {
+                for (k, entry) in column.iter_mut().enumerate() {
+                    *entry *= weights[k / 3];
+                }
+            }
+            let rows = transposed(&jacobian);
+            add_product(&mut left.gradient, &rows, &error);
+            add_product(&mut left.normal, &rows, &jacobian);
+            left.cost += cost;
+            if weights[0] > zero {
+                left.position = at_least(left.position, distance.norm());
+            }
+            if weights[1] > zero {
+                left.orientation = at_least(left.orientation, angle.norm());
+            }
+        }
+        Ok(left)
+    }
+}
+
+/// The step of Levenberg and Marquardt: `(JᵀWJ + μ) dq = JᵀWe + posture`, with coordinates held that it would drive beyond their
+/// limits.
+fn step<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    q: &SVector<T, NQ>,
+    left: &Left<T, NV>,
+    damping: T,
+    posture: &SVector<T, NV>,
+) -> SVector<T, NV>
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = T> + Limits<NQ, NV, Scalar = T>,
+{
+    // Plain coordinates are displacements from zero; others have no limits.
+    let at = mechanism.difference(&mechanism.neutral(), q);
+    let (lower, upper) = (mechanism.lower_limits(), mechanism.upper_limits());
+    let damping = at_least(damping, constant(1e-12));
+    let (mut normal, mut right) = (left.normal, left.gradient + posture);
+    for k in 0..NV {
+        normal[(k, k)] += damping;
+    }
+    let mut held = [false; NV];
+    // Each round holds one more at least.
+    for _ in 0..=NV {
+        let mut step = -right;
+        let Ok((factor, pivots)) = factors(&normal, T::zero()) else { return SVector::zeros() };
+        solve(&factor, &pivots, &mut step);
+        let mut more = false;
+        for k in 0..NV {
+            let beyond =
+                (at[k] >= upper[k] && step[k] > T::zero()) || (at[k] <= lower[k] && step[k] < T::zero());
+            if beyond && !held[k] {
+                (held[k], more) = (true, true);
+                for i in 0..NV {
+                    normal[(i, k)] = T::zero();
+                    normal[(k, i)] = T::zero();
+                }
+                (normal[(k, k)], right[k]) = (T::one(), T::zero());
+            }
+        }
+        if !more {
+            return step;
+        }
+    }
+    SVector::zeros()
+}
