@@ -51,6 +51,52 @@ struct Driven {
     mixed: Scalar,
 }
 
+/// A carrier with a turntable on a driven arm and a bead: momenta and energies of single bodies.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Bodies {
+    mass: f64,
+    #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
+    hull: Body,
+    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, 0.15 * mass))]
+    table: Body,
+    #[joint(ground -> hull)]
+    flight: Free,
+    #[joint(hull.at(0.3 * x).rotated(y(0.4)) -> table.at(0.1 * y), about = z)]
+    axle: Pin,
+    s: Coordinate,
+    #[particle(mass = 0.5, at = table.at(s * x + s * s * y))]
+    bead: Particle,
+    #[output(momentum(hull) + momentum(table) + momentum(bead))]
+    linear: Vector,
+    #[output(angular_momentum(hull / ground) + angular_momentum(table / ground) + angular_momentum(bead / ground))]
+    angular: Vector,
+    #[output(kinetic_energy(hull) + kinetic_energy(table) + kinetic_energy(bead))]
+    energy: Scalar,
+    #[output(angular_momentum(table / table.at(0.2 * z)), resolved_in = table)]
+    own: Vector,
+    #[output(omega(table / ground), resolved_in = table)]
+    turning: Vector,
+}
+
+/// Of all bodies together they are those of the whole; about its own centre of mass a body has `I ω`.
+#[test]
+fn bodies_share_momentum_and_energy() {
+    let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
+    for _ in 0..5 {
+        let (q, v): (SVector<f64, 9>, SVector<f64, 8>) = (random.configuration(&m), random.vector(2.0));
+        let whole = m.momentum(&q, &v);
+        let (linear, spin) = (whole.fixed_rows::<3>(0).into_owned(), whole.fixed_rows::<3>(3).into_owned());
+        assert!((m.linear(&q, &v) - linear).amax() < 1e-12);
+        assert!((m.angular(&q, &v) - spin - m.center_of_mass(&q).cross(&linear)).amax() < 1e-11);
+        assert!((m.energy(&q, &v) - m.kinetic_energy(&q, &v)).abs() < 1e-11);
+        let w = m.turning(&q, &v);
+        let expected = SVector::from([0.1 * w[0], 0.2 * w[1], 0.15 * 1.7 * w[2]]);
+        assert!((m.own(&q, &v) - expected).amax() < 1e-13);
+        // How they change with the rates is known as well.
+        assert!((m.linear_jacobian(&q, &v) * v - linear).amax() < 1e-11);
+    }
+}
+
 const TOLERANCE: f64 = 1e-9;
 
 /// A column of slopes for every direction, by differences of sixth order.

@@ -71,11 +71,14 @@ use std::path::PathBuf;
 /// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
 /// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' forces, contracted with factors, and what `derivatives` adds |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
+/// | `hamilton` | adds the Hamiltonian and the canonical equations as functions of configuration and momentum |
+/// | `conserved` | adds what keeps its value in every motion without inputs: energy, Jacobi's integral, momenta |
 /// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
 /// | `sensitivities` | adds derivatives of the dynamics by the struct's parameters |
 /// | `packed` | adds the mass matrix without entries that are always zero, and into a matrix of the caller |
 /// | `prepare` | adds `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | adds a twin of every function of the state for several states at once |
+/// | `equations = lagrange`, `hamilton` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, or no terms at all. If not given, Lagrange's where they are short enough to be read |
 /// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
 /// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
@@ -88,6 +91,7 @@ use std::path::PathBuf;
 /// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
 /// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
 /// | `lock = ["joint", …]` | joints frozen at zero |
+/// | `parameters = inertial`, `[inertial("link", …), placement, damping, friction]` | figures of the file that are fields of the struct, of all links or joints or of those named |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 /// | `crate = path::to::linkwork` | where generated code finds this crate, if `Cargo.toml` gives it another name (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
 ///

@@ -28,6 +28,22 @@ pub trait AsksForSecondDerivatives<'a> {}
 )]
 pub trait AsksForCentroidal<'a> {}
 
+/// A mechanism with the word `hamilton`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `hamilton`",
+    label = "this needs the word `hamilton`",
+    note = "add the word to the attribute: `#[mechanism(…, hamilton)]`"
+)]
+pub trait AsksForHamilton<'a> {}
+
+/// A mechanism with the word `conserved`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `conserved`",
+    label = "this needs the word `conserved`",
+    note = "add the word to the attribute: `#[mechanism(…, conserved)]`"
+)]
+pub trait AsksForConserved<'a> {}
+
 /// A mechanism with the word `regressor`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `regressor`",
@@ -100,6 +116,14 @@ pub trait HasNoConstraints<'a> {}
 )]
 pub trait HasSlipping<'a> {}
 
+/// A mechanism with contacts that open and close.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no contacts that open and close",
+    label = "only mechanisms with contacts or stops have this",
+    note = "declare one: `#[contact(ball.sphere(radius), ground.plane(z))] bounce: Contact`, or a `Limit` with `restitution`"
+)]
+pub trait HasContacts<'a> {}
+
 /// A mechanism whose mass matrix can be inverted.
 #[diagnostic::on_unimplemented(
     message = "the mass matrix of `{Self}` has no inverse",
@@ -123,3 +147,35 @@ pub trait HasJacobian<'a> {}
     note = "call this on the mechanism itself: frames are not prepared"
 )]
 pub trait HasFrames<'a> {}
+
+/// A mechanism with parameters.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no parameters",
+    label = "only mechanisms with parameters have this",
+    note = "all its figures are numbers: they were checked when it was compiled"
+)]
+pub trait HasParameters<'a> {}
+
+/// A mechanism that holds its parameters: not one that is prepared.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not hold its parameters",
+    label = "the mechanism that it was prepared from has this",
+    note = "call this on the mechanism itself, before it is prepared"
+)]
+pub trait HoldsParameters<'a> {}
+
+/// A mechanism that takes figures of its file for parameters.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no figures of a file as parameters",
+    label = "this needs the argument `parameters`",
+    note = "say which: `#[mechanism(urdf = \"…\", parameters = inertial)]`"
+)]
+pub trait HasFileParameters<'a> {}
+
+/// A mechanism that has mass properties of a file's links as parameters.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no mass properties of links as parameters",
+    label = "this needs `parameters = inertial`",
+    note = "write `#[mechanism(urdf = \"…\", parameters = inertial)]`, or `inertial(\"link\", …)` for some of the links"
+)]
+pub trait HasFileInertials<'a> {}

@@ -44,6 +44,12 @@ macro_rules! elementary_functions {
             abs(x);
             /// 1 or −1 with the sign of `x`, also for zeros.
             signum(x);
+            /// The temperature of the standard atmosphere at a geopotential height, m: K.
+            isa_temperature(h);
+            /// By how much it changes with the height, K/m.
+            isa_lapse_rate(h);
+            /// The pressure of the standard atmosphere at a geopotential height, m: Pa.
+            isa_pressure(h);
         }
     };
 }
@@ -53,7 +59,7 @@ mod number;
 mod vector;
 
 use crate::lanes::Registers;
-use crate::{Lanes, Real};
+use crate::{Lanes, Real, Table};
 pub use number::{Elementary, Number};
 pub use vector::Vector;
 
@@ -151,6 +157,12 @@ pub trait Arithmetic: Registers {
     #[inline(always)]
     fn sin_cos_all<X: Elementary<Self>, const N: usize>(x: [X; N]) -> ([X; N], [X; N]) {
         X::sin_cos_all(x)
+    }
+
+    /// The value of a table, or its derivative of these orders.
+    #[inline(always)]
+    fn tabulated<X: Elementary<Self>, const N: usize>(table: &Table<N>, x: [X; N], orders: [u8; N]) -> X {
+        X::tabulated(table, x, orders)
     }
 
     elementary_functions!(elementary);

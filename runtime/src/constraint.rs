@@ -63,6 +63,12 @@ pub enum ConstraintError {
         /// The contact.
         constraint: &'static str,
     },
+    /// No impulses are found that fulfil the laws of contact: constraints, or what is driven in time, hold surfaces that approach
+    /// each other.
+    Contact {
+        /// The contact whose law is fulfilled least.
+        constraint: &'static str,
+    },
     /// An index of a velocity to be held is none: `held` counts the velocities from zero.
     Held {
         /// The index.
@@ -85,6 +91,9 @@ impl fmt::Display for ConstraintError {
             }
             Self::Singular => write!(f, "the constraints lose rank in this configuration"),
             Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
+            Self::Contact { constraint } => {
+                write!(f, "no impulses at the contact `{constraint}` keep its surfaces apart")
+            }
             Self::Held { index, velocities } => {
                 write!(f, "the velocity {index} cannot be held: expected an index below {velocities}")
             }
@@ -242,7 +251,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
             let (worst, size) = largest(&residuals)?;
-            if size <= rounding(&q) {
+            // A drift that is let be is another linkage, which may have no singular position where this one has it.
+            let enough = if last.is_none() { known(&q) } else { rounding(&q) };
+            if size <= enough {
                 return Ok(q);
             }
             // Rounding ends the convergence.
@@ -343,9 +354,17 @@ fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
 }
 
+/// Roundings of a number that are left of constraints which are fulfilled.
+const ROUNDINGS: f64 = 16.0;
+
 /// What is left of constraints that are fulfilled as well as the numbers allow.
 fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
-    constant::<T>(16.0) * epsilon() * reach(x)
+    constant::<T>(ROUNDINGS) * epsilon() * reach(x)
+}
+
+/// What rounding of the numbers alone makes of constraints: angles of many turns are known less well than the rest.
+fn known<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    epsilon::<T>() * reach(x).max(constant(ROUNDINGS))
 }
 
 /// Whether what is left of constraints can be borne: half of the digits where they lose rank.

@@ -114,6 +114,12 @@ where
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     S: DifferentiableStep<T>,
 {
+    const {
+        assert!(
+            !M::CONTACTING,
+            "a step with derivatives is one of a mechanism without contacts: leave them out by `contact::apart`, or use one that stays closed as a constraint"
+        )
+    };
     const { assert!(!M::CONSTRAINED, "a step with derivatives is one of a mechanism without constraints") };
     method.check()?;
     let found = method.differentiate(mechanism, t, q, v, u);
@@ -121,11 +127,12 @@ where
     if is_finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// Methods with steps of a length that is set: all but [`DormandPrince`](crate::integrate::DormandPrince).
+/// Methods with steps of a length that is set: all that are not adaptive.
 pub trait FixedStep<T: Real>: Method<T> {}
 
 impl<T: Real> FixedStep<T> for Rk4<T> {}
 impl<T: Real> FixedStep<T> for SemiImplicitEuler<T> {}
+impl<T: Real> FixedStep<T> for crate::integrate::TimeStepping<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
@@ -195,6 +202,34 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
             self.q_by_u.tr_mul(by_q) + self.v_by_u.tr_mul(by_v),
         )
     }
+}
+
+/// `x` of `x⁺ = A x + B δu` in one vector: displacements, then changes of velocity. `NX` is `2 NV`; any other does not compile.
+///
+/// ```
+/// use linkwork::discrete;
+/// use linkwork::prelude::*;
+///
+/// let x: SVector<f64, 4> = discrete::stacked(&[0.1, 0.2].into(), &[3.0, 4.0].into());
+/// assert_eq!(x.as_slice(), [0.1, 0.2, 3.0, 4.0]);
+/// let (dq, dv): (SVector<f64, 2>, _) = discrete::split(&x);
+/// assert_eq!((dq.as_slice(), dv.as_slice()), (&x.as_slice()[..2], &x.as_slice()[2..]));
+/// ```
+pub fn stacked<T: Real, const NV: usize, const NX: usize>(
+    dq: &SVector<T, NV>,
+    dv: &SVector<T, NV>,
+) -> SVector<T, NX> {
+    const { assert!(NX == 2 * NV, "the vector has twice as many numbers as there are velocities") };
+    column(dq, dv)
+}
+
+/// Displacements and changes of velocity of [`stacked`].
+pub fn split<T: Real, const NV: usize, const NX: usize>(
+    x: &SVector<T, NX>,
+) -> (SVector<T, NV>, SVector<T, NV>) {
+    const { assert!(NX == 2 * NV, "the vector has twice as many numbers as there are velocities") };
+    let part = |first: usize| SVector::from_fn(|k, _| x.get(first + k).copied().unwrap_or(T::zero()));
+    (part(0), part(NV))
 }
 
 /// How a vector of the tangent space changes with the state and the inputs at the start of a step.

@@ -13,7 +13,9 @@
 //! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
 //! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
 //! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |
-//! | bounds | [`Limit`] |
+//! | contacts that open and close | [`Contact`] |
+//! | bounds, stops | [`Limit`] |
+//! | states of first order | [`State`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
 //! | expressions | [`Scalar`], [`Vector`], [`Potential`], [`Rayleigh`] |
 //!
@@ -275,7 +277,8 @@ pub enum Input {}
 /// `joint.coordinate` or on a `Coordinate`; the least and the largest value, m or rad, the largest magnitude of the velocity, m/s
 /// or rad/s, and of the generalized force, N or N·m, each optional, numbers or expressions of the parameters. The trait
 /// [`Limits`](crate::Limits) gives them as vectors, with functions that clamp. Several limits of one coordinate hold together, those
-/// of a file too. A limit exerts no force.
+/// of a file too. A limit exerts no force, but with `restitution`, the part of its speed that a coordinate keeps when it strikes, both
+/// bounds are stops: contacts named `name.from` and `name.to` ([`contact`](crate::contact)).
 ///
 /// Errors: numbers of which the lower is above the upper, and negative magnitudes, do not compile.
 #[doc(alias = "joint limit")]
@@ -382,6 +385,43 @@ pub enum Rolling {}
 /// `dissipated_power`, which does not know the multipliers.
 pub enum Slipping {}
 
+/// Two surfaces that may part, strike, slide, stick and roll.
+///
+/// `#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`.
+///
+/// A surface belongs to a body or to one of its points, as those of [`Rolling`]; a point of a body is one by itself,
+/// `foot.at(vector)`. Both bodies may move.
+///
+/// | surface | on |
+/// | --- | --- |
+/// | a point, `sphere(radius)` | `plane(normal)`, `sphere(radius)`, `capsule(radius, length, axis)`, `cylinder(radius, axis)`, `cone(half_angle, axis)`; inside of `bowl(radius)`, `tube(radius, axis)`, `funnel(half_angle, axis)` |
+/// | `capsule(radius, length, axis)`: two points, at its ends; `length` is between the centres of these | `plane(normal)` |
+/// | `capsule(radius, length, axis)`: one point, where the axes are nearest | `capsule(radius, length, axis)` |
+/// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)` |
+/// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
+/// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
+///
+/// A plane is that of a half space, and a cylinder, a tube and a cone go on without end. A rim that lies flat on a plane touches it
+/// by its centre.
+///
+/// `friction`, the coefficient of Coulomb's friction, and `restitution`, the part of the speed of approach with which
+/// surfaces leave each other, are zero unless given, and may be expressions of parameters. Contacts are no constraints: the
+/// functions of the dynamics are those of bodies that move freely, and the module [`contact`](crate::contact) says what contacts do
+/// to them. The points of one declaration are named `name.0`, `name.1`, ….
+pub enum Contact {}
+
+/// State of first order: the lag of an engine or an actuator, a filter.
+///
+/// `#[state(rate = expression)] power: State`: a number that changes at this rate, an expression of states, coordinates, velocities,
+/// inputs, parameters and time; not of accelerations. It stays a field of the struct, of the mechanism's type of numbers, and all
+/// functions of the mechanism hold for the value there. Any expression may name it. Its unit follows from its use; the rate's is that
+/// per second. The generated function `power_rate` is the rate.
+///
+/// [`FirstOrder::extended`](crate::FirstOrder::extended) is the mechanism with its states among its velocities, which is integrated
+/// and linearised. Where inertia depends on a state, methods that carry momenta forward (the implicit midpoint rule, semi-implicit
+/// Euler) hold it for constant within a step.
+pub enum State {}
+
 /// Scalar expression with a name.
 ///
 /// `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
@@ -427,5 +467,5 @@ macro_rules! derivable {
 derivable! {
     Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
     Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
-    Limit Holonomic Nonholonomic Rolling Slipping Scalar Vector
+    State Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector
 }

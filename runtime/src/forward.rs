@@ -61,6 +61,8 @@ macro_rules! each_function {
             project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
             impulse(q: NQ, v: NV, h: scalar, p: NV) -> SVector<Self::Scalar, NV>;
             is_nearly_singular(q: NQ, dv: NV) -> bool;
+            carry(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+            contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
         }
     };
 }
@@ -101,6 +103,7 @@ macro_rules! write_functions {
 /// The type of an argument.
 macro_rules! kind {
     (scalar) => { Self::Scalar };
+    (state) => { (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>) };
     ($n:ident) => { &SVector<Self::Scalar, $n> };
 }
 

@@ -6,7 +6,8 @@ pub use unknown::Message;
 
 use crate::Real;
 use nalgebra::{
-    ArrayStorage, Isometry, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
+    ArrayStorage, Isometry, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3,
+    UnitQuaternion, Vector3,
 };
 
 /// The name of a frame, checked at compile time: made by [`frame!`](crate::frame!).
@@ -202,6 +203,35 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
     ) -> Option<SMatrix<Self::Scalar, 6, NV>>;
+}
+
+/// What leads from one placement to another: the way of the origin, m, then the rotation vector, rad, in ground axes. So it is in
+/// the order and the axes of a frame's velocity and Jacobian: to first order `J dq` for a motion by `dq`. Controllers of a pose
+/// feed it back.
+///
+/// Exact to rounding for angles of any size (the angle by the cosine of the rotation matrix would lose small ones); of both ways
+/// round the shorter one.
+///
+/// ```
+/// use linkwork::placement_difference;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct Arm {
+///     #[body(mass = 1, com = x)]
+///     upper: Body,
+///     #[joint(ground -> upper.at(-x), about = z)]
+///     shoulder: Pin,
+/// }
+///
+/// let (hand, q, turned) = (frame!(Arm, "upper"), [0.3].into(), [0.3 + 1e-9].into());
+/// let moved = placement_difference(&Arm {}.frame_placement(hand, &q), &Arm {}.frame_placement(hand, &turned));
+/// assert!((moved - Arm {}.frame_jacobian(hand, &q).column(0) * 1e-9).amax() < 1e-15);
+/// ```
+pub fn placement_difference<T: Real>(from: &IsometryMatrix3<T>, to: &IsometryMatrix3<T>) -> SVector<T, 6> {
+    let way = to.translation.vector - from.translation.vector;
+    let turn = UnitQuaternion::from_rotation_matrix(&(to.rotation * from.rotation.inverse())).scaled_axis();
+    six([way.x, way.y, way.z, turn.x, turn.y, turn.z])
 }
 
 /// The index of a name in a list of names, at run time or in a constant: `index_of(&Panda::VELOCITIES, name)` of a name that stands in

@@ -6,6 +6,7 @@
 //! | [`language`] | all that can stand in a mechanism's struct |
 //! | [`robots`] | mechanisms from URDF files |
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
+//! | [`contact`] | surfaces and stops that touch and part: impacts, friction that holds |
 //! | [`functions`] | what is generated |
 //! | [`simulating`] | integrators, inputs, events |
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
@@ -27,6 +28,9 @@ pub mod robots {}
 
 #[doc = include_str!("../guide/constraints.md")]
 pub mod constraints {}
+
+#[doc = include_str!("../guide/contact.md")]
+pub mod contact {}
 
 #[doc = include_str!("../guide/functions.md")]
 pub mod functions {}

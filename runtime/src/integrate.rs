@@ -1,12 +1,16 @@
-//! Integrators: [`DormandPrince`], [`Rk4`], [`ImplicitMidpoint`], [`Rosenbrock`], [`SemiImplicitEuler`].
+//! Integrators: [`DormandPrince`], [`DormandPrince8`], [`Rodas`], [`Rk4`], [`ImplicitMidpoint`], [`Rosenbrock`], [`SemiImplicitEuler`], [`TimeStepping`], [`EventDriven`].
 //!
 //! | method | order | step | for |
 //! | --- | --- | --- | --- |
 //! | [`DormandPrince`] | 5 | adaptive | the default: accuracy on request, dense output |
+//! | [`DormandPrince8`] | 8 | adaptive | tight tolerances: orbits, references |
+//! | [`Rodas`] | 4 | adaptive | stiff mechanisms, accuracy on request |
 //! | [`Rk4`] | 4 | fixed | real time, a known cost per step |
 //! | [`ImplicitMidpoint`] | 2 | fixed | long runs: energy and momenta do not drift |
 //! | [`Rosenbrock`] | 2 | fixed | stiff springs and dashpots: stable with any step |
 //! | [`SemiImplicitEuler`] | 1 | fixed | games and learning: one evaluation per step |
+//! | [`TimeStepping`] | 2, with impacts 1 | fixed | [contacts](crate::contact) that open and close |
+//! | [`EventDriven`] | 8 | adaptive | few contacts, every event located |
 //!
 //! [`simulate`](crate::simulate()) runs them: `.method(Rk4::step(1e-3))`. A method of your own implements [`Method`]; the other
 //! types here are what it works with.
@@ -16,25 +20,37 @@
 //! and every method keeps its order for ball and free joints (Runge–Kutta–Munthe-Kaas methods: Hairer, Lubich and
 //! Wanner, *Geometric Numerical Integration* (2006), IV.8).
 
+mod adaptive;
 mod constrained;
+mod control;
 mod dormand_prince;
+mod eighth;
 mod error;
+mod event_driven;
 mod implicit_midpoint;
 mod local;
 mod path;
 mod rk4;
+mod rodas;
 mod rosenbrock;
 mod semi_implicit_euler;
+mod stages;
 mod system;
+mod time_stepping;
 
 pub use dormand_prince::DormandPrince;
+pub use eighth::DormandPrince8;
 pub use error::Error;
+pub use event_driven::{EventDriven, EventMemory, Section};
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use path::{Path, Step};
 pub use rk4::Rk4;
+pub use rodas::Rodas;
 pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use system::{Dynamics, Held, Inputs, NoInputs, Steered, System};
+pub use time_stepping::TimeStepping;
+pub(crate) use time_stepping::guided;
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -93,6 +109,12 @@ pub trait Method<T: Real> {
 
     /// Whether steps must end on sample times; otherwise samples are interpolated.
     const FIXED: bool;
+
+    /// Whether steps take part in impacts and friction of [contacts](crate::contact) that open and close.
+    const CONTACTS: bool = false;
+
+    /// Whether events at contacts are located, which needs the mechanism itself ([`Dynamics::follow`]).
+    const LOCATES: bool = false;
 
     /// Whether the settings make sense: [`Error::InvalidStep`] names the first that does not.
     fn check(&self) -> Result<(), Error>;

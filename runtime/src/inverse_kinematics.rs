@@ -9,19 +9,17 @@
 //! ```
 //! use linkwork::inverse_kinematics::{InverseKinematics, Target};
 //! use linkwork::prelude::*;
-//! use linkwork::{Frames, index_of};
 //!
 //! #[mechanism(urdf = "../models/urdf/ur5.urdf")]
 //! pub struct Ur5;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let tool = index_of(<Ur5 as Frames<6, 6>>::FRAMES, "tool0").ok_or("it is one of the file's links")?;
 //! // Where the tool is in some configuration is in reach.
-//! let there = [0.4, -1.2, 1.5, -0.6, 1.3, 0.2].into();
-//! let placement = Ur5.placement_of(tool, 0.0, &there).ok_or("it is a frame")?;
+//! let placement = Ur5.frame_placement(frame!(Ur5, "tool0"), &[0.4, -1.2, 1.5, -0.6, 1.3, 0.2].into());
+//! let target = Target::pose(index!(Ur5::FRAMES, "tool0"), placement);
 //! let start = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0].into();
-//! let found = InverseKinematics::new().reach(&Ur5, 0.0, &[Target::pose(tool, placement)], &start)?;
-//! let reached = Ur5.placement_of(tool, 0.0, &found.q).ok_or("it is a frame")?;
+//! let found = InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start)?;
+//! let reached = Ur5.frame_placement(frame!(Ur5, "tool0"), &found.q);
 //! assert!((reached.translation.vector - placement.translation.vector).norm() < 1e-6);
 //! assert!((reached.rotation.matrix() - placement.rotation.matrix()).amax() < 1e-6);
 //! # Ok(())
@@ -31,13 +29,14 @@
 use crate::blocks::{add_product, factors, solve, transposed, zeros};
 use crate::limits::at_least;
 use crate::private::{constant, to_f64};
-use crate::{Frames, Limits, Real, Rheonomic};
-use nalgebra::{IsometryMatrix3, SMatrix, SVector, UnitQuaternion};
+use crate::{Frames, Limits, Real, Rheonomic, placement_difference};
+use nalgebra::{IsometryMatrix3, SMatrix, SVector};
 
 /// Where a frame should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target<T: Real> {
-    /// Number of the frame: its place in [`Frames::FRAMES`] ([`index_of`](crate::index_of)).
+    /// Number of the frame: its place in the list of frames, `index!(Arm::FRAMES, "tool")`, or [`index_of`](crate::index_of) a
+    /// name that is known only when the program runs.
     pub frame: usize,
     /// Its placement in the ground: axes, and origin, m.
     pub placement: IsometryMatrix3<T>,
@@ -212,15 +211,11 @@ impl<T: Real> InverseKinematics<T> {
             let Some((placement, mut jacobian)) = found else {
                 return Err(Unreached::UnknownFrame { target });
             };
-            let distance = wanted.placement.translation.vector - placement.translation.vector;
-            // By way of a quaternion: the cosine of a small angle has lost it.
-            let turn = wanted.placement.rotation * placement.rotation.inverse();
-            let angle = UnitQuaternion::from_rotation_matrix(&turn).scaled_axis();
+            let missing = placement_difference(&placement, &wanted.placement);
             let weights = [wanted.position, wanted.orientation];
-            let mut error = SVector::<T, 6>::zeros();
-            for k in 0..3 {
-                error[k] = distance[k] * weights[0];
-                error[k + 3] = angle[k] * weights[1];
+            let mut error = missing;
+            for (k, entry) in error.iter_mut().enumerate() {
+                *entry *= weights[k / 3];
             }
             let cost = error.norm_squared() * constant(0.5);
             if !cost.is_finite() || weights.iter().any(|w| *w < zero) {
@@ -236,10 +231,10 @@ impl<T: Real> InverseKinematics<T> {
             add_product(&mut left.normal, &rows, &jacobian);
             left.cost += cost;
             if weights[0] > zero {
-                left.position = at_least(left.position, distance.norm());
+                left.position = at_least(left.position, missing.fixed_rows::<3>(0).norm());
             }
             if weights[1] > zero {
-                left.orientation = at_least(left.orientation, angle.norm());
+                left.orientation = at_least(left.orientation, missing.fixed_rows::<3>(3).norm());
             }
         }
         Ok(left)

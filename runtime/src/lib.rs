@@ -54,6 +54,7 @@
 //!   optimal control.
 //! - [`inverse_kinematics`]: configurations that put frames where they should be; [`optimal`]: the recursion of optimal control.
 //! - [`simulate()`]: motion over time; [`integrate`] holds the integrators.
+//! - [`identification`]: identified base parameters put back into a robot.
 //! - [`batch`]: many states of a mechanism at once, in [`Lanes`].
 //! - [`rotation`]: Euler angles, quaternions and other parameters of rotations.
 //!
@@ -62,6 +63,7 @@
 //! - `std` (default): elementary functions of the standard library. Release builds for x86-64 compile large functions
 //!   also for AVX2 and FMA, and choose at run time ([speed](guide/speed/index.html)).
 //! - `libm`: elementary functions of the crate `libm`, for targets without the standard library.
+//! - `serde`: `Inertial` and `Placement`, fields of robots with figures as parameters, can be read and written.
 //! - `rayon`: rollouts of many states on all processors.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
@@ -76,8 +78,11 @@ extern crate std;
 pub use batch::Batch;
 #[doc(inline)]
 pub use constraint::{Constrained, ConstraintError};
+pub use contact::Contacts;
 pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
-pub use frame::{FrameIndex, Frames, NamedFrame, index_of};
+pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, RateDerivatives};
+pub use frame::{FrameIndex, Frames, NamedFrame, index_of, placement_difference};
+pub use inertial::{Inertial, Placement};
 #[doc(inline)]
 pub use lanes::Lanes;
 pub use limits::Limits;
@@ -85,24 +90,31 @@ pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
 pub use outputs::{OutputDerivatives, OutputJacobians, Outputs};
+pub use parameters::{Fault, ParameterError};
 pub use rheonomic::{At, Rheonomic, at};
 pub use second::{InputSecondOrder, RheonomicSecondDerivatives, SecondDerivatives, SecondOrder};
 #[doc(inline)]
 pub use simulate::simulate;
+pub use table::{Table, TableError};
 
 #[doc(hidden)]
 pub mod absent;
 mod arithmetic;
+mod atmosphere;
 pub mod batch;
 mod blocks;
 pub mod constraint;
+pub mod contact;
 mod derivatives;
 pub mod discrete;
 pub mod elements;
+mod first_order;
 mod forward;
 mod frame;
 #[cfg(any(doc, doctest))]
 pub mod guide;
+pub mod identification;
+mod inertial;
 pub mod integrate;
 pub mod inverse_kinematics;
 pub mod lanes;
@@ -111,12 +123,14 @@ mod limits;
 mod mechanism;
 pub mod optimal;
 mod outputs;
+mod parameters;
 mod private;
 mod product;
 mod rheonomic;
 pub mod rotation;
 mod second;
 pub mod simulate;
+mod table;
 mod trigonometry;
 
 /// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
@@ -127,16 +141,19 @@ mod trigonometry;
 /// `Vector`, are left out here, so that `use linkwork::nalgebra::*;` may stand beside this.
 pub mod prelude {
     pub use crate::elements::{
-        Attraction, Ball, Body, Collar, Coordinate, Dashpot, Force, Frame, Free, Friction, Gravity,
+        Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Force, Frame, Free, Friction, Gravity,
         Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential, Rayleigh, Rolling,
-        Screw, Sleeve, Slipping, Slot, Spring, Stage, Torque, Universal, Weld,
+        Screw, Sleeve, Slipping, Slot, Spring, Stage, State, Torque, Universal, Weld,
     };
-    pub use crate::integrate::{DormandPrince, Error, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
+    pub use crate::integrate::{
+        DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,
+        SemiImplicitEuler, TimeStepping,
+    };
     pub use crate::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
     pub use crate::simulate::{Crossing, Sample, simulate};
     pub use crate::{
-        Batch, Constrained, ConstraintError, Derivatives, Limits, Mechanism, Real, SecondDerivatives, at,
-        frame, index, mechanism,
+        Batch, Constrained, ConstraintError, Derivatives, FirstOrder, FirstOrderDerivatives, Limits,
+        Mechanism, Real, SecondDerivatives, Table, at, frame, index, mechanism,
     };
     pub use nalgebra::{SMatrix, SVector};
 }
@@ -152,6 +169,7 @@ pub mod __private {
         careful_dynamics, careful_response, constrained_derivatives, independent_solution, least_solution,
         nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
+    pub use crate::first_order::columns;
     pub use crate::frame::{Message, identity_placement, join, origin, placement, six};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
     pub use crate::lie::jacobians::{
@@ -159,10 +177,11 @@ pub mod __private {
         free_tangent_rate_derivatives,
     };
     pub use crate::lie::{
-        ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate,
-        free_tangent_rate,
+        ball_carry, ball_difference, ball_integrate, ball_tangent_rate, free_carry, free_difference,
+        free_integrate, free_tangent_rate,
     };
     pub use crate::limits::{at_least, at_most};
+    pub use crate::parameters::{Figure, Rule, validate};
     pub use crate::private::{constant, put_block, put_rows};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use crate::second::forward_second_derivatives;

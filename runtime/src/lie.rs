@@ -275,6 +275,20 @@ pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     plus(plus(plus(v, constant(0.5), first), second, twice), fourth, four_times)
 }
 
+/// The velocity `v`, child frame of `q`, in the child frame of `q ⊕ dv`.
+pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
+    rotated(conjugate(exponential(dv)), v)
+}
+
+/// The velocity `v` (linear, then angular), child frame of `q`, in the child frame of `q ⊕ dv`.
+pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
+    let [_, _, _, rx, ry, rz] = dv;
+    let [x, y, z, wx, wy, wz] = v;
+    let [x, y, z] = ball_carry([rx, ry, rz], [x, y, z]);
+    let [wx, wy, wz] = ball_carry([rx, ry, rz], [wx, wy, wz]);
+    [x, y, z, wx, wy, wz]
+}
+
 #[cfg(test)]
 #[path = "lie_tests.rs"]
 mod tests;

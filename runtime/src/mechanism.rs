@@ -1,6 +1,7 @@
 //! The trait that generic code (integrators, controllers, plotters) is written against.
 
 use crate::constraint::{ConstraintError, Projected};
+use crate::contact::Touched;
 use crate::forward::each_function;
 use nalgebra::{RealField, SMatrix, SVector};
 
@@ -46,8 +47,20 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// Contacts slip with friction ([`Slipping`](crate::elements::Slipping)): forces depend on multipliers.
     const SLIPPING: bool = false;
 
-    /// Constraints are kept by feedback ([`Rheonomic::FEEDBACK`](crate::Rheonomic::FEEDBACK)).
+    /// Constraints are kept by feedback, or forces depend on accelerations
+    /// ([`Rheonomic::FEEDBACK`](crate::Rheonomic::FEEDBACK)).
     const FEEDBACK: bool = false;
+
+    /// Contacts open and close ([`Contacts`](crate::Contacts)): methods of integration that know nothing of them do not compile.
+    const CONTACTING: bool = false;
+
+    /// Events at contacts can be located ([`EventDriven`](crate::integrate::EventDriven)): by
+    /// [`visit_contacts`](Self::visit_contacts).
+    const LOCATABLE: bool = false;
+
+    /// How many of the last velocities are states of first order, which have no place in `q`
+    /// ([`Extended`](crate::Extended)).
+    const FIRST_ORDER: usize = 0;
 
     /// The state nearest to a given one that fulfils the constraints, if there are any.
     ///
@@ -79,6 +92,42 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// differ from dependent ones. Methods go on by accelerations there, which are continuous.
     fn is_nearly_singular(&self, _q: &SVector<Self::Scalar, NQ>, _dv: &SVector<Self::Scalar, NV>) -> bool {
         false
+    }
+
+    /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`: its components change, and bodies
+    /// move as before. Only of mechanisms with contacts, others leave it as it is.
+    fn carry(
+        &self,
+        _dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        *v
+    }
+
+    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
+    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity
+    /// ([`contact::solve`](crate::contact::solve)).
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    fn contact_step(
+        &self,
+        _start: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        (q, free): (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        given: &SVector<Self::Scalar, NV>,
+        _h: Self::Scalar,
+    ) -> Result<Touched<Self::Scalar, NQ, NV>, ConstraintError> {
+        Ok(Touched { q: *q, v: free + given })
+    }
+
+    /// Hands the mechanism to `visitor` with the numbers of its contacts, where it has any; `None` where it has none, or where it stands
+    /// for many.
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
     }
 
     /// The configuration with all coordinates zero; identity quaternions.
@@ -198,9 +247,19 @@ where
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = M::LOCATABLE;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
 
     each_function!(space, plain Mechanism, self => *self);
     each_function!(dynamics, plain Mechanism, self => *self);
     each_function!(accelerations, plain Mechanism, self => *self);
     each_function!(methods, plain Mechanism, self => *self);
+
+    fn visit_contacts<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        M::visit_contacts(self, visitor)
+    }
 }

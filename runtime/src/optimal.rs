@@ -29,20 +29,31 @@
 //! // Costs of state and input, over so long a time that the gain no longer changes: the linear-quadratic regulator.
 //! let mut cost = Quadratic::zeros();
 //! (cost.qq[0], cost.uu[0]) = (1.0, 1.0);
-//! let mut to_go = Value::zeros();
-//! let mut gain = [0.0, 0.0];
+//! let (mut policy, mut to_go) = backward(&step, &cost, &Value::zeros(), 0.0)?;
 //! for _ in 0..2000 {
-//!     let policy;
 //!     (policy, to_go) = backward(&step, &cost, &to_go, 0.0)?;
-//!     gain = [policy.by_q[0], policy.by_v[0]];
 //! }
 //! // For a period that tends to zero they are −1 and −√(2 m) (Bryson and Ho, *Applied Optimal Control*, 1975, § 5.2).
+//! let gain = [policy.by_q[0], policy.by_v[0]];
 //! assert!((gain[0] + 1.0).abs() < 0.02 && (gain[1] + 2.0).abs() < 0.04, "{gain:?}");
+//!
+//! // What it costs to bring the cart back from a metre off, moving, is what the costs to go say.
+//! let (mut q, mut v, mut sum) = ([1.0].into(), [0.5].into(), 0.0);
+//! let expected = to_go.at(&q, &v);
+//! let x: SVector<f64, 2> = discrete::stacked(&q, &v);
+//! assert!((expected - 0.5 * x.dot(&(to_go.hessian::<2>() * x))).abs() < 1e-9);
+//! for _ in 0..2000 {
+//!     let u = policy.inputs(1.0, &q, &v);
+//!     sum += (q.norm_squared() + u.norm_squared()) / 2.0;
+//!     (q, v) = discrete::step(&Cart {}, &Rk4::step(0.01), 0.0, &q, &v, &u)?;
+//! }
+//! assert!((sum / expected - 1.0).abs() < 1e-6, "{sum} {expected}");
 //! # Ok(())
 //! # }
 //! ```
 
 use crate::blocks::{add_multiple, add_product, factors, make_symmetric, product, solve, transposed};
+use crate::derivatives::entry;
 use crate::discrete::Transition;
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
@@ -156,6 +167,30 @@ impl<T: Real, const NV: usize> Value<T, NV> {
     pub fn zeros() -> Self {
         let zero = SMatrix::zeros();
         Self { q: SVector::zeros(), v: SVector::zeros(), qq: zero, qv: zero, vv: zero }
+    }
+
+    /// The Hessian by `x = (δq, δv)` in one matrix; `NX` is `2 NV`, which the type that is asked for says; any other does not
+    /// compile.
+    pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
+        const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
+        let vq = transposed(&self.qv);
+        SMatrix::from_fn(|i, j| entry([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
+    }
+
+    /// What a state that is off by `dq` and `dv` costs more.
+    pub fn at(&self, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> T {
+        let quadratic = dq.dot(&product(&self.qq, dq)) + dv.dot(&product(&self.vv, dv));
+        self.q.dot(dq) + self.v.dot(dv) + dq.dot(&product(&self.qv, dv)) + quadratic * constant(0.5)
+    }
+}
+
+impl<T: Real, const NV: usize, const NU: usize> Policy<T, NV, NU> {
+    /// The change `δu` of the inputs for a state that is off by `dq` and `dv`, with the length `α` of a line search.
+    pub fn inputs(&self, length: T, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> SVector<T, NU> {
+        let mut change = self.change * length;
+        add_product(&mut change, &self.by_q, dq);
+        add_product(&mut change, &self.by_v, dv);
+        change
     }
 }
 

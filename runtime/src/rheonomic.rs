@@ -2,6 +2,7 @@
 //! this trait, which every [`Mechanism`] has too.
 
 use crate::constraint::{ConstraintError, Projected};
+use crate::contact::Touched;
 use crate::forward::each_function;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -32,9 +33,20 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// Contacts slip with friction ([`Mechanism::SLIPPING`]).
     const SLIPPING: bool = false;
 
-    /// Constraints are kept by feedback ([`Stabilized`](crate::constraint::Stabilized)): `forward_dynamics` holds their
-    /// forces, and states need not fulfil them.
+    /// Constraints are kept by feedback ([`Stabilized`](crate::constraint::Stabilized)), or forces depend on accelerations:
+    /// `forward_dynamics` holds these forces, so that neither mass matrix nor momentum tell the motion; states need not fulfil
+    /// constraints.
     const FEEDBACK: bool = false;
+
+    /// Contacts open and close ([`Contacts`](crate::Contacts)): methods of integration that know nothing of them do not compile.
+    const CONTACTING: bool = false;
+
+    /// Events at contacts can be located ([`EventDriven`](crate::integrate::EventDriven)): by
+    /// [`visit_contacts`](Self::visit_contacts).
+    const LOCATABLE: bool = false;
+
+    /// How many of the last velocities are states of first order ([`Mechanism::FIRST_ORDER`]).
+    const FIRST_ORDER: usize = 0;
 
     /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
     ///
@@ -71,6 +83,44 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         _dv: &SVector<Self::Scalar, NV>,
     ) -> bool {
         false
+    }
+
+    /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`: its components change, and bodies
+    /// move as before. Only of mechanisms with contacts, others leave it as it is.
+    fn carry(
+        &self,
+        _t: Self::Scalar,
+        _dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        *v
+    }
+
+    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
+    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity
+    /// ([`contact::solve`](crate::contact::solve)).
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    fn contact_step(
+        &self,
+        _t: Self::Scalar,
+        _start: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        (q, free): (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        given: &SVector<Self::Scalar, NV>,
+        _h: Self::Scalar,
+    ) -> Result<Touched<Self::Scalar, NQ, NV>, ConstraintError> {
+        Ok(Touched { q: *q, v: free + given })
+    }
+
+    /// Hands the mechanism to `visitor` with the numbers of its contacts, where it has any; `None` where it has none, or where it stands
+    /// for many.
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
     }
 
     /// The configuration with all coordinates zero; identity quaternions ([`Mechanism::neutral`]).
@@ -206,11 +256,21 @@ where
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = M::LOCATABLE;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
 
     each_function!(space, plain Mechanism, self => self);
     each_function!(dynamics, drop Mechanism, self => self);
     each_function!(accelerations, drop Mechanism, self => self);
     each_function!(methods, drop Mechanism, self => self);
+
+    fn visit_contacts<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        Mechanism::visit_contacts(self, visitor)
+    }
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
@@ -226,9 +286,20 @@ where
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
 
     each_function!(space, plain Rheonomic, self => self.mechanism);
     each_function!(dynamics, at Rheonomic, self => self.mechanism, self.t);
     each_function!(accelerations, at Rheonomic, self => self.mechanism, self.t);
     each_function!(methods, at Rheonomic, self => self.mechanism, self.t);
+
+    // Contacts know their own time.
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
 }

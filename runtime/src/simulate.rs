@@ -129,7 +129,7 @@ where
     }
 
     /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods divide the
-    /// interval into equal steps; [`DormandPrince`] interpolates. Without it every step of the integrator is a sample.
+    /// interval into equal steps; adaptive ones interpolate. Without it every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
         Self { every: Some(interval), ..self.afresh() }
     }

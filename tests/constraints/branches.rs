@@ -322,11 +322,15 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
             x
         };
         let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
-        // What single forces would do.
-        let most = (0..NV)
-            .map(|k| (self.by * solve(self.by.row(k).transpose() * bias[k])).amax())
-            .fold(0.0, f64::max);
-        (a, most)
+        // What single forces would do, by how much their bodies move, which is known to a part of 1e-11 m or rad, not better.
+        let moved = |k: usize| {
+            let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
+            (self.by * solve(by * bias[k])).amax()
+        };
+        let most = (0..NV).map(moved).fold(0.0, f64::max);
+        // Light bodies with stiff springs would do much if nothing held them: what holds them rounds as that does.
+        let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());
+        (a, most + free * 1e-3)
     }
 }
 
@@ -369,6 +373,10 @@ fn flat_lengths(random: &mut Random) -> ([f64; 4], bool, f64) {
     let mut length = || 1.0 + random.uniform(0.7);
     let (base, l1, l2) = (length(), length(), length());
     let (outer, inner) = (base + l1 - l2, l2 - (l1 - base).abs());
+    // In a kite that is folded the coupler turns alone, or coupler and crank, and the others stand still.
+    if random.uniform(1.0) > 0.5 {
+        return ([base, l1, l1, base], true, PI);
+    }
     if random.uniform(1.0) > 0.0 && outer > 0.3 {
         ([base, l1, l2, outer], true, PI)
     } else if inner > 0.3 {
@@ -389,9 +397,12 @@ fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Bra
     Branch { q: part(0), by: part(1), bend: part(2) * rate * rate, rate: [rate].into() }
 }
 
+/// Seeds of later cases that were hard: a kite with a heavy body at rest, windows of which one turns much faster.
+const HARD: [u64; 4] = [4_647, 4_958, 17_407, 66_896];
+
 /// Accelerations everywhere on the branches, in all styles.
 fn check(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, String)) {
-    for seed in 0..cases(usual) {
+    for seed in (0..cases(usual)).chain(HARD) {
         let mut random = Random::new(seed);
         let style = &STYLES[seed as usize % 4];
         let (off, what) = case(&mut random, style);
@@ -522,7 +533,8 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
         // Steps that resolve the fastest turn and the stiffest swing on the way.
         let (mut fast, mut stiff) = (rate, 0.0_f64);
         let mut whole = 0.0_f64;
-        for sample in simulate(&m).from(state.0, state.1).duration(end).sample_every(end / 1000.0) {
+        // Adaptive steps see what is faster than a grid of samples.
+        for sample in simulate(&m).from(state.0, state.1).duration(end) {
             let Sample { q, v, .. } = sample.unwrap_or_else(|e| panic!("seed {seed}: {e} with {m:?}"));
             let swing = m.k1 * v[0] * v[0] + m.k2 * v[1] * v[1] + m.k3 * v[2] * v[2];
             let kinetic = m.kinetic_energy(&q, &v);

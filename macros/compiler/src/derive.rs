@@ -6,10 +6,13 @@ use crate::expr::Expr;
 use crate::expr::print::Written;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
+use crate::mechanics::conserved::{self, Conserved};
+use crate::mechanics::equations::Limits;
+use crate::mechanics::hamilton::{self, Hamilton};
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
 use crate::passes::Passes;
-use crate::syntax::{Requests, Skipped};
+use crate::syntax::{Printed, Requests, Skipped};
 
 mod constraints;
 mod derivation;
@@ -57,7 +60,12 @@ pub fn derive_with<'g>(
         return sound(model, steps(model, &joints, functions), cx);
     }
     let mass = crba::mass_matrix(model, &joints);
-    if !singular::check(model, &joints, &mass, cx) {
+    if !singular::check(model, &joints, &mass, cx) || !singular::check_effective(model, &joints, &mass, cx) {
+        return None;
+    }
+    if let Some((force, what)) = model.acceleration_forces.first().zip(without_momentum(requests)) {
+        cx.error(force.place.clone(), format!("a force that depends on accelerations leaves no {what}"))
+            .help("leave the word out that asks for them, or these terms of the force");
         return None;
     }
     if let Some(what) = too_long(model, requests) {
@@ -68,6 +76,9 @@ pub fn derive_with<'g>(
     let extras = Extras {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| entries(&mass)),
+        hamilton: (requests.hamilton && !has_massless(model))
+            .then(|| hamilton::derive(model, &joints, &mass)),
+        conserved: requests.conserved.then(|| conserved::conserved(model, &joints)),
     };
     let all = |specialisation| functions(model, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
@@ -81,15 +92,15 @@ pub fn derive_with<'g>(
         requests.prepare.then(|| prepared::prepared(model.graph, all(Specialisation::ByParameters)));
     let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
     constants.extend(extras.entries.map(|entries| Constant::entries(&entries)));
+    if let Some(kept) = &extras.conserved {
+        let names: Vec<String> = kept.iter().map(|c| c.name.clone()).collect();
+        constants.push(Constant::conserved(&names));
+    }
     if requests.sensitivities {
         constants.push(Constant::parameters(&model.parameters));
     }
-    let output = Output {
-        equations: written(model, &joints, &mass),
-        prepared,
-        constants,
-        ..steps(model, &joints, functions)
-    };
+    let equations = printed(model, &joints, &mass, requests.equations, cx)?;
+    let output = Output { equations, prepared, constants, ..steps(model, &joints, functions) };
     sound(model, output, cx)
 }
 
@@ -135,6 +146,14 @@ fn without(passes: Passes, skipped: Skipped) -> Passes {
     }
 }
 
+/// What there is only where forces do not depend on accelerations.
+fn without_momentum(requests: Requests) -> Option<&'static str> {
+    let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
+    [(canonical, "Hamilton's equations"), (requests.second_derivatives, "second derivatives")]
+        .into_iter()
+        .find_map(|(asked, what)| asked.then_some(what))
+}
+
 /// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are
 /// velocities.
 const MOST_DERIVATIVES: usize = 300_000;
@@ -142,8 +161,11 @@ const MOST_DERIVATIVES: usize = 300_000;
 /// What on request would have more lines than a compiler should be given.
 fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
     let squared = model.nv() * model.nv();
-    let elements =
-        model.potentials.len() + model.loads.len() + model.inertances.len() + model.dissipations.len();
+    let elements = model.potentials.len()
+        + model.loads.len()
+        + model.acceleration_forces.len()
+        + model.inertances.len()
+        + model.dissipations.len();
     if requests.sensitivities && squared * model.parameters.len() > MOST_DERIVATIVES {
         return Some("the derivatives by so many parameters");
     }
@@ -158,6 +180,15 @@ struct Extras<'a, 'g> {
     identification: Option<Identification<'a, 'g>>,
     /// For `packed`.
     entries: Option<Vec<(usize, usize)>>,
+    /// For `hamilton`.
+    hamilton: Option<Hamilton<'g>>,
+    /// For `conserved`.
+    conserved: Option<Vec<Conserved<'g>>>,
+}
+
+/// Constraints determine coordinates without inertia: momenta do not tell their velocities.
+fn has_massless(model: &Model<'_>) -> bool {
+    model.constraints.iter().any(|c| c.determines)
 }
 
 impl<'g> Extras<'_, 'g> {
@@ -165,7 +196,8 @@ impl<'g> Extras<'_, 'g> {
         let [bodies, base] = self.identification.as_ref().map_or([0, 0], Identification::counts);
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
-        Facts { bodies, base, entries, passive, ..Facts::of(model, requests) }
+        let conserved = self.conserved.as_ref().map_or(0, Vec::len);
+        Facts { bodies, base, entries, passive, conserved, ..Facts::of(model, requests) }
     }
 }
 
@@ -198,7 +230,7 @@ fn functions<'g>(
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
-    let derivation = derivation.with(&facts, extras.identification.as_ref(), derivatives.as_ref());
+    let derivation = derivation.with(&facts, extras, derivatives.as_ref());
     let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
     finish(&mut functions);
     functions
@@ -227,8 +259,48 @@ fn written_alone(model: &Model<'_>) -> Written {
     written(model, &joints, &crba::mass_matrix(model, &joints))
 }
 
+/// The equations that are asked for; empty ones where readable ones would be too long, `None` where others are.
+fn printed<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+    printed: Printed,
+    cx: &mut Diagnostics,
+) -> Option<Written> {
+    let mut refuse = |what: &str, help: &str| {
+        cx.error(model.place.clone(), what.to_string()).help(help);
+        None
+    };
+    match printed {
+        Printed::Readable => Some(written(model, joints, mass)),
+        Printed::Structure => Some(Written::default()),
+        Printed::Lagrange => {
+            let equations = mechanics::equations::derive(model, joints, mass, &Limits::ASKED);
+            equations.map(|e| mechanics::equations::written(model, &e)).or_else(|| {
+                refuse(
+                    "the equations of this mechanism have thousands of terms",
+                    "`equations = structure` says how they are made up; the generated functions do not multiply them out",
+                )
+            })
+        }
+        Printed::Hamilton if !model.constraints.is_empty() => refuse(
+            "Hamilton's equations are printed for mechanisms without constraints",
+            "write `equations = lagrange`; the word `hamilton` gives the functions under constraints, too",
+        ),
+        Printed::Hamilton => {
+            let canonical = mechanics::equations::canonical(model, joints, mass);
+            canonical.map(|c| mechanics::equations::written_canonical(model, &c)).or_else(|| {
+                refuse(
+                    "Hamilton's equations of this mechanism are too long: more than three velocities are coupled by inertia, or thousands of terms",
+                    "the word `hamilton` gives them as functions; `equations = lagrange` prints others",
+                )
+            })
+        }
+    }
+}
+
 fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Written {
-    let equations = mechanics::equations::derive(model, joints, mass);
+    let equations = mechanics::equations::derive(model, joints, mass, &Limits::READABLE);
     equations.map_or_else(Written::default, |e| mechanics::equations::written(model, &e))
 }
 

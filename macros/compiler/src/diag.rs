@@ -88,6 +88,26 @@ impl Diagnostic {
         self
     }
 
+    /// Where it is.
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// What is wrong.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// What else it has to do with, a line each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// How to mend it, a line each.
+    pub fn helps(&self) -> &[String] {
+        &self.help
+    }
+
     /// One `compile_error!` at its token.
     pub fn tokens(&self) -> TokenStream {
         compile_error(&self.place, &self.text())
@@ -121,6 +141,7 @@ pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
 pub struct Diagnostics {
     errors: Vec<Diagnostic>,
     unread: bool,
+    lists: Vec<String>,
 }
 
 impl Diagnostics {
@@ -177,14 +198,42 @@ impl Diagnostics {
         self.errors.is_empty()
     }
 
+    /// Names with a number behind them, `leg_0` and `leg_1` of the list `leg`, stand for one thing in the source: what is said
+    /// of several of them alike is said once.
+    pub fn count_alike(&mut self, lists: Vec<String>) {
+        self.lists = lists;
+    }
+
+    /// The mistakes in order, those of elements of one list that are alike once.
+    pub fn distinct(&self) -> impl Iterator<Item = &Diagnostic> {
+        let mut said = std::collections::BTreeSet::new();
+        self.errors
+            .iter()
+            .filter(move |one| self.lists.is_empty() || said.insert(self.without_numbers(&one.message)))
+    }
+
+    /// A message without the numbers of elements of lists.
+    fn without_numbers(&self, message: &str) -> String {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let words = message.split_inclusive(|c| !is_word(c)).map(|word| {
+            let name = word.trim_end_matches(|c| !is_word(c));
+            let list = name.trim_end_matches(|c: char| c.is_ascii_digit()).strip_suffix('_');
+            match list.filter(|list| self.lists.iter().any(|known| known == list)) {
+                Some(list) => format!("{list}[]{}", &word[name.len()..]),
+                None => word.to_string(),
+            }
+        });
+        words.collect()
+    }
+
     /// The messages in order, as the user reads them.
     pub fn messages(&self) -> Vec<String> {
-        self.errors.iter().map(Diagnostic::text).collect()
+        self.distinct().map(Diagnostic::text).collect()
     }
 
     /// One `compile_error!` for each mistake, at its token.
     pub fn into_tokens(self) -> TokenStream {
-        self.errors.iter().flat_map(Diagnostic::tokens).collect()
+        self.distinct().flat_map(Diagnostic::tokens).collect()
     }
 }
 

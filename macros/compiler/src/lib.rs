@@ -4,6 +4,7 @@ pub mod catalogue;
 pub mod derive;
 pub mod diag;
 pub mod emit;
+pub mod export;
 pub mod expr;
 pub mod import;
 pub mod kinematics;
@@ -58,6 +59,32 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
     Emitted { tokens, text: String::new() }
 }
 
+/// A mechanism as C99: the text of a source file and of its header. `None` with the reasons in `cx`.
+pub fn export_c(
+    source: &Source,
+    options: &export::c::Options,
+    cx: &mut Diagnostics,
+) -> Option<export::c::Files> {
+    let graph = Graph::new();
+    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    export::c::write(&model, &output, options)
+        .map_err(|unfit| {
+            let (what, help) = match unfit {
+                export::c::Unfit::Table(of) => (
+                    format!("`{of}` looks up a table, which C sources do not have yet"),
+                    "give the function as an expression, or call the mechanism from a library in Rust",
+                ),
+                export::c::Unfit::Lanes(of) => (
+                    format!("Linkwork made a mistake: `{of}` was derived with lanes"),
+                    "this is no mistake of yours: please report it with the declaration of the mechanism",
+                ),
+            };
+            cx.error(model.place.clone(), what).help(help);
+        })
+        .ok()
+}
+
 /// The messages of the mistakes in a mechanism; empty if there is none.
 pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
     let mut cx = Diagnostics::new();
@@ -91,14 +118,30 @@ pub fn read(
         let text = import::read_file(&path, options, cx);
         file = text.is_some().then_some(path);
         if let Some(imported) = text.and_then(|text| import::import_urdf(&text, options, cx)) {
-            merge(&mut mechanism.description, imported, cx);
+            merge(&mut mechanism, imported, cx);
         }
     }
     Some(Source { mechanism, file, imported: cx.len() == before })
 }
 
 /// Puts the contents of a file before those of the struct.
-fn merge(description: &mut Description, imported: import::Imported, cx: &mut Diagnostics) {
+fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
+    let Mechanism { description, shell, .. } = mechanism;
+    for field in &imported.fields {
+        if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
+            cx.error(own.place.clone(), format!("the name `{}` is used twice", own.text)).help(format!(
+                "the field that holds figures of `{}` has this name: choose another",
+                field.of
+            ));
+        }
+    }
+    for field in &imported.fields {
+        let place = description.name.place.clone();
+        let name = |text| syntax::Name { text, place: place.clone() };
+        description.parameters.extend(field.members().into_iter().map(name));
+        description.file_units.extend(&field.units);
+    }
+    shell.file_fields = imported.fields;
     let own_bodies = std::mem::replace(&mut description.bodies, imported.bodies);
     let own_joints = std::mem::replace(&mut description.joints, imported.joints);
     for own in &own_bodies {
@@ -147,8 +190,10 @@ pub fn compile_with<'g>(
     let requests = source.mechanism.requests;
     let mut output = derive_with(&model, requests, passes, cx)?;
     describe(&mut output, &source.mechanism);
-    check_outputs(&source.mechanism.description, &output.functions, &Facts::of(&model, requests), cx)
-        .then_some((model, output))
+    let description = &source.mechanism.description;
+    let good = check_rates(description, &output.functions, cx);
+    let good = check_outputs(description, &output.functions, &Facts::of(&model, requests), cx) && good;
+    good.then_some((model, output))
 }
 
 /// Reports what is wrong with those parts of a mechanism that mistakes of its grammar do not touch: what has to do with them
@@ -176,6 +221,26 @@ fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
 /// True for names that neither Rust nor what is generated needs.
 fn can_be_a_function(name: &str) -> bool {
     syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
+}
+
+/// Reports rates of states that depend on accelerations, which would depend on them in turn.
+fn check_rates(description: &Description, functions: &[derive::Function], cx: &mut Diagnostics) -> bool {
+    let before = cx.len();
+    for (state, _) in &description.states {
+        let name = format!("{}{}", state.text, syntax::state::RATE);
+        let written = description.outputs.iter().find(|output| output.name.text == name);
+        let rate = functions.iter().find(|f| f.id == catalogue::Id::Output && f.name == name);
+        if let Some(written) = written
+            && rate.is_none_or(|f| f.arguments.contains(&catalogue::Argument::A))
+        {
+            cx.error(
+                written.value.place.clone(),
+                "the rate of a state cannot depend on accelerations or reactions",
+            )
+            .help("accelerations follow from the state: write the force that causes them instead");
+        }
+    }
+    cx.len() == before
 }
 
 /// Reports outputs that would be functions of the same name as others, or of none that a function can have.
@@ -242,10 +307,17 @@ fn check_outputs(
 }
 
 impl Source {
+    /// What every joint joins, in a line each.
+    pub fn structure(&self) -> Vec<String> {
+        self.mechanism.description.joints.iter().map(structure_line).collect()
+    }
+
     /// What the outside sees of the mechanism.
     fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
-        let facts = Facts::of(m, self.mechanism.requests);
+        let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
+        let base = base.map_or(0, |constant| constant.list.len());
+        let facts = Facts { base, ..Facts::of(m, self.mechanism.requests) };
         Interface {
             configuration: m.configuration.clone(),
             velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
@@ -253,7 +325,9 @@ impl Source {
             frames: m.frames.iter().map(|f| f.name.clone()).collect(),
             units: m.units.clone(),
             constraints: Constraints::of(m),
+            contacts: emit::Touching::of(m),
             limits: emit::Limited::of(m),
+            figures: emit::Figure::of(m),
             absent: emit::absent(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
@@ -270,9 +344,12 @@ impl Source {
             velocities: Vec::new(),
             inputs: Vec::new(),
             frames: Vec::new(),
-            structure: d.joints.iter().map(structure_line).collect(),
+            structure: self.structure(),
             constraints: Constraints::default(),
+            contacts: Vec::new(),
             limits: Vec::new(),
+            figures: Vec::new(),
+            states: d.states.iter().map(|(name, k)| (name.text.clone(), *k)).collect(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
             units: mechanism::Units::default(),
             facts: Facts::default(),
@@ -307,6 +384,9 @@ impl Source {
                 self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
             constants.push(derive::Constant::parameters(&parameters));
         }
+        if facts.requests.conserved {
+            constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
+        }
         if facts.requests.packed {
             constants.push(derive::Constant::entries(&facts.entries));
         }
@@ -322,6 +402,7 @@ impl Source {
             } else {
                 Constraints::default()
             },
+            contacts: if facts.contacts[0] > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
             facts,
             ..bare
         };
@@ -351,6 +432,7 @@ impl Source {
                 false => requests,
             },
             constraints,
+            contacts: if description.contacts.is_empty() { [0; 2] } else { [1; 2] },
             bodies: outline.bodies.len(),
             // How many base parameters there are, only the equations could tell.
             base: 7 * nv,

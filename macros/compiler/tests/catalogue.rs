@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Attribute, name and fields of mechanisms that have, between them, every function.
-const MECHANISMS: [(&str, &str, &str); 5] = [
+const MECHANISMS: [(&str, &str, &str); 7] = [
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch",
         "Plain",
         "m: f64,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -22,7 +22,7 @@ const MECHANISMS: [(&str, &str, &str); 5] = [
         #[output(hinge)] angle: Scalar,",
     ),
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch",
         "Closed",
         "m: f64,
         #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
@@ -42,11 +42,24 @@ const MECHANISMS: [(&str, &str, &str); 5] = [
         #[constraint(slips(ball.sphere(1), ground.plane(z)), friction = mu)] lane: Slipping,",
     ),
     (
+        "gravity = -9.81 * z, prepare, batch",
+        "Bouncing",
+        "mu: f64,
+        #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
+        #[joint(ground -> ball)] pose: Free,
+        #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,",
+    ),
+    (
         "second_derivatives, batch",
         "Driven",
         "#[joint(ground -> bead, along = x)] slide: Sleeve,
         #[particle(mass = 1)] bead: Particle,
         #[acts(on = slide, value = sin(t) - 3 * slide)] pull: Force,",
+    ),
+    (
+        "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, prepare",
+        "OfAFile",
+        "",
     ),
     (
         "inertia = none",

@@ -39,11 +39,12 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             base: Base::Fixed,
             honour_passive: true,
             follow_mimic: true,
-            honour_limits: true,
+            limits: linkwork_compiler::syntax::LimitOption::Honour,
             inertias: Inertias::Check,
             inputs: false,
             lock: Vec::new(),
             snap: None,
+            parameters: Vec::new(),
         };
         if let Some(imported) = import::import_urdf(text, &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;

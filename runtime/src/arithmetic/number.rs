@@ -1,9 +1,10 @@
 //! What bodies compute with: numbers and vectors of them.
 
 use super::Vector;
-use crate::Real;
+use crate::atmosphere::Atmosphere;
 use crate::lanes::Registers;
 use crate::trigonometry;
+use crate::{Real, Table};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number, or one in each lane.
@@ -50,6 +51,8 @@ macro_rules! elementary {
             )+
             /// Sines and cosines of several angles.
             fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]);
+            /// The value of a table, or its derivative of these orders.
+            fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self;
         }
 
         impl<A: Registers, T: Real> Elementary<A> for T {
@@ -63,6 +66,10 @@ macro_rules! elementary {
             #[inline(always)]
             fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]) {
                 trigonometry::sin_cos_all::<A, T, N>(x)
+            }
+
+            fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self {
+                table.derivative(x, orders)
             }
         }
 
@@ -81,6 +88,11 @@ macro_rules! elementary {
                     (*s, *c) = (Self::of(sines), Self::of(cosines));
                 }
                 (s, c)
+            }
+
+            fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self {
+                let lane = |k: usize| x.each_ref().map(|x| x.numbers()[k]);
+                Self::of(core::array::from_fn(|k| table.derivative(lane(k), orders)))
             }
         }
     };

@@ -1,6 +1,7 @@
 //! A mechanism whose scalars are lanes.
 
 use super::Batch;
+use crate::contact::Touched;
 use crate::lanes::{lane, lane_by_lane};
 use crate::{ConstraintError, Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -50,6 +51,8 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
 
     #[inline(always)]
     fn neutral(&self) -> SVector<Self::Scalar, NQ> {
@@ -86,6 +89,47 @@ where
         dv: &SVector<Self::Scalar, NV>,
     ) -> bool {
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
+    }
+
+    /// Lane by lane.
+    fn carry(
+        &self,
+        t: Self::Scalar,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(dv, k), &lane(v, k)))
+    }
+
+    /// Lane by lane; a lane whose contacts have no impulses is no number afterwards, and it is an error if all are so.
+    fn contact_step(
+        &self,
+        t: Self::Scalar,
+        start: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        end: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        given: &SVector<Self::Scalar, NV>,
+        h: Self::Scalar,
+    ) -> Result<Touched<Self::Scalar, NQ, NV>, ConstraintError> {
+        let results: [_; L] = core::array::from_fn(|k| {
+            let [(start, v), (q, free)] = [start, end].map(|(q, v)| (lane(q, k), lane(v, k)));
+            self.mechanism.contact_step(t.0[k], (&start, &v), (&q, &free), &lane(given, k), h.0[k])
+        });
+        if let Some(Err(error)) = results.first()
+            && results.iter().all(Result::is_err)
+        {
+            return Err(*error);
+        }
+        let nothing = M::Scalar::zero() / M::Scalar::zero();
+        let lost = Touched { q: SVector::repeat(nothing), v: SVector::repeat(nothing) };
+        let of = |k: usize| results[k].unwrap_or(lost);
+        Ok(Touched { q: lane_by_lane(|k| of(k).q), v: lane_by_lane(|k| of(k).v) })
+    }
+
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
     }
 
     /// Lanes in which the forces determine no acceleration are no numbers, as those of `forward_dynamics` are.

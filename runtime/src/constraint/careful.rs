@@ -68,7 +68,7 @@ where
         }
     }
     let start = system.solve(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), Weak::Dropped).0.0;
-    let passing = passing::acceleration(mechanism, structure, t, (q, v), &system.force, &start);
+    let passing = passing::acceleration(mechanism, structure, t, (q, v), &system, &start);
     system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
 }
 

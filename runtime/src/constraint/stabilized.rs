@@ -1,6 +1,7 @@
 //! Constraints kept by feedback instead of projection.
 
 use super::{Constrained, ConstraintError, Projected};
+use crate::contact::Touched;
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{Real, Rheonomic};
@@ -77,6 +78,9 @@ where
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const FEEDBACK: bool = true;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
 
     each_function!(space, plain Rheonomic, self => self.mechanism);
     each_function!(dynamics, pass Rheonomic, self => self.mechanism);
@@ -130,5 +134,32 @@ where
         dv: &SVector<M::Scalar, NV>,
     ) -> bool {
         self.mechanism.is_nearly_singular(t, q, dv)
+    }
+
+    fn carry(
+        &self,
+        t: M::Scalar,
+        dv: &SVector<M::Scalar, NV>,
+        v: &SVector<M::Scalar, NV>,
+    ) -> SVector<M::Scalar, NV> {
+        self.mechanism.carry(t, dv, v)
+    }
+
+    fn contact_step(
+        &self,
+        t: M::Scalar,
+        start: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
+        end: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
+        given: &SVector<M::Scalar, NV>,
+        h: M::Scalar,
+    ) -> Result<Touched<M::Scalar, NQ, NV>, ConstraintError> {
+        self.mechanism.contact_step(t, start, end, given, h)
+    }
+
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<M::Scalar, NQ, NV, NU>,
+    {
+        None
     }
 }

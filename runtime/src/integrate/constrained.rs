@@ -56,8 +56,13 @@ pub(super) fn lost<T: Real>(t: T, iterations: usize) -> Error {
     if iterations == 0 { Error::NotFinite { t } } else { Error::NotConverged { t, iterations } }
 }
 
-/// More iterations than steps take whose end is in reach of the derivatives at their start.
+/// Iterations that steps take at most whose end is well in reach of the derivatives at their start, and those after which it
+/// is not.
+const FEW_ITERATIONS: usize = 8;
 const MANY_ITERATIONS: usize = 24;
+
+/// Beyond this share of the velocity, what many iterations have changed in half a step is another motion.
+const LEAP: f64 = 0.5;
 
 /// A solved midpoint.
 pub(super) struct Middle<T, const NV: usize> {
@@ -68,17 +73,61 @@ pub(super) struct Middle<T, const NV: usize> {
     iterations: usize,
 }
 
-/// Whether a step cannot be trusted to have `found` its end since it begins in a singular position or, if that took many
-/// iterations, leads past one.
+/// Whether the place where a step has ended is singular, if that is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ended(Option<bool>);
+
+/// Whether a step cannot be trusted to have `found` its end since it begins or ends in a singular position or, if that took many
+/// iterations, led to another motion or failed, leads past one: it may begin well before and end well behind.
 pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: &State<T, NQ, NV>,
     h: T,
     found: &Result<Middle<T, NV>, Error>,
+    ended: &mut Ended,
 ) -> bool {
-    let quick = found.as_ref().is_ok_and(|found| found.iterations <= MANY_ITERATIONS);
-    let reach = if quick { T::zero() } else { h };
-    system.is_nearly_singular(start.t, &start.q, &(start.v * reach))
+    let singular = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
+    let near = |v: &SVector<T, NV>| largest(&(v - start.v)) <= largest(&start.v) * constant(LEAP);
+    let quick = |found: &&Middle<T, NV>| {
+        found.iterations <= if near(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
+    };
+    if let Some(found) = found.as_ref().ok().filter(quick) {
+        // Pushes in a singular end leave in the velocity what these constraints alone forbid.
+        let before = ended.0.unwrap_or_else(|| singular(start.t, &start.q));
+        let after = singular(start.t + h, &system.integrate(&start.q, &(found.v * h)));
+        ended.0 = Some(after);
+        return before || after;
+    }
+    ended.0 = None;
+    let way = start.v * h;
+    [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|part| {
+        let q = system.integrate(&start.q, &(way * constant::<T>(part)));
+        system.is_nearly_singular(start.t + h * constant(part), &q, &way)
+    })
+}
+
+/// How much of a change is made. Where constraints have turned at the end of a step by as much as they are away from a
+/// singular position, iterations with the derivatives at its start creep, or overshoot again and again in one direction;
+/// what two changes have in common tells by how much (Irons and Tuck, *A version of the Aitken accelerator for computer
+/// iteration*, Int. J. Numer. Meth. Eng. 1, 1969).
+struct Pace<T, const NV: usize> {
+    last: SVector<T, NV>,
+    share: T,
+}
+
+impl<T: Real, const NV: usize> Pace<T, NV> {
+    /// The share of a change; all of it as long as changes become clearly smaller.
+    fn next(&mut self, change: &SVector<T, NV>) -> T {
+        let (now, before) = (largest(change), largest(&self.last));
+        let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);
+        // By their sizes, lest their squares overflow or vanish.
+        let (own, last) = (change / before, self.last / before);
+        let bend = own - last;
+        let found = -self.share * last.dot(&bend) / bend.norm_squared();
+        self.share = if slow && found > constant(0.05) && found < constant(8.0) { found } else { T::one() };
+        self.last = *change;
+        self.share
+    }
 }
 
 /// The velocity of the midpoint, from an estimate, and the momentum after the step before the push at its end: with the
@@ -95,12 +144,13 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
     let half = h * constant(0.5);
     let t = start.t + half;
     let mut settling = Settling::new(half);
+    let mut pace = Pace { last: SVector::zeros(), share: T::one() };
     for iterations in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &(v * half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
-        v += change;
+        v += change * pace.next(&change);
         if !is_finite(&v) {
             return Err(lost(start.t, iterations));
         }
@@ -126,20 +176,32 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     let half = h * constant(0.5);
     let middle = start.t + half;
     let mut v = start.v;
-    for _ in 0..MOST_ITERATIONS {
+    let mut last: Option<T> = None;
+    for iteration in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &(v * half));
         let (q, on) = system.project(middle, &q, &v).ok()?;
-        let gain = system.acceleration(middle, &q, &on) * half;
+        let mut gain = system.acceleration(middle, &q, &on) * half;
+        // Rounding of the place may lead round in a circle.
+        let circles = iteration >= FEW_ITERATIONS;
+        if circles {
+            gain = (gain + v - start.v) * constant::<T>(0.5);
+        }
         let change = largest(&(start.v + gain - v));
         v = start.v + gain;
         if !is_finite(&v) {
             return None;
         }
         // Accelerations are not known better there.
-        if change <= epsilon::<T>().cbrt() * largest(&gain) || change <= epsilon::<T>() * largest(&v) {
+        let known = epsilon::<T>().cbrt();
+        let stalls = last.is_some_and(|last| change >= last);
+        let settles = change <= known * largest(&gain)
+            || change <= epsilon::<T>() * largest(&v)
+            || (circles && stalls && change <= known * largest(&v));
+        if settles {
             let q = system.integrate(&start.q, &(v * h));
             return settled(system, State { t, q, v: v + gain }, start.t).ok().map(|end| (v, end));
         }
+        last = Some(change);
     }
     None
 }

@@ -71,7 +71,7 @@ pub enum Error {
     NotConverged {
         /// Time at the start of the failed step.
         t: f64,
-        /// Iterations made.
+        /// Iterations made; none where the matrix of the step is singular.
         iterations: usize,
     },
 }
@@ -102,9 +102,13 @@ impl fmt::Display for Error {
                 "at t = {t} s the impact of event {event} does not separate what has met: end the run there with \
                  `until`, and go on with the contact as a constraint"
             ),
-            Self::NotConverged { t, iterations } => {
-                write!(f, "the implicit step at t = {t} s did not converge in {iterations} iterations")
+            Self::NotConverged { t, iterations: 0 } => {
+                write!(f, "the matrix of the implicit step at t = {t} s is singular: take smaller steps")
             }
+            Self::NotConverged { t, iterations } => write!(
+                f,
+                "the implicit step at t = {t} s did not converge in {iterations} iterations: take smaller steps"
+            ),
         }
     }
 }

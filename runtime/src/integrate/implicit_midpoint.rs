@@ -1,6 +1,6 @@
 //! The implicit midpoint rule in momenta.
 
-use super::constrained::{MOST_ITERATIONS, Middle, Settling, is_crossing, lost, midpoint, passing};
+use super::constrained::{Ended, MOST_ITERATIONS, Middle, Settling, is_crossing, lost, midpoint, passing};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive, settled};
 use crate::Real;
 use crate::private::{constant, to_f64};
@@ -37,6 +37,7 @@ pub struct ImplicitMidpoint<T> {
 pub struct MidpointMemory<T, const NV: usize> {
     momentum: Option<SVector<T, NV>>,
     change: SVector<T, NV>,
+    ended: Ended,
 }
 
 /// A solved midpoint: configuration, velocity, rate of the momentum.
@@ -44,7 +45,7 @@ type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T,
 
 impl<T: Real> ImplicitMidpoint<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
-    pub fn step(step: T) -> Self {
+    pub const fn step(step: T) -> Self {
         Self { step }
     }
 }
@@ -85,7 +86,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        MidpointMemory { momentum: None, change: SVector::zeros() }
+        MidpointMemory { momentum: None, change: SVector::zeros(), ended: Ended::default() }
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
@@ -108,7 +109,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let guess = start.v + memory.change;
         let (v, end, momentum) = if system.is_constrained() {
             let found = midpoint(system, D::momentum_rate, start, &p, h, guess);
-            let crossing = is_crossing(system, start, h, &found);
+            let crossing = is_crossing(system, start, h, &found, &mut memory.ended);
             let passed = if crossing { passing(system, start, t, h) } else { None };
             let (v, end) = match passed {
                 Some(passed) => passed,
@@ -127,7 +128,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
             let end = State { t, q, v: system.velocity(t, &q, &p, &(v + v - start.v)) };
             (v, settled(system, end, start.t)?, Some(p))
         };
-        *memory = MidpointMemory { momentum, change: end.v - v };
+        *memory = MidpointMemory { momentum, change: end.v - v, ended: memory.ended };
         let displacement = v * h;
         let step = Step::linear(*start, end, displacement);
         if !dense {

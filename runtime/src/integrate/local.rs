@@ -1,8 +1,10 @@
 //! A system whose time is counted from the start of a step.
 
-use super::{Dynamics, State};
+use super::event_driven::Section;
+use super::{Dynamics, Error, State, Step};
 use crate::Real;
 use crate::constraint::{ConstraintError, Projected};
+use crate::contact::Touched;
 use nalgebra::SVector;
 
 /// A system `t` seconds after an origin of time: what single precision can tell apart within a step it can tell apart
@@ -42,6 +44,25 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         v: &SVector<T, NV>,
     ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
         self.system.project(self.origin + t, q, v)
+    }
+
+    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.carry(self.origin + t, dv, v)
+    }
+
+    fn contact_step(
+        &self,
+        t: T,
+        start: (&SVector<T, NQ>, &SVector<T, NV>),
+        end: (&SVector<T, NQ>, &SVector<T, NV>),
+        given: &SVector<T, NV>,
+        h: T,
+    ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
+        self.system.contact_step(self.origin + t, start, end, given, h)
+    }
+
+    fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
+        self.system.follow(section.later(self.origin))
     }
 
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {

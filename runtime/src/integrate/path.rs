@@ -6,8 +6,8 @@ use nalgebra::SVector;
 
 /// How a state moves within a step.
 ///
-/// A polynomial of degree four in `θ` over [0, 1], in the nested form of Hairer, Nørsett and Wanner, *Solving
-/// Ordinary Differential Equations I* (1993), II.6: `y = r₁ + θ (r₂ + (1−θ) (r₃ + θ (r₄ + (1−θ) r₅)))`.
+/// A polynomial of degree seven in `θ` over [0, 1], in the nested form of Hairer, Nørsett and Wanner, *Solving
+/// Ordinary Differential Equations I* (1993), II.6: `y = r₁ + θ (r₂ + (1−θ) (r₃ + θ (r₄ + (1−θ) (r₅ + θ (r₆ + …)))))`.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<T, const N: usize> {
     start: SVector<T, N>,
@@ -15,13 +15,15 @@ pub struct Path<T, const N: usize> {
     square: SVector<T, N>,
     cube: SVector<T, N>,
     fourth: SVector<T, N>,
+    /// Of degree five to seven.
+    higher: [SVector<T, N>; 3],
 }
 
 impl<T: Real, const N: usize> Path<T, N> {
     /// The straight line between two values.
     pub fn linear(start: SVector<T, N>, end: SVector<T, N>) -> Self {
         let zero = SVector::zeros();
-        Self { start, change: end - start, square: zero, cube: zero, fourth: zero }
+        Self { start, change: end - start, square: zero, cube: zero, fourth: zero, higher: [zero; 3] }
     }
 
     /// The cubic with values `start`, `end` and changes over the whole step `h ẏ` of `before`, `after` at its ends.
@@ -41,10 +43,19 @@ impl<T: Real, const N: usize> Path<T, N> {
         Self { fourth, ..self }
     }
 
+    /// From `r₃` on, those that are not given zero.
+    pub(super) fn with_terms<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
+        let zero = SVector::zeros();
+        let at = |k: usize| terms.get(k).copied().unwrap_or(zero);
+        Self { square: at(0), cube: at(1), fourth: at(2), higher: [at(3), at(4), at(5)], ..self }
+    }
+
     /// The value at `theta`, 0 at the start and 1 at the end.
     pub fn at(&self, theta: T) -> SVector<T, N> {
         let rest = T::one() - theta;
-        let inner = self.square + (self.cube + self.fourth * rest) * theta;
+        let [fifth, sixth, seventh] = &self.higher;
+        let high = fifth + (sixth + seventh * theta) * rest;
+        let inner = self.square + (self.cube + (self.fourth + high * theta) * rest) * theta;
         self.start + (self.change + inner * rest) * theta
     }
 }

@@ -16,7 +16,7 @@ pub struct Rk4<T> {
 
 impl<T: Real> Rk4<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
-    pub fn step(step: T) -> Self {
+    pub const fn step(step: T) -> Self {
         Self { step }
     }
 
@@ -40,6 +40,29 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let v = start.v + mean.1 * h;
     let q = system.integrate(&start.q, &displacement);
     (system.tangent_rate(&displacement, &v), system.acceleration(start.t + h, &q, &v))
+}
+
+/// What leads through a step of `h` seconds, and the change of the velocity, with the acceleration `before` at its start and a
+/// one that is added everywhere, and keeps its direction as seen from outside.
+pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    h: T,
+    before: SVector<T, NV>,
+    added: &SVector<T, NV>,
+) -> Rates<T, NV> {
+    let half = h * constant(0.5);
+    let mut stage = |h: T, mean: &Rates<T, NV>| {
+        let (displacement, acceleration) = rates(system, start, h, mean);
+        (displacement, acceleration + system.carry(start.t, &(mean.0 * h), added))
+    };
+    let k1 = (start.v, before + added);
+    let k2 = stage(half, &k1);
+    let k3 = stage(half, &k2);
+    let k4 = stage(h, &k3);
+    let two = constant::<T>(2.0);
+    let sixth = h / constant(6.0);
+    ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth)
 }
 
 impl<T: Real> Method<T> for Rk4<T> {
@@ -71,16 +94,8 @@ impl<T: Real> Method<T> for Rk4<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let known = memory.take();
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
-        let half = h * constant(0.5);
-        let k1 = (start.v, before);
-        let k2 = rates(system, start, half, &k1);
-        let k3 = rates(system, start, half, &k2);
-        let k4 = rates(system, start, h, &k3);
-        let two = constant::<T>(2.0);
-        let sixth = h / constant(6.0);
-        let displacement = (k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth;
-        let v = start.v + (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth;
-        let end = State { t, q: system.integrate(&start.q, &displacement), v };
+        let (displacement, change) = through(system, start, h, before, &SVector::zeros());
+        let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
         let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);
         if !dense {

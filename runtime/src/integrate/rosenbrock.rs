@@ -24,7 +24,7 @@ pub struct Rosenbrock<T> {
 
 impl<T: Real> Rosenbrock<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
-    pub fn step(step: T) -> Self {
+    pub const fn step(step: T) -> Self {
         Self { step }
     }
 }
@@ -32,19 +32,19 @@ impl<T: Real> Rosenbrock<T> {
 /// Derivatives of the acceleration by displacement, velocity and time, by differences.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<T, const NV: usize> {
-    by_q: SMatrix<T, NV, NV>,
-    by_v: SMatrix<T, NV, NV>,
-    by_t: SVector<T, NV>,
+    pub(super) by_q: SMatrix<T, NV, NV>,
+    pub(super) by_v: SMatrix<T, NV, NV>,
+    pub(super) by_t: SVector<T, NV>,
 }
 
 impl<T: Real, const NV: usize> Slopes<T, NV> {
-    fn zero() -> Self {
+    pub(super) fn zero() -> Self {
         Self { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() }
     }
 }
 
 /// Slopes at the start of a step; `None` in singular positions and so near to them that branches of the motion part there.
-fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,

@@ -1,6 +1,6 @@
 //! The semi-implicit (symplectic) Euler method.
 
-use super::constrained::{Middle, is_crossing, midpoint, passing};
+use super::constrained::{Ended, Middle, is_crossing, midpoint, passing};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
 use crate::private::constant;
@@ -28,7 +28,7 @@ pub struct SemiImplicitEuler<T> {
 
 impl<T: Real> SemiImplicitEuler<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
-    pub fn step(step: T) -> Self {
+    pub const fn step(step: T) -> Self {
         Self { step }
     }
 
@@ -56,8 +56,9 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 ) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
     let half = h * constant(0.5);
     let pushed = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
-        let p = force(system, state) * h;
-        let v = state.v + system.response(state.t, &state.q, &state.v, &p);
+        // Of forces, not impulses: beside stiff springs short pushes would be rounding.
+        let force = force(system, state);
+        let v = state.v + system.response(state.t, &state.q, &state.v, &force) * h;
         settled(system, State { v, ..*state }, state.t).ok()
     };
     let later = pushed(system, start, half)?;
@@ -66,7 +67,7 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {
-    type Memory<const NV: usize> = ();
+    type Memory<const NV: usize> = Ended;
 
     const FIXED: bool = true;
 
@@ -74,13 +75,19 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {}
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        Ended::default()
+    }
 
-    fn disturb<const NV: usize>(&self, (): &mut (), _jump: Jump) {}
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+        if jump == Jump::State {
+            *memory = Ended::default();
+        }
+    }
 
     fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
-        (): &mut (),
+        memory: &mut Self::Memory<NV>,
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
@@ -97,7 +104,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
             let p = system.momentum(start.t, &start.q, &start.v) + force(system, start) * h;
             let rate = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
             let found = midpoint(system, rate, start, &p, h, start.v);
-            let crossing = is_crossing(system, start, h, &found);
+            let crossing = is_crossing(system, start, h, &found, memory);
             let passed = if crossing { pass(system, start, t, h) } else { None };
             match passed {
                 Some(passed) => passed,

@@ -1,8 +1,10 @@
 //! A mechanism together with its inputs: the ordinary differential equation that integrators see.
 
+use super::event_driven::{Following, Section};
 use super::local::Local;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
+use crate::contact::Touched;
 use crate::private::{constant, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
@@ -149,6 +151,29 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         self.impulse(t, q, v, T::zero(), p)
     }
 
+    /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`, where there are contacts.
+    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+
+    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
+    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    fn contact_step(
+        &self,
+        t: T,
+        start: (&SVector<T, NQ>, &SVector<T, NV>),
+        end: (&SVector<T, NQ>, &SVector<T, NV>),
+        given: &SVector<T, NV>,
+        h: T,
+    ) -> Result<Touched<T, NQ, NV>, ConstraintError>;
+
+    /// A step of a mechanism with contacts whose events are located; `None` where there are none.
+    fn follow(&mut self, _section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
+        None
+    }
+
     /// Whether constraints lose rank near `q`, beside how a step by `dv` changes them
     /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
@@ -198,6 +223,16 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         M: Rheonomic<NQ, NV, NU, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
+        const {
+            assert!(
+                !M::CONTACTING || S::CONTACTS,
+                "this mechanism has contacts, which this method of integration knows nothing of: simulate it with `.method(TimeStepping::step(1e-3))` or `.method(EventDriven::new())`, or without its contacts by `&contact::apart(&mechanism)`"
+            );
+            assert!(
+                !(M::CONTACTING && S::LOCATES) || M::LOCATABLE,
+                "events at the contacts of this mechanism cannot be located, as those of lanes, states of first order and stabilised constraints: simulate it with `.method(TimeStepping::step(1e-3))`"
+            );
+        }
         self.undetermined = None;
         let mut local = Local { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
@@ -318,6 +353,25 @@ where
             })
         };
         under(p) - under(&SVector::zeros())
+    }
+
+    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.carry(t, dv, v)
+    }
+
+    fn contact_step(
+        &self,
+        t: T,
+        start: (&SVector<T, NQ>, &SVector<T, NV>),
+        end: (&SVector<T, NQ>, &SVector<T, NV>),
+        given: &SVector<T, NV>,
+        h: T,
+    ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
+        self.mechanism.contact_step(t, start, end, given, h)
+    }
+
+    fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
+        self.mechanism.visit_contacts(Following { section, inputs: &mut self.inputs })
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {

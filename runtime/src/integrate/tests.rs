@@ -15,6 +15,11 @@ fn equal_steps(h: f64) -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
+/// The method of order 8 with equal steps.
+fn eighth(h: f64) -> DormandPrince8<f64> {
+    DormandPrince8::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
+}
+
 /// log₂ of the ratio of the errors with a step and half of it.
 fn order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
     (error(h) / error(h / 2.0)).log2()
@@ -90,6 +95,19 @@ orders! {
     rosenbrock_has_order_two: Rosenbrock::step, 2.0, 2.0 / 512.0;
     rk4_has_order_four: Rk4::step, 4.0, 2.0 / 64.0;
     dormand_prince_has_order_five: equal_steps, 5.0, 2.0 / 32.0;
+    rodas_has_order_four: |h| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h), 4.0, 2.0 / 32.0;
+}
+
+/// Steps that are short enough for the order to show leave little of the error: orders are within a half.
+#[test]
+fn dormand_prince_8_has_order_eight() {
+    let cases: [&dyn Fn(f64) -> f64; 3] =
+        [&|h| driven_error(eighth(h)), &|h| top_error(eighth(h)), &|h| thrown_error(eighth(h))];
+    for (case, error) in cases.iter().enumerate() {
+        let found = order(error, 0.5);
+        std::println!("order 8, case {case}: {found:.3}, error {:.1e}", error(0.5));
+        assert!((found - 8.0).abs() < 0.6, "case {case}: order {found}");
+    }
 }
 
 #[test]
@@ -109,13 +127,66 @@ fn dense_output_has_order_four() {
 }
 
 #[test]
+fn dense_output_of_order_eight_has_order_seven() {
+    let error = |h: f64| {
+        let oscillator = oscillator::<f64>();
+        let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
+        samples.method(eighth(h)).fold(0.0_f64, |worst, sample| {
+            let sample = sample.unwrap();
+            worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
+        })
+    };
+    let found = order(error, 1.0);
+    std::println!("dense output: {found:.3}, {:.1e}", error(1.0));
+    assert!((found - 8.0).abs() < 0.5, "{found}");
+}
+
+fn assert_met<S: Method<f64> + Copy>(tolerance: f64, method: S) {
+    for error in [driven_error(method), top_error(method), thrown_error(method)] {
+        assert!(error < 20.0 * tolerance, "{tolerance}: {error}");
+    }
+}
+
+#[test]
 fn tolerance_is_met() {
     for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
-        let method = DormandPrince::new().tolerance(tolerance, tolerance);
-        for error in [driven_error(method), top_error(method), thrown_error(method)] {
-            assert!(error < 20.0 * tolerance, "{tolerance}: {error}");
-        }
+        assert_met(tolerance, DormandPrince::new().tolerance(tolerance, tolerance));
+        assert_met(tolerance, DormandPrince8::new().tolerance(tolerance, tolerance));
     }
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        assert_met(tolerance, Rodas::new().tolerance(tolerance, tolerance));
+    }
+}
+
+/// Evaluations of the forces, of a pendulum that swings ten times to 1e-12.
+#[test]
+fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
+    let calls = core::cell::Cell::new(0_u32);
+    let pendulum = pendulum();
+    let run = simulate(&pendulum).from([2.5], [0.0]).duration(30.0).inputs(|_, _, _| {
+        calls.set(calls.get() + 1);
+        SVector::from([0.0])
+    });
+    run.clone().method(DormandPrince::new().tolerance(1e-12, 1e-12)).finish().unwrap();
+    let fifth = calls.replace(0);
+    run.method(DormandPrince8::new().tolerance(1e-12, 1e-12)).finish().unwrap();
+    assert!(calls.get() * 2 < fifth, "{} for {fifth}", calls.get());
+}
+
+/// Van der Pol's oscillator, `q̈ = μ (1 − q²) q̇ − q` with μ = 1000, after 2000 s, beyond its second jump: problem VDPOL of the
+/// *Test Set for IVP Solvers* (Mazzia and Magherini, 2008), whose time is scaled by μ and whose `y₁(2)` is 1.706 167 732 170 48.
+#[test]
+fn rodas_follows_a_stiff_oscillator() {
+    let calls = core::cell::Cell::new(0_u32);
+    let mechanism = OneDof { force: |q: f64| -q, ..oscillator() };
+    let run = simulate(&mechanism).from([2.0], [0.0]).duration(2000.0).inputs(|_, q, v| {
+        calls.set(calls.get() + 1);
+        SVector::from([1e3 * (1.0 - q[0] * q[0]) * v[0]])
+    });
+    let end = run.method(Rodas::new().tolerance(1e-6, 1e-9)).finish().unwrap();
+    std::println!("{} after {} evaluations", end.q[0], calls.get());
+    assert!((end.q[0] - 1.706_167_732_170_469).abs() < 1e-4, "{}", end.q[0]);
+    assert!(calls.get() < 20_000, "{}", calls.get());
 }
 
 #[test]
@@ -254,6 +325,7 @@ fn failures_are_errors() {
     let run = simulate(&stiff).from([1.0], [0.0]).duration(1.0);
     let end = run.clone().method(ImplicitMidpoint::step(0.1)).finish();
     assert!(matches!(end, Err(Error::NotConverged { .. })), "{end:?}");
+    assert!(end.is_err_and(|error| error.to_string().ends_with("take smaller steps")));
     let end = run.clone().method(DormandPrince::new().max_steps(10)).finish();
     assert!(matches!(end, Err(Error::TooManySteps { t }) if t < 1.0), "{end:?}");
     let end = run.method(DormandPrince::new().min_step(0.1)).finish();
@@ -273,4 +345,17 @@ fn rosenbrock_is_stable_where_springs_are_stiff() {
     let slow = 3.0_f64.sin() / 1e8;
     assert!((end.q[0] - slow).abs() < 0.01 * slow, "{} for {slow}", end.q[0]);
     assert!(run.method(Rk4::step(0.05)).finish().is_err());
+}
+
+#[test]
+fn rodas_is_stable_where_springs_are_stiff() {
+    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..oscillator() };
+    let run = simulate(&mechanism)
+        .from([0.0], [1e-4])
+        .inputs(|t: f64, _, _| SVector::from([1e4 * t.sin()]))
+        .duration(3.0);
+    let end = run.method(Rodas::new().tolerance(1e-4, 1e-7).max_steps(1000)).finish().unwrap();
+    // In series of the two times: q = (sin t − 2e-5 cos t + …) / 1e4.
+    let slow = (3.0_f64.sin() - 2e-5 * 3.0_f64.cos()) / 1e4;
+    assert!((end.q[0] - slow).abs() < 1e-8, "{} for {slow}", end.q[0]);
 }

@@ -180,9 +180,13 @@ where
         }
         let stop = self.next_stop(run);
         let until = stop.map(|stop| constant(stop - run.elapsed));
+        // Samples that no step ends on are interpolated.
+        let sample = run.clock.sample(run.sample).filter(|_| !S::FIXED);
+        let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
         let (origin, start) = (run.node.t, run.node.timed(T::zero()));
-        let step = self.system.advance(&self.method, &mut run.memory, origin, &start, until, dense)?;
+        let step =
+            self.system.advance(&self.method, &mut run.memory, origin, &start, until, dense || within)?;
         let arrived = stop.filter(|_| until == Some(step.end.t));
         let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
         run.ahead = (elapsed, self.time(run, elapsed));

@@ -26,6 +26,9 @@ fn main() {
 
     let (_, _) = pendulum.linearize(&q, &v, &[].into());
     let _ = pendulum.centroidal_momentum_matrix(&q);
+    let _ = pendulum.hamiltonian(&q, &v);
+    let _ = pendulum.conserved(&q, &v);
+    let _ = Pendulum::CONSERVED;
     let _ = pendulum.joint_torque_regressor(&q, &v, &a);
     let _ = pendulum.forward_dynamics_by_parameters(&q, &v, &a);
     let _ = Pendulum::MASS_MATRIX_ENTRIES;

@@ -3,15 +3,20 @@
 use super::facts::{Facts, Need};
 
 /// Constants of mechanisms, with what each needs.
-const CONSTANTS: [(&str, &[Need]); 18] = [
+const CONSTANTS: [(&str, &[Need]); 23] = [
     ("BASE_PARAMETERS", &[Need::Inertia, Need::Regressor]),
     ("BODIES", &[Need::Inertia, Need::Regressor]),
     ("CONFIGURATION", &[]),
+    ("CONSERVED", &[Need::Inertia, Need::Conserved]),
     ("CONSTRAINTS", &[Need::Constraints]),
+    ("CONTACTS", &[Need::Contacts]),
+    ("CONTACT_ROWS", &[Need::Contacts]),
     ("EQUATIONS", &[]),
     ("EQUATIONS_LATEX", &[]),
+    ("FILE", &[Need::FileParameters]),
     ("FRAMES", &[]),
     ("INPUTS", &[]),
+    ("LINKS", &[Need::FileInertials]),
     ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Packed]),
     ("NC", &[Need::Constraints]),
     ("NH", &[Need::Constraints]),

@@ -33,7 +33,10 @@ pub const ROWS: &[Row] = &[
                 false => "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
             },
             "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
-        ],
+        ]
+        .into_iter()
+        .chain(f.acceleration_forces.then_some("Of the bodies alone: forces that depend on accelerations are part of [`inverse_dynamics`](Self::inverse_dynamics)."))
+        .collect(),
         ..Declaration::default()
     })
     .of_trait(&[Q]),
@@ -51,7 +54,10 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V, A],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+            match f.acceleration_forces {
+                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that give the acceleration `a`, with the forces `C a` that depend on accelerations.",
+                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+            },
             "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
         ],
         ..Declaration::default()
@@ -60,10 +66,16 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::ForwardDynamics, "forward_dynamics", &[Need::Inertia, Need::NoConstraints], |f| Declaration {
         arguments: vec![Q, V, Tau],
         shape: Shape::Vector(f.nv),
-        docs: vec![
-            "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
-            "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
-        ],
+        docs: match f.acceleration_forces {
+            true => vec![
+                "`v̇ = (M(q) − C(q, v))⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give, with the forces `C v̇` that depend on accelerations.",
+                "Sparse triangular factorisation of `M − C`, which need not be symmetric. Not finite where a leading block of it, from the leaves to the root, is singular: where the forces of accelerations outweigh masses.",
+            ],
+            false => vec![
+                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
+                "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
+            ],
+        },
         ..Declaration::default()
     })
     .of_trait(&[Q, V, Tau]),
@@ -113,7 +125,10 @@ pub const ROWS: &[Row] = &[
         docs: vec![
             "Rate of the generalized momentum without inputs, N for translations, N·m for rotations: `ṗ = momentum_rate(q, v) + τ`.",
             "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
-        ],
+        ]
+        .into_iter()
+        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not part of it: they come on top."))
+        .collect(),
         ..Declaration::default()
     })
     .of_trait(&[Q, V]),
@@ -127,9 +142,12 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::ControlPower, "control_power", INERTIA, |_| {
         power(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
     }),
-    Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |_| power(
+    Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power(
         vec![Q, V],
-        vec!["Power of applied forces that are neither conservative nor dissipative nor inputs, W."],
+        vec![match f.acceleration_forces {
+            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, but for what depends on accelerations.",
+            false => "Power of applied forces that are neither conservative nor dissipative nor inputs, W.",
+        }],
     )),
     Row::derived(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
         timeless: true,

@@ -18,6 +18,10 @@ pub enum Need {
     SecondDerivatives,
     /// The word `centroidal`.
     Centroidal,
+    /// The word `hamilton`.
+    Hamilton,
+    /// The word `conserved`.
+    Conserved,
     /// The word `regressor`.
     Regressor,
     /// The word `sensitivities`.
@@ -32,21 +36,33 @@ pub enum Need {
     RegularMass,
     /// Contacts that slip.
     Slipping,
+    /// Contacts that open and close.
+    Contacts,
+    /// Parameters.
+    Parameters,
+    /// Figures of a file that are parameters.
+    FileParameters,
+    /// Mass properties of links among them.
+    FileInertials,
     /// Limits of coordinates.
     Limits,
     /// Derivatives of forward dynamics by calls of other functions.
     Calls,
     /// Passive forces that the other functions call.
     PassiveCalls,
+    /// Contacts of a tree, few enough for a function of how the mechanism answers to them.
+    FewContacts,
 }
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 16] = [
+    pub const ALL: [Need; 23] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
         Need::Centroidal,
+        Need::Hamilton,
+        Need::Conserved,
         Need::Regressor,
         Need::Sensitivities,
         Need::Packed,
@@ -56,9 +72,14 @@ impl Need {
         Need::RegularMass,
         Need::Constraints,
         Need::Slipping,
+        Need::Contacts,
+        Need::Parameters,
+        Need::FileParameters,
+        Need::FileInertials,
         Need::Limits,
         Need::Calls,
         Need::PassiveCalls,
+        Need::FewContacts,
     ];
 
     /// The trait of the runtime that says so. None for what only others call.
@@ -70,6 +91,8 @@ impl Need {
             Need::Derivatives => "AsksForDerivatives",
             Need::SecondDerivatives => "AsksForSecondDerivatives",
             Need::Centroidal => "AsksForCentroidal",
+            Need::Hamilton => "AsksForHamilton",
+            Need::Conserved => "AsksForConserved",
             Need::Regressor => "AsksForRegressor",
             Need::Sensitivities => "AsksForSensitivities",
             Need::Packed => "AsksForPacked",
@@ -77,10 +100,17 @@ impl Need {
             Need::Batch => "AsksForBatch",
             Need::RegularMass => "HasRegularMass",
             Need::Slipping => "HasSlipping",
-            Need::Limits | Need::Calls | Need::PassiveCalls => return None,
+            Need::Contacts => "HasContacts",
+            Need::Parameters => "HasParameters",
+            Need::FileParameters => "HasFileParameters",
+            Need::FileInertials => "HasFileInertials",
+            Need::Limits | Need::Calls | Need::PassiveCalls | Need::FewContacts => return None,
         })
     }
 }
+
+/// The most rates of contacts for which all that impulses do is written out: what is written grows with their square.
+const FEW_CONTACT_RATES: usize = 36;
 
 /// What signatures of a mechanism depend on.
 #[derive(Clone, Debug, Default)]
@@ -95,6 +125,8 @@ pub struct Facts {
     pub time: bool,
     /// Inputs act by way of the velocity.
     pub velocity_inputs: bool,
+    /// Forces depend on accelerations.
+    pub acceleration_forces: bool,
     /// There are no dynamics.
     pub kinematic: bool,
     /// The words of the attribute.
@@ -111,8 +143,14 @@ pub struct Facts {
     pub bodies: usize,
     /// How many base parameters there are.
     pub base: usize,
+    /// How many quantities are conserved.
+    pub conserved: usize,
+    /// How many contacts open and close, and how many rates they have.
+    pub contacts: [usize; 2],
     /// How many bounds limits have.
     pub limits: usize,
+    /// How many figures follow from parameters and fulfil conditions.
+    pub figures: usize,
     /// How many parameters the struct has.
     pub parameters: usize,
     /// Row and column of the entries of the mass matrix in its lower triangle that are not always zero, column by column.
@@ -150,10 +188,13 @@ impl Facts {
             nu: model.nu(),
             time: model.time,
             velocity_inputs: model.velocity_inputs,
+            acceleration_forces: !model.acceleration_forces.is_empty(),
             kinematic: model.kinematic,
             requests,
             constraints,
+            contacts: [model.contacts.len(), model.contact_rates().len()],
             limits: model.limit_values().len(),
+            figures: model.figures().len(),
             parameters: model.parameters.len(),
             ..Facts::default()
         }
@@ -168,6 +209,8 @@ impl Facts {
             Need::Derivatives => self.requests.derivatives,
             Need::SecondDerivatives => self.requests.second_derivatives,
             Need::Centroidal => self.requests.centroidal,
+            Need::Hamilton => self.requests.hamilton,
+            Need::Conserved => self.requests.conserved,
             Need::Regressor => self.requests.regressor,
             Need::Sensitivities => self.requests.sensitivities,
             Need::Packed => self.requests.packed,
@@ -175,9 +218,18 @@ impl Facts {
             Need::Batch => self.requests.batch,
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
+            Need::Contacts => self.contacts[0] > 0,
+            Need::Parameters => self.parameters > 0,
+            Need::FileParameters => self.requests.file_parameters,
+            Need::FileInertials => self.requests.file_inertials,
             Need::Limits => self.limits > 0,
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),
+            Need::FewContacts => {
+                self.nv > 0
+                    && self.constraints.is_none()
+                    && (1..=FEW_CONTACT_RATES).contains(&self.contacts[1])
+            }
         }
     }
 }

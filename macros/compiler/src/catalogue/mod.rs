@@ -5,6 +5,7 @@
 
 mod constants;
 mod constraints;
+mod contacts;
 mod derivatives;
 mod dynamics;
 mod facts;
@@ -16,24 +17,26 @@ mod written;
 
 pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, Facts, Need};
-pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, output, reaction};
+pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, output, reaction, touched};
 pub use row::{Declaration, Declared, Id, Made, Row};
-pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
+pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows in the order in which functions are generated: outputs come between both lists.
-const TABLES: [&[Row]; 8] = [
+const TABLES: [&[Row]; 10] = [
     dynamics::ROWS,
     constraints::ROWS,
+    contacts::ROWS,
     requested::CENTROIDAL,
     derivatives::ROWS,
     derivatives::SECOND_ROWS,
+    requested::CANONICAL,
     requested::ROWS,
     written::CONSTRAINED,
     written::ROWS,
 ];
 
 /// How many of the tables stand before the outputs.
-const BEFORE_OUTPUTS: usize = 3;
+const BEFORE_OUTPUTS: usize = 4;
 
 /// All rows.
 pub fn rows() -> impl Iterator<Item = &'static Row> {

@@ -3,11 +3,13 @@
 use super::facts::Facts;
 use super::row::{Declared, Id};
 use super::shape::Argument::{A, Q, T, U, V};
-use super::shape::{Argument, Shape};
+use super::shape::{Argument, CONTACT_FORCES, Shape};
 use crate::mechanism::Uses;
 
 /// What the hidden function of a reaction's output is called, after which the output is.
 pub const REACTION: &str = "__reaction_";
+/// Before the name of an output that names forces at contacts: the function of these.
+pub const TOUCHED: &str = "__touched_";
 
 /// What stands after an output's name in that of its Jacobian.
 pub const JACOBIAN: &str = "_jacobian";
@@ -85,4 +87,12 @@ pub fn reaction(name: &str, size: usize, f: &Facts) -> Declared {
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
+}
+
+/// The hidden function of an output that names forces at contacts: of the state, the inputs and the forces at all contacts.
+pub fn touched(name: &str, size: usize, f: &Facts) -> Declared {
+    let mut arguments = vec![Q, V];
+    arguments.extend((f.nu > 0).then_some(U));
+    arguments.push(Argument::Given(CONTACT_FORCES, 0, f.contacts[1]));
+    declared(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
 }

@@ -1,4 +1,4 @@
-//! The functions of the words `centroidal`, `regressor`, `sensitivities` and `packed`.
+//! The functions of the words `centroidal`, `hamilton`, `conserved`, `regressor`, `sensitivities` and `packed`.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
@@ -9,6 +9,8 @@ use super::shape::{Argument, Shape};
 const STANDARD: usize = 10;
 
 const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Centroidal];
+const HAMILTON: &[Need] = &[Need::Inertia, Need::Hamilton, Need::RegularMass];
+const CONSERVED: &[Need] = &[Need::Inertia, Need::Conserved];
 const REGRESSOR: &[Need] = &[Need::Inertia, Need::Regressor];
 const PACKED: &[Need] = &[Need::Inertia, Need::Packed];
 
@@ -35,7 +37,48 @@ pub const CENTROIDAL: &[Row] = &[
     }),
 ];
 
-/// The functions of the words `regressor`, `sensitivities` and `packed`.
+/// The functions of the words `hamilton` and `conserved`.
+pub const CANONICAL: &[Row] = &[
+    Row::derived(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
+        arguments: vec![Q, Argument::Momenta(f.nv)],
+        shape: Shape::Scalar,
+        docs: vec![match f.time {
+            true => {
+                "Hamiltonian `H(q, p) = p·v − T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`. Driven motion makes it differ from the energy."
+            }
+            false => {
+                "Hamiltonian `H(q, p) = T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`."
+            }
+        }],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::CanonicalVelocity, "canonical_velocity", HAMILTON, |f| Declaration {
+        arguments: vec![Q, Argument::Momenta(f.nv)],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "Hamilton's first equation: the velocity `v = ∂H/∂p` of a generalized momentum `p`, m/s and rad/s. The inverse of [`generalized_momentum`](Self::generalized_momentum).",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::CanonicalMomentumRate, "canonical_momentum_rate", HAMILTON, |f| Declaration {
+        arguments: vec![Q, Argument::Momenta(f.nv), Tau],
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "Hamilton's second equation: `ṗ = −∂H/∂q + τ`, and passive forces that have no potential, N and N·m; for ball and free joints in body components (Lie and Poisson). Forces of constraints belong to `tau`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::Conserved, "conserved", CONSERVED, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.conserved),
+        docs: vec![
+            "The quantities that `CONSERVED` names, which keep their values in every motion without inputs: J for energies, kg·m/s and kg·m²/s for momenta.",
+        ],
+        ..Declaration::default()
+    }),
+];
+
+/// The functions of the words `regressor`, `sensitivities` and `packed`, and what is checked of parameters.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
@@ -99,6 +142,19 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
+    Row::derived(
+        Id::GeneralizedForcesByParameters,
+        "generalized_forces_by_parameters",
+        &[Need::Inertia, Need::Sensitivities],
+        |f| Declaration {
+            arguments: vec![Q, V, Argument::U],
+            shape: Shape::Matrix(f.nv, f.parameters),
+            docs: vec![
+                "`∂τ/∂p` of the inputs' [`generalized_forces`](Self::generalized_forces): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+            ],
+            ..Declaration::default()
+        },
+    ),
     Row::derived(Id::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(f.entries.len()),
@@ -115,4 +171,10 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
+    Row::derived(Id::Figures, "__figures", &[Need::Parameters], |f| Declaration {
+        timeless: true,
+        shape: Shape::Array(f.figures),
+        ..Declaration::default()
+    })
+    .alone(),
 ];

@@ -1,5 +1,10 @@
 //! Arguments and results.
 
+use crate::mechanism::Quantity;
+
+/// The argument that has the forces at all contacts.
+pub const CONTACT_FORCES: &str = "forces";
+
 /// An argument of a generated function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
@@ -23,6 +28,8 @@ pub enum Argument {
     Into(&'static str, usize),
     /// Factors `lambda`, one for each velocity, by which forces or accelerations are multiplied.
     Factors(usize),
+    /// Generalized momenta `p`, one for each velocity.
+    Momenta(usize),
     /// The results of another function, which a body calls: in no signature.
     Called(Called),
 }
@@ -62,8 +69,28 @@ impl Argument {
             Argument::Given(name, ..) | Argument::Into(name, _) => name,
             Argument::Standard(_) => "standard",
             Argument::Factors(_) => "lambda",
+            Argument::Momenta(_) => "p",
             Argument::Called(Called::PassiveForces) => "passive",
             Argument::Called(Called::PassiveDerivatives) => "change",
+        }
+    }
+
+    /// The index in it of what a symbol stands for.
+    pub fn index(self, quantity: Quantity) -> Option<usize> {
+        match (self, quantity) {
+            (Argument::Q, Quantity::Configuration(k))
+            | (Argument::V, Quantity::Velocity(k))
+            | (Argument::A, Quantity::Acceleration(k))
+            | (Argument::Tau, Quantity::Force(k))
+            | (Argument::U, Quantity::Input(k)) => Some(k),
+            (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
+                Some(k - first)
+            }
+            (Argument::Given(name, ..), Quantity::ContactForce(k)) if name == CONTACT_FORCES => Some(k),
+            (Argument::Standard(_) | Argument::Factors(_) | Argument::Momenta(_), Quantity::Given(k))
+            | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
+            | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
+            _ => None,
         }
     }
 }

@@ -39,5 +39,10 @@ pub const ROWS: &[Row] = &[
     Row::written("frame_placement", &[]),
     Row::written("frame_placements", &[]),
     Row::written("frame_velocity", &[]),
+    Row::written("validate", &[Need::Parameters]),
+    Row::written("from_file", &[Need::FileParameters]),
+    Row::written("inertials", &[Need::FileInertials]),
+    Row::written("set_inertials", &[Need::FileInertials]),
+    Row::written("set_base_parameters", &[Need::Inertia, Need::Regressor, Need::FileInertials]),
     Row::written("prepare", &[Need::Inertia, Need::Prepare]),
 ];

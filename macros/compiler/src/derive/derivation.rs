@@ -6,11 +6,13 @@ use super::output::Function;
 use super::regressor::Identification;
 use super::sensitivities::Sensitivities;
 use super::specialisation::Specialisation;
-use super::{constraints, outputs};
+use super::{Extras, constraints, outputs};
 use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
+use crate::mechanics::derivatives::parameters;
+use crate::mechanics::hamilton::Hamilton;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Chart, Model, PassiveForces};
 use crate::passes::Passes;
@@ -23,8 +25,8 @@ pub(super) struct Derivation<'a, 'g> {
     passes: Passes,
     specialisation: Specialisation,
     facts: &'a Facts,
-    /// For the word `regressor`.
-    identification: Option<&'a Identification<'a, 'g>>,
+    /// For the words `regressor`, `hamilton` and `conserved`.
+    extras: Option<&'a Extras<'a, 'g>>,
     /// For the word `derivatives`.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
     dynamics: OnceCell<Dynamics<'g>>,
@@ -40,31 +42,31 @@ impl<'a, 'g> Derivation<'a, 'g> {
         facts: &'a Facts,
     ) -> Derivation<'a, 'g> {
         let (dynamics, sensitivities) = (OnceCell::new(), OnceCell::new());
-        let (identification, derivatives) = (None, None);
+        let (extras, derivatives) = (None, None);
         Derivation {
             model,
             joints,
             passes,
             specialisation,
             facts,
-            identification,
+            extras,
             derivatives,
             dynamics,
             sensitivities,
         }
     }
 
-    /// Adds what the functions of the words `regressor` and `derivatives` need; what was derived already is kept.
+    /// Adds what the functions of several words need; what was derived already is kept.
     pub(super) fn with<'b>(
         self,
         facts: &'b Facts,
-        identification: Option<&'b Identification<'b, 'g>>,
+        extras: &'b Extras<'b, 'g>,
         derivatives: Option<&'b Derivatives<'b, 'g>>,
     ) -> Derivation<'b, 'g>
     where
         'a: 'b,
     {
-        Derivation { facts, identification, derivatives, ..self }
+        Derivation { facts, extras: Some(extras), derivatives, ..self }
     }
 
     /// The functions that are declared, after those that are `done`: some consist of the same numbers as others.
@@ -95,7 +97,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     /// What a function of the word `regressor` gives; the word is given where one is declared.
     fn identified(&self, outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
-        self.identification.map(outputs).unwrap_or_default()
+        self.extras.and_then(|extras| extras.identification.as_ref()).map(outputs).unwrap_or_default()
+    }
+
+    /// What a function of the word `hamilton` gives.
+    fn canonical(&self, outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
     /// What a function for passive forces gives, where they have one.
@@ -111,6 +118,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         match declared.id {
             Id::Neutral => of(&neutral(model)),
             Id::Limits => of(&model.limit_values()),
+            Id::Figures => of(&model.figures()),
             Id::GeneralizedForces => of(&forces::generalized_forces(model, joints)),
             Id::DissipatedPower => of(&[power::dissipated(model)]),
             Id::ControlPower => of(&[power::control(model, joints)]),
@@ -128,10 +136,30 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Momentum => plain(self.dynamics().momentum()),
             Id::CentroidalMomentumMatrix => plain(self.dynamics().centroidal_momentum_matrix()),
             Id::CentroidalMomentumBias => plain(self.dynamics().centroidal_momentum_bias()),
+            Id::Hamiltonian => of(&self.canonical(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => of(&self.canonical(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => of(&self.canonical(|h| h.momentum_rate.clone())),
+            Id::Conserved => {
+                let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
+                of(&kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect()))
+            }
             Id::ConstraintResiduals => of(&constraints::residuals(model)),
             Id::ConstraintRates => of(&constraints::rates(model)),
             Id::ConstraintJacobian => of(&constraints::jacobian(model)),
             Id::ConstraintBias => of(&constraints::biases(model)),
+            Id::ContactGaps => of(&model.contacts.iter().map(|contact| contact.gap).collect::<Vec<_>>()),
+            Id::ContactRates => of(&model.contact_rates()),
+            Id::ContactJacobian => of(&constraints::contact_jacobian(model)),
+            Id::ContactBias => {
+                of(&model.contacts.iter().flat_map(|contact| contact.biases.clone()).collect::<Vec<_>>())
+            }
+            Id::ContactLaws => {
+                let laws = model.contacts.iter().flat_map(|contact| [contact.friction, contact.restitution]);
+                of(&laws.collect::<Vec<_>>())
+            }
+            Id::ContactResponses => {
+                plain(self.dynamics().contact_responses(&constraints::contact_rows(model)))
+            }
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
             Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
             Id::SlippingResponse => plain(self.dynamics().slipping_response()),
@@ -139,7 +167,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::OutputJacobian
             | Id::OutputDerivatives
             | Id::OutputByParameters
-            | Id::Reaction => of(&outputs::values(model, declared)),
+            | Id::Reaction
+            | Id::Touched => of(&outputs::values(model, declared)),
             Id::MassMatrixInverse => self.derivatives(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivatives(|d| plain(d.coriolis_matrix())),
             Id::InverseDynamicsDerivatives => self.derivatives(|d| plain(d.inverse_dynamics_derivatives())),
@@ -164,6 +193,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::BaseParameters => of(&self.identified(Identification::base_parameters)),
             Id::InverseDynamicsByParameters => plain(self.sensitivities().inverse_dynamics()),
             Id::ForwardDynamicsByParameters => plain(self.sensitivities().forward_dynamics()),
+            Id::GeneralizedForcesByParameters => of(&parameters::generalized_forces(model, joints).concat()),
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
             Id::PassiveForces => of(&self.passive(|passive| passive.forces.clone())),
             Id::PassiveDerivatives => of(&self.passive(|passive| passive.derivatives.clone())),

@@ -14,7 +14,7 @@ use crate::mechanics::derivatives::{
     symbolic,
 };
 use crate::mechanics::passive::passive_forces;
-use crate::mechanics::{self, constraints, crba, forces, rnea};
+use crate::mechanics::{self, added_mass, constraints, crba, forces, rnea};
 use crate::mechanism::{Chart, Model, Quantity};
 use crate::passes::{self, Form, Passes};
 use crate::vectorise::{self, Limbs};
@@ -65,7 +65,9 @@ impl<'a, 'g> Derivatives<'a, 'g> {
             );
         }
         let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
-        parts.known = invariance::known(parts.model, &parts.joints);
+        if parts.model.acceleration_forces.is_empty() {
+            parts.known = invariance::known(parts.model, &parts.joints);
+        }
         if derivatives::is_analytic(parts.model) {
             parts.wide = passes.wide(model.nv());
             parts.take_apart(passes.lanes && specialisation == Specialisation::None);
@@ -81,7 +83,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     /// True if the linear system is made of them.
     pub(super) fn calls_linear(&self) -> bool {
-        self.parts.model.nv() > DERIVATIVES_COMPARED
+        self.parts.model.nv() > DERIVATIVES_COMPARED && self.parts.model.acceleration_forces.is_empty()
     }
 
     pub(super) fn mass_matrix_inverse(&self) -> (Program, Structure) {
@@ -144,6 +146,8 @@ struct Parts<'a, 'g> {
     model: &'a Model<'g>,
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
+    /// The mass matrix less the forces of accelerations.
+    effective: crba::Matrix<'g>,
     method: Method,
     specialisation: Specialisation,
     /// Of a large mechanism: its trunk, if it branches.
@@ -169,6 +173,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         Parts {
             model: &form.model,
             joints: form.joints.clone(),
+            effective: added_mass::effective(&form.model, &mass),
             mass,
             method: Method::Recursion(1),
             specialisation,
@@ -235,7 +240,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
             program(&mass, Method::Recursion(*most))
         });
-        program(&self.mass, self.method).or_in_lanes(wide)
+        program(&self.effective, self.method).or_in_lanes(wide)
     }
 
     /// The same with `M⁻¹` in parts.
@@ -267,7 +272,8 @@ impl<'a, 'g> Parts<'a, 'g> {
             [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
         };
         let Some(trunk) = &self.trunk else {
-            let factor = Factor::of(&self.mass, &self.joints);
+            let mass = if accelerated { &self.effective } else { &self.mass };
+            let factor = Factor::of(mass, &self.joints);
             let a = accelerated.then(|| factor.solve(self.unbalanced()));
             return self.specialisation.program(&outputs(a, [factor.inverse(), Vec::new()]));
         };
@@ -322,11 +328,12 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// True if a single function of all is too large.
     fn is_large(&self) -> bool {
-        self.model.nv() > if self.trunk.is_some() { DERIVATIVES_WRITTEN_OUT } else { DERIVATIVES_COMPARED }
+        let most = if self.trunk.is_some() { DERIVATIVES_WRITTEN_OUT } else { DERIVATIVES_COMPARED };
+        self.model.nv() > most && self.model.acceleration_forces.is_empty()
     }
 
     fn linearization(&self, tau: &[Expr<'g>]) -> Program {
-        let linear = derivatives::linearized(self.model, &self.joints, &self.mass, tau, self.method);
+        let linear = derivatives::linearized(self.model, &self.joints, &self.effective, tau, self.method);
         let mut outputs = all_columns(&linear);
         outputs.extend(columns(&commutators(self.model)));
         self.specialisation.program(&outputs)

@@ -7,9 +7,10 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
+use crate::mechanics::derivatives::Factor;
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::{
-    self, aba, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
+    self, aba, added_mass, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
 };
 use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
@@ -123,6 +124,16 @@ impl<'g> Dynamics<'g> {
 
     pub(super) fn slipping_response(&self) -> Program {
         self.of_best(Forms::slipping_response)
+    }
+
+    /// What impulses along given rates do to the velocities and to these rates.
+    pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
+        self.of_best(|forms| {
+            forms.cheapest(|model| {
+                let mass = crba::mass_matrix(model, &forms.joints);
+                Factor::of(&mass, &forms.joints).responses(rows)
+            })
+        })
     }
 
     fn of_best(&self, program: impl FnOnce(&Forms<'g>) -> Program) -> Program {
@@ -363,8 +374,13 @@ impl<'g> Forms<'g> {
     /// Forward dynamics by factorisation of the mass matrix.
     fn factorised(&self) -> Vec<Candidate<'g>> {
         let r = self.unbalanced();
-        let solve =
-            |model: &Model<'g>| ldl::solve(crba::mass_matrix(model, &self.joints), r.clone(), &self.joints);
+        let solve = |model: &Model<'g>| {
+            let mass = crba::mass_matrix(model, &self.joints);
+            match model.acceleration_forces.is_empty() {
+                true => ldl::solve(mass, r.clone(), &self.joints),
+                false => Factor::of(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
+            }
+        };
         self.candidates(solve).collect()
     }
 

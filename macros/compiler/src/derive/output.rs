@@ -104,7 +104,7 @@ pub struct Prepared {
     pub functions: Vec<Function>,
 }
 
-/// Numbers of a placement: a rotation matrix column by column, and a position.
+/// Numbers of a placement: a rotation matrix row by row, and a position.
 pub const PLACEMENT: usize = 12;
 /// Numbers of a twist, or of its rate.
 pub const TWIST: usize = 6;
@@ -199,6 +199,15 @@ impl Constant {
             item: "(usize, usize)",
             list: list.iter().map(|entry| format!("{entry:?}")).collect(),
         }
+    }
+
+    /// The names of what is conserved.
+    pub fn conserved(list: &[String]) -> Constant {
+        Constant::strings(
+            "CONSERVED",
+            "Name of every entry of [`conserved`](Self::conserved): what keeps its value in every motion without inputs, whatever the parameters are. Found by trying energy, Jacobi's integral and momenta.",
+            list,
+        )
     }
 
     /// The names of the parameters.

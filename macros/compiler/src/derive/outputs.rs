@@ -1,6 +1,6 @@
 //! Outputs: their functions, their Jacobians, and reactions.
 
-use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Declared, Facts, Id, JACOBIAN, REACTION};
+use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Declared, Facts, Id, JACOBIAN, REACTION, TOUCHED};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::kinematics::{symbols_in, time_derivative};
@@ -12,8 +12,13 @@ use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
     let functions = |output: &OutputValue<'_>| {
         let size = output.values.len();
-        match (reactions::names_one(&output.values), facts.kinematic) {
+        let names = |f: fn(&Quantity) -> bool| {
+            symbols_in(&output.values).into_iter().map(Quantity::of).any(|q| f(&q))
+        };
+        let touched = names(|q| matches!(q, Quantity::ContactForce(_)));
+        match (touched || reactions::names_one(&output.values), facts.kinematic) {
             (true, true) => Vec::new(),
+            (true, false) if touched => vec![catalogue::touched(&output.name, size, facts)],
             (true, false) => vec![catalogue::reaction(&output.name, size, facts)],
             (false, _) => catalogue::output(&output.name, size, uses(output), facts),
         }
@@ -35,6 +40,7 @@ fn uses(output: &OutputValue<'_>) -> Uses {
 pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
+        Id::Touched => declared.name.strip_prefix(TOUCHED),
         Id::OutputJacobian => declared.name.strip_suffix(JACOBIAN),
         Id::OutputDerivatives => declared.name.strip_suffix(DERIVATIVES),
         Id::OutputByParameters => declared.name.strip_suffix(BY_PARAMETERS),

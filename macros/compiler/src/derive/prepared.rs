@@ -2,6 +2,7 @@
 //! computed once and shared by all of them.
 
 use super::output::{Function, Prepared};
+use crate::catalogue;
 use crate::expr::{Expr, Graph, Id};
 use crate::lower::{lower, pipeline, place_hoisted};
 use crate::mechanism::Quantity;
@@ -20,6 +21,8 @@ pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
         }
         Quantity::Prepared(k).symbol()
     };
+    // What is checked of parameters is checked before.
+    functions.retain(|f| f.id != catalogue::Id::Figures);
     for f in &mut functions {
         place_hoisted(&mut f.program, &mut place);
     }

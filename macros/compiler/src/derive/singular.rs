@@ -3,7 +3,7 @@
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Sym3, Vec3};
 use crate::kinematics::Joint;
-use crate::mechanics::{crba, massless, regularity};
+use crate::mechanics::{added_mass, crba, massless, regularity};
 use crate::mechanism::{Inertia, LinkId, Model, Motion};
 use crate::syntax::ROOT_JOINT;
 
@@ -43,6 +43,27 @@ pub fn check<'g>(
     if !singular.is_empty() {
         report_velocities(model, &singular, cx);
     }
+    false
+}
+
+/// True if what is to be multiplied by the accelerations can be inverted; reports where forces cancel inertia.
+pub fn check_effective<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+    cx: &mut Diagnostics,
+) -> bool {
+    let Some(force) = model.acceleration_forces.first() else { return true };
+    let singular = regularity::singular_velocities(model, joints, &added_mass::effective(model, mass));
+    let names: Vec<String> = singular.iter().map(|k| format!("`{}`", model.velocities[*k].0)).collect();
+    if names.is_empty() {
+        return true;
+    }
+    cx.error(
+        force.place.clone(),
+        format!("what forces take of accelerations cancels the inertia of {}", all_of(&names)),
+    )
+    .help("carried water or air resists acceleration: it acts against it, as in `value = -added * a(…)`");
     false
 }
 

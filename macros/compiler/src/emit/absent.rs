@@ -53,6 +53,9 @@ const OF_FRAMES: [&str; 6] = [
     "frame_velocity",
 ];
 
+/// What it leaves to the one that holds the parameters.
+const OF_FIGURES: [&str; 5] = ["from_file", "inertials", "set_base_parameters", "set_inertials", "validate"];
+
 impl Absent {
     /// The functions of frames, and what is made by the mechanism itself.
     fn of_prepared() -> Absent {
@@ -60,6 +63,19 @@ impl Absent {
             reason: "HasFrames",
             functions: OF_FRAMES.map(ToString::to_string).to_vec(),
             constants: vec!["FRAMES"],
+        }
+    }
+
+    /// What asks for the parameters.
+    fn of_figures(facts: &Facts) -> Absent {
+        let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none());
+        let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
+        let constants = [("FILE", Need::FileParameters), ("LINKS", Need::FileInertials)];
+        let present = constants.into_iter().filter(|(_, need)| facts.meet(*need));
+        Absent {
+            reason: "HoldsParameters",
+            functions: functions.collect(),
+            constants: present.map(|(name, _)| name).collect(),
         }
     }
 }
@@ -74,7 +90,7 @@ pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 
 /// Writes what a prepared struct of this name lacks.
 pub fn write_absent_of_prepared(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
-    for absent in i.absent.iter().chain([&Absent::of_prepared()]) {
+    for absent in i.absent.iter().chain([&Absent::of_prepared(), &Absent::of_figures(&i.facts)]) {
         write_one(out, name, absent, &Head::new(i, s));
     }
 }

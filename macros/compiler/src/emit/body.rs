@@ -1,15 +1,15 @@
 //! The straight-line body of a generated function. Values with one use are written where they are used; the others are
 //! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
 
-use super::angles::{Angle, Angles, Calls, WIDTH};
+use super::angles::{Calls, WIDTH};
 use super::pieces::{Outputs, Piece, Statement, storage};
 use super::scalar::ScalarSpelling;
-use super::signature::{Signature, filled, given, index};
+use super::signature::{Signature, filled, given};
 use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
 use crate::derive::Function;
-use crate::expr::Symbol;
-use crate::lower::{Op, Operand, Program};
+use crate::expr::{Lookup, Symbol};
+use crate::lower::{Angle, Angles, Op, Operand, Program};
 use crate::mechanism::Quantity;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -151,7 +151,7 @@ impl Writer<'_> {
                 op.operands(&mut note);
             }
         }
-        let is_needed = |a: &Argument| symbols.iter().any(|s| index(*a, Quantity::of(*s)).is_some());
+        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::of(*s)).is_some());
         self.arguments.iter().copied().filter(is_needed).collect()
     }
 
@@ -255,7 +255,7 @@ impl Writer<'_> {
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
-                let is_input = |a: &Argument| gather.iter().any(|s| index(*a, Quantity::of(*s)).is_some());
+                let is_input = |a: &Argument| gather.iter().any(|s| a.index(Quantity::of(*s)).is_some());
                 // Parameters of the lanes are no arguments.
                 plain(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
@@ -296,7 +296,7 @@ impl Writer<'_> {
         }
         self.arguments
             .iter()
-            .find_map(|a| index(*a, quantity).map(|k| format!("{}{k}", a.name())))
+            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name())))
             .unwrap_or_else(|| "missing".to_string())
     }
 
@@ -322,6 +322,7 @@ impl Writer<'_> {
             Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
             Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
             Op::Extreme(f, a, b) => self.call(f.name(), &[a, b], lanes),
+            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c], lanes),
             Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
             Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
             Op::Lane(k, a) => self.suffix(a, &format!(".lane::<{k}>()")),
@@ -400,6 +401,14 @@ impl Writer<'_> {
         self.call_by(&format!("Ops::{function}"), arguments, lanes)
     }
 
+    /// The value of a table, or one of its derivatives.
+    fn lookup(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
+        let (field, orders) = (self.scalar.table(lookup.table()).to_string(), lookup.orders());
+        let list = self.call_by("", x.get(..lookup.variables()).unwrap_or_default(), lanes);
+        let inner = list.text.strip_prefix('(').and_then(|text| text.strip_suffix(')')).unwrap_or_default();
+        Piece { text: format!("Ops::tabulated(&self.{field}, [{inner}], {orders:?})"), ..list }
+    }
+
     fn call_by(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
         let mut needs = Vec::new();
         let mut list = Vec::new();
@@ -429,7 +438,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             Argument::Q => (s.nq, false),
             Argument::V | Argument::A | Argument::Tau => (s.nv, false),
             Argument::U => (s.nu, false),
-            Argument::Standard(n) | Argument::Factors(n) => (*n, false),
+            Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => (*n, false),
             Argument::Given(_, _, n) => (*n, true),
             Argument::Into(..) => continue,
             Argument::Called(_) => (usize::MAX, false),
@@ -448,7 +457,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             (false, true) => writeln!(out, "let [{list}] = *Ops::each(&{name}.data.0[0]);"),
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
-            if gather.iter().any(|s| index(*argument, Quantity::of(*s)).is_some()) {
+            if gather.iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
                 let _ = writeln!(out, "let lanes{k} = {};", w.gathered(gather));
             }
         }
@@ -459,7 +468,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
 /// variables that nothing reads. `None` if it uses none.
 fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
     let mut list = Vec::new();
-    for k in used.iter().filter_map(|s| index(argument, Quantity::of(*s))).filter(|k| *k < n) {
+    for k in used.iter().filter_map(|s| argument.index(Quantity::of(*s))).filter(|k| *k < n) {
         let length = list.len().max(k + 1);
         list.resize(length, "_".to_string());
         list[k] = format!("{}{k}", argument.name());

@@ -3,6 +3,7 @@
 use super::interface::Interface;
 use crate::derive::Constant;
 use crate::expr::print::Written;
+use crate::syntax::Printed;
 use std::fmt::Write;
 
 /// Sizes and the names of what vectors hold.
@@ -38,23 +39,35 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         let (n, list) = (list.len(), list.join(", "));
         let _ = writeln!(out, "/// {docs}\npub const {name}: [{item}; {n}] = [{list}];");
     }
+    let structure = structure(i);
+    let (is_short, equations) =
+        match equations.plain.is_empty() && !i.velocities.is_empty() && !i.facts.kinematic {
+            true => (true, &structure),
+            false => (false, equations),
+        };
     let texts = [
         (
             "EQUATIONS",
             &equations.plain,
-            "The Lagrangian and the equations of motion as text, in the names of the mechanism.",
+            match is_short {
+                true => {
+                    "The structure of the equations of motion as text, and how to ask for all of their terms."
+                }
+                false => {
+                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian or the Hamiltonian before them."
+                }
+            },
         ),
         (
             "EQUATIONS_LATEX",
             &equations.latex,
-            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with the Lagrangian and every equation in a line of its own, for where mathematics is displayed: between `\\[` and `\\]`.",
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, every equation in a line of its own, for where mathematics is displayed: between `\\[` and `\\]`.",
         ),
     ];
     for (name, text, about) in texts {
         let about = match text.as_str() {
             "" if i.velocities.is_empty() => "Empty: nothing moves.",
             "" if i.facts.kinematic => "Empty: without inertia there are no equations of motion.",
-            "" => "Empty: the equations of this mechanism are too long to be read.",
             _ => about,
         };
         // Rustdoc would show a literal, with all its escapes.
@@ -76,4 +89,24 @@ pub fn write_frame_index(out: &mut String, failed: bool) {
         #[must_use]
         pub const fn frame_index(name: &str) -> ::core::option::Option<usize> {{ {value} }}"
     );
+}
+
+/// What the equations are made of, where they are not written out.
+fn structure(i: &Interface<'_>) -> Written {
+    let time = if i.facts.time { "t, " } else { "" };
+    let constrained = i.facts.constraints.is_some();
+    let (held, held_latex) = if constrained { (" + J^T lambda", " + J^T \\lambda") } else { ("", "") };
+    let mut plain = format!("M({time}q) v' + h({time}q, v) = tau{held}\n");
+    let mut latex =
+        format!("\\begin{{aligned}}\n& M({time}q)\\, \\dot v + h({time}q, v) = \\tau{held_latex}");
+    if constrained {
+        let _ = writeln!(plain, "J({time}q) v' + b({time}q, v) = 0");
+        let _ = write!(latex, " \\\\\n& J({time}q)\\, \\dot v + b({time}q, v) = 0");
+    }
+    plain.push_str(match i.facts.requests.equations {
+        Printed::Structure => "\nThe argument `equations = structure` leaves the terms out.\n",
+        _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites them all the same.\n",
+    });
+    latex.push_str("\n\\end{aligned}\n");
+    Written { plain, latex }
 }

@@ -8,13 +8,14 @@ use quote::{format_ident, quote};
 /// leaves them out, and no struct suits both; but of a type with a mistake in its arguments rustc says nothing more, whatever
 /// fields and methods it is asked for.
 pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream {
-    let Shell { attributes, visibility, ident, parameters, generics, .. } = shell;
+    let Shell { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
     let hidden = format_ident!("__{}BelowADerive", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
     let names = generics.type_params().map(|parameter| &parameter.ident);
     let (all, _, _) = generics.split_for_impl();
     // A struct without parameters is a value of its name.
-    let value = parameters.is_empty().then(|| {
+    let fields: Vec<_> = parameters.iter().chain(tables).collect();
+    let value = fields.is_empty().then(|| {
         quote! {
             #[allow(non_upper_case_globals, reason = "the name of the struct")]
             #visibility const #ident: #ident = #hidden {};
@@ -22,7 +23,7 @@ pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream 
     });
     quote! {
         #(#attributes)*
-        #visibility struct #hidden<#(#bounds,)* const MISTAKE: bool> #condition { #(#parameters),* }
+        #visibility struct #hidden<#(#bounds,)* const MISTAKE: bool> #condition { #(#fields),* }
         #[allow(type_alias_bounds, reason = "the bounds of the struct")]
         #visibility type #ident #all = #hidden<#(#names,)* { #mistake }>;
         #value

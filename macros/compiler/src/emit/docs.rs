@@ -1,12 +1,13 @@
 //! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
 
 use super::interface::Interface;
-use super::limits;
+use super::{contacts, limits};
 use crate::catalogue::Id;
 use crate::derive::{Function, Output};
 use crate::expr::Symbol;
 use crate::lower::Program;
 use crate::mechanism::Quantity;
+use crate::syntax::Printed;
 use std::fmt::Write;
 
 /// Paragraphs for the struct's rustdoc.
@@ -37,6 +38,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     units(&mut text, interface);
     limits::write_docs(&mut text, &interface.limits, &interface.velocities);
     constraints(&mut text, interface);
+    contacts::write_docs(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {
         text.push_str("\n# Rounded numbers\n\nOther than in the file, by `snap`:\n\n");
         for number in interface.snapped {
@@ -49,7 +51,12 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
                 "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
             }
             false if interface.velocities.is_empty() => "Nothing moves.",
-            false => "`M(q) v̇ + h(q, v) = τ`, too long to be written out.",
+            false if interface.facts.requests.equations == Printed::Structure => {
+                "`M(q) v̇ + h(q, v) = τ`, whose terms are left out by `equations = structure`."
+            }
+            false => {
+                "`M(q) v̇ + h(q, v) = τ`, whose terms are too many to be read; `equations = lagrange` among the attribute's arguments writes them all the same."
+            }
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");
         for joint in &interface.structure {
@@ -59,6 +66,13 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     if !output.equations.plain.is_empty() {
         let _ =
             writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
+    }
+    if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
+        text.push_str("\n# Conserved\n\n");
+        text.push_str(if kept.list.is_empty() { "Nothing that is looked for.\n" } else { "" });
+        kept.list.iter().for_each(|name| {
+            let _ = writeln!(text, "- {}", name.trim_matches('"'));
+        });
     }
     text.push_str(&operations(&output.functions));
     lanes(&mut text, interface, output);
@@ -150,8 +164,8 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
 
 /// The unit of everything that has a name.
 fn units(text: &mut String, i: &Interface<'_>) {
-    let parameters = i.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string));
-    let parameters: Vec<String> = parameters.map(|name| name.trim_start_matches("r#").to_string()).collect();
+    let plain = |name: String| name.trim_start_matches("r#").to_string();
+    let parameters: Vec<String> = i.shell.accesses().into_iter().map(plain).collect();
     let lists: [(&str, &[String], &[String]); 4] = [
         ("", &parameters, &i.units.parameters),
         ("q", &i.configuration, &i.units.configuration),
@@ -178,6 +192,11 @@ fn units(text: &mut String, i: &Interface<'_>) {
         for (k, (name, unit)) in names.iter().zip(units).enumerate() {
             let what = if what.is_empty() { "parameter".to_string() } else { format!("`{what}[{k}]`") };
             row(&what, name, unit);
+        }
+    }
+    for (name, units) in i.shell.table_names().into_iter().zip(&i.units.tables) {
+        if let Some((value, variables)) = units.split_last() {
+            row("table", &plain(name), &format!("{value} over {}", variables.join(", ")));
         }
     }
     for (name, unit) in i.outputs.iter().zip(&i.units.outputs) {

@@ -2,7 +2,7 @@
 
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
-use super::{constraints, differentiable, lanes, limits};
+use super::{constraints, contacts, differentiable, lanes, limits};
 use crate::catalogue;
 use std::fmt::Write;
 
@@ -52,6 +52,16 @@ pub fn write_impls(
         lanes::write_trait(out, i, s);
         out.push_str("}\n");
     }
+    if !i.contacts.is_empty() {
+        let sizes = [s.nq, s.nv, s.nu, i.facts.contacts[0], i.facts.contacts[1]];
+        let sizes = sizes.map(|n| n.to_string()).join(", ");
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::Contacts<{sizes}> for {name}{arguments} {bounds} {{"
+        );
+        contacts::write_trait(out, i, s);
+        out.push_str("}\n");
+    }
     if !i.constraints.names.is_empty() {
         let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
         let sizes = sizes.map(|n| n.to_string()).join(", ");
@@ -89,5 +99,9 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
         #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
     );
+    if i.facts.acceleration_forces {
+        out.push_str("const FEEDBACK: bool = true;\n");
+    }
     constraints::write_projection(out, &i.constraints, s);
+    contacts::write_steps(out, i, s);
 }

@@ -1,8 +1,10 @@
 //! What the outside sees of a mechanism, and what stands around generated implementations.
 
 use super::constraints::Constraints;
+use super::contacts::Touching;
 use super::limits::Limited;
 use super::signature::Signature;
+use super::validate::Figure;
 use crate::catalogue::{Argument, Facts, Row};
 use crate::mechanism::Units;
 use crate::syntax::{ScalarType, Shell};
@@ -26,8 +28,14 @@ pub struct Interface<'a> {
     pub structure: Vec<String>,
     /// The constraints.
     pub constraints: Constraints,
+    /// Contacts that open and close.
+    pub contacts: Vec<Touching>,
     /// The limits of coordinates.
     pub limits: Vec<Limited>,
+    /// What figures that follow from parameters fulfil.
+    pub figures: Vec<Figure>,
+    /// States of first order, each with its index among the parameters.
+    pub states: Vec<(String, usize)>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
     /// Units of all of these and of the parameters.

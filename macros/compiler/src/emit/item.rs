@@ -2,7 +2,6 @@
 
 use super::absent::write_absent;
 use super::constants::{write_constants, write_frame_index};
-use super::constraints;
 use super::differentiable;
 use super::dispatch::Bodies;
 use super::docs::struct_docs;
@@ -12,11 +11,12 @@ use super::frames::{
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
-use super::manifold::write_manifold;
+use super::manifold::{write_carry, write_manifold};
 use super::prepared::{Content, write_prepared};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
-use super::{lanes, measurements, reactions};
+use super::{constraints, contacts};
+use super::{file, lanes, measurements, reactions, states, validate};
 use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
 use crate::expr::print::Written;
@@ -56,21 +56,32 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         bodies.write_function(&mut methods, f, &s);
     }
     constraints::write_constants(&mut methods, &interface.constraints);
+    contacts::write_constants(&mut methods, &interface.contacts);
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
         reactions::write_methods(&mut methods, interface, &output.functions, &s);
+        reactions::write_touched(&mut methods, interface, &output.functions, &s);
     } else {
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, Some(&output.charts), &s);
+    if !interface.contacts.is_empty() {
+        write_carry(&mut methods, Some(&output.charts), &s);
+    }
     differentiable::write_methods(&mut methods, Some(&output.charts), interface, &s);
     differentiable::write_second(&mut methods, interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
     let fields: Vec<String> =
-        (0..interface.shell.parameters.len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
+        (0..interface.shell.accesses().len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
+    let fields: Vec<String> = fields
+        .into_iter()
+        .chain(interface.shell.table_names().iter().map(|name| format!("&self.{name}")))
+        .collect();
     let _ =
         writeln!(methods, "#[doc(hidden)]\nfn __parameters(&self) {{ let _ = ({}); }}", fields.join(", "));
+    validate::write_method(&mut methods, interface, false);
+    file::write_methods(&mut methods, interface, &spelling);
     write_frame_access(&mut methods, &s);
     let placements =
         format!("[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]", spelling.name(), output.frames.len());
@@ -98,6 +109,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         interface,
         &s,
     );
+    states::write_impls(&mut emitted.text, &output.functions, interface, &s);
     if let Some(prepared) = &output.prepared {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
         write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
@@ -117,15 +129,21 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         write_function(&mut methods, f, &s, true);
     }
     constraints::write_constants(&mut methods, &interface.constraints);
+    contacts::write_constants(&mut methods, &interface.contacts);
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
     } else {
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, None, &s);
+    if !interface.contacts.is_empty() {
+        write_carry(&mut methods, None, &s);
+    }
     differentiable::write_methods(&mut methods, None, interface, &s);
     differentiable::write_second(&mut methods, interface, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
+    validate::write_method(&mut methods, interface, true);
+    file::write_methods(&mut methods, interface, &spelling);
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let (scalar, nv) = (spelling.name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
@@ -148,6 +166,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         interface,
         &s,
     );
+    states::write_impls(&mut emitted.text, functions, interface, &s);
     if interface.facts.requests.prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
     }
@@ -156,8 +175,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
 }
 
 fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
-    let fields = interface.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string));
-    ScalarSpelling::new(interface.scalar.clone(), fields.collect())
+    ScalarSpelling::new(interface.scalar.clone(), interface.shell.accesses(), interface.shell.table_names())
 }
 
 fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
@@ -231,14 +249,17 @@ fn at_home(text: String, shell: &Shell) -> String {
 
 /// Puts struct and implementations together.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
-    let Shell { attributes, visibility, ident, parameters, elements, home, .. } = i.shell;
+    let Shell { attributes, visibility, ident, parameters, tables, elements, home, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
-    let fields = if parameters.is_empty() {
+    let of_file = file::fields(i);
+    let fields = if parameters.is_empty() && tables.is_empty() && of_file.is_empty() {
         quote!(#struct_where;)
     } else {
-        quote!(#struct_where { #(#parameters),* })
+        let own = parameters.iter().chain(tables);
+        let all = own.map(ToTokens::to_token_stream).chain(of_file);
+        quote!(#struct_where { #(#all),* })
     };
     let docs = if docs.is_empty() { quote!() } else { quote!(#[doc = #docs]) };
     // The types of the elements, so that an editor explains them.
@@ -270,6 +291,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     let head = Head::new(i, s);
     let mut text = String::new();
     write_impls(&head, &mut text, &i.shell.ident.to_string(), methods, i, s);
+    file::write_trait(&mut text, &head, i, s.scalar);
     let _ = writeln!(
         text,
         "{ALLOW}impl{} ::linkwork::Frames<{}, {}> for {}{} {} {{",

@@ -39,6 +39,20 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, s: &Signature<
     }
 }
 
+/// What contacts need of the configuration space, by a function that is not shown.
+pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    let v = s.vector(s.nv);
+    out.push_str("#[doc(hidden)]\n");
+    let carry = ManifoldFunction {
+        name: "__carry",
+        about: "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
+        signature: format!("dv: &{v}, v: &{v}) -> {v}"),
+        arguments: [("dv", s.nv), ("v", s.nv)],
+        result: s.nv,
+    };
+    carry.write(out, charts, s);
+}
+
 /// One of the functions of the configuration space.
 struct ManifoldFunction {
     name: &'static str,
@@ -98,7 +112,7 @@ impl ManifoldFunction {
                 out,
                 "let {} = ::linkwork::__private::{kind}_{}({}, {});",
                 range(r.0, r.1, "r"),
-                self.name,
+                self.name.trim_start_matches('_'),
                 range(a.0, a.1, first),
                 range(b.0, b.1, second)
             );

@@ -2,6 +2,7 @@
 
 use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
+use super::states;
 use crate::catalogue::{Argument, DERIVATIVES, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
@@ -14,7 +15,9 @@ pub fn write_impls(
     i: &Interface<'_>,
     s: &Signature<'_>,
 ) {
-    let outputs: Vec<&Function> = functions.iter().filter(|f| f.id == Id::Output).collect();
+    // The rates of states are no measurements.
+    let is_rate = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
+    let outputs: Vec<&Function> = functions.iter().filter(|f| f.id == Id::Output && !is_rate(f)).collect();
     let count: usize = outputs.iter().map(|f| rows(f)).sum();
     if count == 0 {
         return;

@@ -8,9 +8,9 @@ use super::docs::operations;
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
-use super::manifold::write_manifold;
+use super::manifold::{write_carry, write_manifold};
 use super::signature::Signature;
-use super::{constraints, differentiable, lanes, measurements, reactions};
+use super::{constraints, contacts, differentiable, lanes, measurements, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
 use crate::mechanism::Chart;
@@ -48,9 +48,14 @@ pub fn write_prepared(
         }
     }
     constraints::write_constants(&mut methods, &i.constraints);
+    contacts::write_constants(&mut methods, &i.contacts);
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     reactions::write_methods(&mut methods, i, functions, s);
+    reactions::write_touched(&mut methods, i, functions, s);
     write_manifold(&mut methods, content.charts, s);
+    if !i.contacts.is_empty() {
+        write_carry(&mut methods, content.charts, s);
+    }
     differentiable::write_methods(&mut methods, content.charts, i, s);
     differentiable::write_second(&mut methods, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
@@ -60,13 +65,15 @@ pub fn write_prepared(
     measurements::write_impls(out, &name, functions, i, s);
 
     let Head { generics, arguments, bounds } = &head;
+    let tables: String =
+        i.shell.table_names().iter().map(|table| format!(", {table}: self.{table}")).collect();
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} {ident}{arguments} {bounds} {{
         /// This mechanism with all numbers computed that depend on its parameters alone. It has the same functions, and
         /// does not notice if the parameters change afterwards.
         #[must_use]
-        pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers() }} }}"
+        pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers(){tables} }} }}"
     );
     let program = content.numbers.cloned().unwrap_or_default();
     let numbers = Function::part("__prepared_numbers".to_string(), Vec::new(), count, program);
@@ -89,13 +96,19 @@ fn write_struct(
          its functions are the same and do only what depends on their arguments. Frames stay with the mechanism itself.\n{}",
         operations(functions)
     );
+    let tables: String = i
+        .shell
+        .tables
+        .iter()
+        .map(|field| format!(", {}: {}", spell(&field.ident), spell(&field.ty)))
+        .collect();
     let parameters = match generics.params.is_empty() {
         true => String::new(),
         false => format!("<{}>", spell(&generics.params)),
     };
     let _ = writeln!(
         out,
-        "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} {{ numbers: [{}; {count}] }}",
+        "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} {{ numbers: [{}; {count}]{tables} }}",
         spell(&i.shell.visibility),
         spell(&generics.where_clause),
         s.scalar.name()

@@ -1,10 +1,10 @@
-//! Outputs that name reactions of joints: the motion is solved first, then the reactions follow from its accelerations and
-//! multipliers.
+//! Outputs that name reactions of joints or forces at contacts: the motion is solved first, then the reactions follow from its
+//! accelerations and multipliers.
 
 use super::docs::output_docs;
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::{Argument, REACTION};
+use crate::catalogue::{Argument, REACTION, TOUCHED};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -59,3 +59,35 @@ fn about(s: &Signature<'_>) -> String {
         "{motion}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
     )
 }
+
+/// Outputs that name forces at contacts: these follow from the motion, then the outputs from them.
+pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+    let pass = if s.time { "t, " } else { "" };
+    let scalar = s.scalar.name();
+    let t =
+        if s.time { "t".to_string() } else { format!("::linkwork::__private::constant::<{scalar}>(0.0)") };
+    for f in functions {
+        let Some(name) = f.name.strip_prefix(TOUCHED) else { continue };
+        let mut arguments = vec![Argument::Q, Argument::V];
+        let (mut own, mut inputs) = ("q, v", format!("&<{}>::zeros()", s.vector(0)));
+        if s.nu > 0 {
+            arguments.push(Argument::U);
+            (own, inputs) = ("q, v, u", "u".to_string());
+        }
+        let _ = writeln!(
+            out,
+            "#[doc = {:?}]
+            pub fn {name}({}) -> ::core::result::Result<{}, ::linkwork::ConstraintError> {{
+                let forces = ::linkwork::contact::acting(self, {t}, q, v, {inputs})?;
+                ::core::result::Result::Ok(self.{}({pass}{own}, &forces.data.0[0]))
+            }}",
+            output_docs(i, name, ABOUT_FORCES),
+            s.parameters(&s.timed(&arguments)),
+            s.shape(f.shape),
+            f.name
+        );
+    }
+}
+
+/// What the function of such an output gives.
+const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error where friction and constraints contradict each other. It has no derivatives.";

@@ -7,14 +7,15 @@ use crate::syntax::ScalarType;
 pub struct ScalarSpelling {
     scalar: ScalarType,
     parameters: Vec<String>,
+    tables: Vec<String>,
     /// The type where functions take several states at once.
     lanes: Option<String>,
 }
 
 impl ScalarSpelling {
-    /// For a scalar type and the fields of the parameters, as they are written.
-    pub fn new(scalar: ScalarType, parameters: Vec<String>) -> ScalarSpelling {
-        ScalarSpelling { scalar, parameters, lanes: None }
+    /// For a scalar type and the fields of the parameters and of the tables, as they are written.
+    pub fn new(scalar: ScalarType, parameters: Vec<String>, tables: Vec<String>) -> ScalarSpelling {
+        ScalarSpelling { scalar, parameters, tables, lanes: None }
     }
 
     /// The same for functions of several states at once, generic over `LANES`. Parameters have the same value in all.
@@ -55,6 +56,11 @@ impl ScalarSpelling {
     /// The field of a parameter.
     pub fn parameter(&self, k: usize) -> &str {
         &self.parameters[k]
+    }
+
+    /// The field of a table.
+    pub fn table(&self, k: usize) -> &str {
+        self.tables.get(k).map_or("missing", String::as_str)
     }
 
     /// The value of a parameter.

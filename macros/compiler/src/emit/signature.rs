@@ -2,29 +2,10 @@
 //! `matrices`.
 
 use super::scalar::ScalarSpelling;
-use crate::catalogue::{Argument, Called, Shape};
+use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
-use crate::mechanism::Quantity;
 use std::fmt::Write;
-
-/// The index in an argument of what a symbol stands for.
-pub fn index(argument: Argument, quantity: Quantity) -> Option<usize> {
-    match (argument, quantity) {
-        (Argument::Q, Quantity::Configuration(k))
-        | (Argument::V, Quantity::Velocity(k))
-        | (Argument::A, Quantity::Acceleration(k))
-        | (Argument::Tau, Quantity::Force(k))
-        | (Argument::U, Quantity::Input(k)) => Some(k),
-        (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
-            Some(k - first)
-        }
-        (Argument::Standard(_) | Argument::Factors(_), Quantity::Given(k))
-        | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
-        | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
-        _ => None,
-    }
-}
 
 /// The names of the matrices that a function's results go into.
 pub fn given(f: &Function) -> Vec<&'static str> {
@@ -76,7 +57,7 @@ impl Signature<'_> {
             Argument::Q => self.nq,
             Argument::V | Argument::A | Argument::Tau => self.nv,
             Argument::U => self.nu,
-            Argument::Standard(n) | Argument::Factors(n) => n,
+            Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
             Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
             Argument::Called(_) => 0,

@@ -1,7 +1,7 @@
 //! Differentiation with respect to a symbol, or along a direction in the space of several.
 
 use super::node::{Extreme, Function, Id, Node, Symbol};
-use super::{Expr, Graph, Memo};
+use super::{Expr, Graph, Memo, air};
 
 /// Added to a length before it divides: too small to matter, large enough for `f32`.
 pub const TINY: f64 = 1e-37;
@@ -83,6 +83,13 @@ impl<'g> Derivative<'g> {
                 let sum = d(a) + d(b);
                 (if f == Extreme::Max { sum + change } else { sum - change }) * 0.5
             }
+            Node::Table(lookup, a, b, c) => {
+                let x = [a, b, c];
+                (0..lookup.variables()).fold(self.graph.zero(), |sum, k| match lookup.slope(k) {
+                    Some(slope) if !d(x[k]).is_zero() => sum + self.graph.lookup(slope, x.map(at)) * d(x[k]),
+                    _ => sum,
+                })
+            }
             Node::Pow(a, b) => {
                 let base = if d(a).is_zero() { self.graph.zero() } else { at(b) * d(a) / at(a) };
                 let exponent =
@@ -110,7 +117,10 @@ impl<'g> Derivative<'g> {
             // Finite where the root is zero: what multiplies it is zero there too in every length.
             Function::Sqrt => one / ((y + y.num(TINY)) * 2.0),
             Function::Abs => x.call(Function::Signum),
-            Function::Signum => self.graph.zero(),
+            Function::Signum | Function::IsaLapseRate => self.graph.zero(),
+            Function::IsaTemperature => x.call(Function::IsaLapseRate),
+            // The hydrostatic equation.
+            Function::IsaPressure => -(y / x.call(Function::IsaTemperature) * air::FALL_OVER_GAS),
         }
     }
 }

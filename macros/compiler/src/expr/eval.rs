@@ -18,7 +18,7 @@ pub fn eval_one(root: Expr<'_>, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
 pub struct Tape<'g> {
     graph: Option<&'g Graph>,
     /// Every node with its operands' places on the tape.
-    steps: Vec<(Node, [u32; 2])>,
+    steps: Vec<(Node, [u32; 3])>,
     /// Where the values of the expressions are.
     roots: Vec<u32>,
     /// Some node has several lanes.
@@ -33,7 +33,7 @@ impl<'g> Tape<'g> {
         let graph = first.graph();
         let mut places = Memo::new(graph);
         for id in needed(graph, roots) {
-            let (node, mut operands, mut count) = (graph.node(id), [0; 2], 0);
+            let (node, mut operands, mut count) = (graph.node(id), [0; 3], 0);
             node.operands(|a| {
                 operands[count] = places.get(a).unwrap_or(0);
                 count += 1;
@@ -64,7 +64,7 @@ impl<'g> Tape<'g> {
     /// The values of the expressions (their first lanes), everything computed in so many lanes.
     fn run<const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         let mut values: Vec<[f64; N]> = Vec::with_capacity(self.steps.len());
-        for (node, [a, b]) in &self.steps {
+        for (node, [a, b, c]) in &self.steps {
             let at = |place: u32| values.get(place as usize).copied().unwrap_or([f64::NAN; N]);
             let value = match *node {
                 Node::Tuple(k) => padded(&graph.tuple(k)),
@@ -74,8 +74,8 @@ impl<'g> Tape<'g> {
                 Node::Join(n, _, _) => joined(n.into(), at(*a), at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
-                    let (a, b) = (at(*a), at(*b));
-                    std::array::from_fn(|lane| step(node, a[lane], b[lane]))
+                    let (a, b, c) = (at(*a), at(*b), at(*c));
+                    std::array::from_fn(|lane| step(node, [a[lane], b[lane], c[lane]]))
                 }
             };
             values.push(value);
@@ -115,9 +115,9 @@ fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
 }
 
 /// An operation on the values of its operands.
-fn step(node: Node, a: f64, b: f64) -> f64 {
+fn step(node: Node, [a, b, c]: [f64; 3]) -> f64 {
     match node {
-        Node::Const(c) => c,
+        Node::Const(number) => number,
         Node::Neg(_) => -a,
         Node::Add(..) => a + b,
         Node::Sub(..) => a - b,
@@ -127,6 +127,7 @@ fn step(node: Node, a: f64, b: f64) -> f64 {
         Node::Atan2(..) => a.atan2(b),
         Node::Pow(..) => a.powf(b),
         Node::Extreme(f, ..) => f.apply(a, b),
+        Node::Table(lookup, ..) => lookup.apply([a, b, c]),
         Node::Symbol(_)
         | Node::Tuple(_)
         | Node::Gather(_)

@@ -8,7 +8,7 @@
 
 use super::handle::Expr;
 use super::lanes::Tables;
-use super::node::{Function, Id, Node, Symbol};
+use super::node::{Function, Id, Lookup, Node, Symbol};
 use std::cell::{Ref, RefCell, RefMut};
 use std::fmt;
 
@@ -66,6 +66,8 @@ pub struct Graph {
     tables: RefCell<Vec<Vec<u32>>>,
     /// What the lanes of nodes hold.
     pub(super) lanes: RefCell<Tables>,
+    /// Names of the functions that are given by tables.
+    functions: RefCell<Vec<String>>,
 }
 
 impl Default for Graph {
@@ -94,6 +96,7 @@ impl Graph {
             table: RefCell::default(),
             tables: RefCell::default(),
             lanes: RefCell::default(),
+            functions: RefCell::default(),
         }
     }
 
@@ -157,6 +160,27 @@ impl Graph {
     /// An input.
     pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
         self.expr(self.intern(Node::Symbol(symbol)))
+    }
+
+    /// Names the functions that are given by tables, by number.
+    pub fn name_tables(&self, names: Vec<String>) {
+        *self.functions.borrow_mut() = names;
+    }
+
+    /// The name of a table, with a mark for every time that it is differentiated: `lift.d1.d2`.
+    pub fn table_name(&self, lookup: Lookup) -> String {
+        let mut name = self.functions.borrow().get(lookup.table()).cloned().unwrap_or_default();
+        for (k, order) in lookup.orders().into_iter().enumerate() {
+            name.push_str(&format!(".d{}", k + 1).repeat(order));
+        }
+        name
+    }
+
+    /// A table's value or derivative; variables that it does not have are left out.
+    pub fn lookup(&self, lookup: Lookup, x: [Expr<'_>; 3]) -> Expr<'_> {
+        let last = lookup.variables().saturating_sub(1);
+        let [a, b, c] = std::array::from_fn(|k: usize| x[k.min(last)].id);
+        self.expr(self.intern(Node::Table(lookup, a, b, c)))
     }
 
     pub(super) fn intern(&self, node: Node) -> Id {

@@ -1,6 +1,7 @@
 //! The symbolic kernel: a hash-consed graph of scalar expressions that simplifies at construction, with
 //! differentiation, evaluation and printing. Knows no mechanics.
 
+pub mod air;
 pub mod diff;
 pub mod eval;
 pub mod factor;
@@ -23,5 +24,5 @@ pub use graph::Graph;
 pub use handle::Expr;
 pub use matrix::{Mat3, Sym3, Vec3};
 pub use memo::Memo;
-pub use node::{Extreme, Function, Id, Node, Symbol};
+pub use node::{Extreme, Function, Id, Lookup, Node, Symbol};
 pub use rotation::Rotation;

@@ -1,5 +1,7 @@
 //! Nodes of the graph: what they are, and the elementary functions.
 
+use super::air;
+
 /// A node's index.
 pub type Id = u32;
 
@@ -25,10 +27,23 @@ pub enum Function {
     Sqrt,
     Abs,
     Signum,
+    /// Temperature of the standard atmosphere at a geopotential height.
+    IsaTemperature,
+    /// Its rate of change with that height.
+    IsaLapseRate,
+    /// Pressure of the standard atmosphere at a geopotential height.
+    IsaPressure,
 }
 
 impl Function {
-    /// All of them, with the names they have in the language.
+    /// Those of the standard atmosphere, which the language has by other names, with those of the runtime.
+    const OF_AIR: [(&'static str, Function); 3] = [
+        ("isa_temperature", Function::IsaTemperature),
+        ("isa_lapse_rate", Function::IsaLapseRate),
+        ("isa_pressure", Function::IsaPressure),
+    ];
+
+    /// All elementary ones, with the names they have in the language.
     pub const ALL: [(&'static str, Function); 14] = [
         ("sin", Function::Sin),
         ("cos", Function::Cos),
@@ -48,7 +63,8 @@ impl Function {
 
     /// The name in the language and in generated code.
     pub fn name(self) -> &'static str {
-        Function::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
+        let mut all = Function::ALL.iter().chain(&Function::OF_AIR);
+        all.find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 
     /// The value at a number.
@@ -68,6 +84,9 @@ impl Function {
             Function::Sqrt => x.sqrt(),
             Function::Abs => x.abs(),
             Function::Signum => x.signum(),
+            Function::IsaTemperature => air::temperature(x),
+            Function::IsaLapseRate => air::lapse_rate(x),
+            Function::IsaPressure => air::pressure(x),
         }
     }
 
@@ -80,6 +99,57 @@ impl Function {
     /// `f(-x) = f(x)`.
     pub fn is_even(self) -> bool {
         matches!(self, Function::Cos | Function::Cosh | Function::Abs)
+    }
+}
+
+/// A function that is a parameter, given by a table, or one of its derivatives: its number, how many variables it has, and
+/// how often it is differentiated by each, in a few bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Lookup(u16);
+
+impl Lookup {
+    /// Most tables of a mechanism.
+    pub const MOST: usize = 256;
+
+    /// The table of this number, with so many variables, one to three.
+    pub fn new(table: usize, variables: usize) -> Lookup {
+        Lookup((table as u16) << 8 | (variables as u16 & 3) << 6)
+    }
+
+    /// Its number.
+    pub fn table(self) -> usize {
+        usize::from(self.0 >> 8)
+    }
+
+    /// How many variables it has.
+    pub fn variables(self) -> usize {
+        usize::from(self.0 >> 6 & 3)
+    }
+
+    /// How often it is differentiated by a variable.
+    pub fn order(self, variable: usize) -> usize {
+        usize::from(self.0 >> (2 * variable) & 3)
+    }
+
+    /// The orders by all variables.
+    pub fn orders(self) -> Vec<usize> {
+        (0..self.variables()).map(|k| self.order(k)).collect()
+    }
+
+    /// Differentiated by a variable once more; `None` where that is zero: tables are cubic at most.
+    pub fn slope(self, variable: usize) -> Option<Lookup> {
+        (self.order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
+    }
+
+    /// The value of a function that stands for the table where its figures are not known: a product of waves, different for
+    /// every table, with all their derivatives.
+    pub fn apply(self, x: [f64; 3]) -> f64 {
+        let wave = |(k, x): (usize, f64)| {
+            let pace = 0.7 + 0.2 * k as f64;
+            let quarter = std::f64::consts::FRAC_PI_2 * self.order(k) as f64;
+            pace.powi(self.order(k) as i32) * (pace * x + 0.4 + 0.3 * self.table() as f64 + quarter).sin()
+        };
+        x.into_iter().take(self.variables()).enumerate().map(wave).product()
     }
 }
 
@@ -134,6 +204,8 @@ pub enum Node {
     Pow(Id, Id),
     /// The smaller or the larger of `a` and `b`.
     Extreme(Extreme, Id, Id),
+    /// A table's value or derivative at its variables; those that it does not have repeat the last.
+    Table(Lookup, Id, Id, Id),
     /// A constant of each lane: an index of the graph's tuples.
     Tuple(u32),
     /// An input of each lane: an index of the graph's gathers.
@@ -163,6 +235,7 @@ impl Node {
                 f(a);
                 f(b);
             }
+            Node::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variables()).for_each(f),
         }
     }
 
@@ -182,6 +255,9 @@ impl Node {
             Node::Gather(k) => (33, k.into(), 0),
             Node::Sum(n, a) => (34, a.into(), n.into()),
             Node::Lane(k, a) => (35, a.into(), k.into()),
+            Node::Table(lookup, a, b, c) => {
+                (50 + u64::from(lookup.0) * 512, u64::from(a) | u64::from(c) << 32, b.into())
+            }
             Node::Join(n, a, b) => (36 + u64::from(n), a.into(), b.into()),
             Node::Call(f, a) => (10 + f as u64, a.into(), 0),
         };

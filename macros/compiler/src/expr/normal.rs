@@ -73,6 +73,10 @@ impl<'g> Normal<'g> {
             Node::Call(f, a) => Atom::Call(f, at(a).clone()),
             Node::Atan2(a, b) => Atom::Atan2(at(a).clone(), at(b).clone()),
             Node::Extreme(f, a, b) => Atom::Extreme(f, at(a).clone(), at(b).clone()),
+            Node::Table(lookup, a, b, c) => {
+                let arguments = [a, b, c].into_iter().take(lookup.variables());
+                Atom::Table(self.graph.table_name(lookup), lookup, arguments.map(|a| at(a).clone()).collect())
+            }
             Node::Pow(a, b) => Atom::Power(at(a).clone(), at(b).clone()),
             Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..) => {
                 return None;

@@ -3,7 +3,7 @@
 //! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
 //! whatever grows beyond the limits is given up with `None`.
 
-use super::node::{Extreme, Function, Symbol};
+use super::node::{Extreme, Function, Lookup, Symbol};
 
 mod monomial;
 #[cfg(test)]
@@ -17,6 +17,8 @@ pub const TERMS: usize = 400;
 pub const ANGLES: usize = 8;
 /// Most steps of a whole derivation, of about a microsecond each in an unoptimised build.
 const WORK: usize = 40_000;
+/// How much more is done where it is asked for.
+const MORE: usize = 20;
 /// What remains of two numbers that cancel, relative to them, is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -56,6 +58,7 @@ pub enum Atom {
     Atan2(Polynomial, Polynomial),
     Power(Polynomial, Polynomial),
     Extreme(Extreme, Polynomial, Polynomial),
+    Table(String, Lookup, Vec<Polynomial>),
 }
 
 /// Where an atom stands in a product that is read from left to right.
@@ -91,6 +94,8 @@ pub struct Ring {
     /// Atoms whose product is one.
     inverses: Vec<(usize, usize)>,
     work: usize,
+    /// Most terms of a polynomial.
+    terms: usize,
 }
 
 impl Polynomial {
@@ -182,7 +187,13 @@ impl Ring {
             squared: Monomial::ONE,
             inverses: Vec::new(),
             work: WORK,
+            terms: TERMS,
         }
+    }
+
+    /// Raises the limits to what somebody waits for who asks.
+    pub fn allow_more(&mut self) {
+        (self.work, self.terms) = (MORE * WORK, MORE * TERMS);
     }
 
     /// Takes steps off what is left; `None` when nothing is.
@@ -232,6 +243,7 @@ impl Ring {
                 angles.filter_map(|(a, _)| of_monomial(a.monomial)).max()
             }
             Atom::Call(_, p) => of(p),
+            Atom::Table(.., arguments) => arguments.iter().filter_map(of).max(),
             Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => of(p).max(of(q)),
         };
         match argument {
@@ -274,7 +286,7 @@ impl Ring {
     pub fn plus(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
         self.spend(a.terms.len() + b.terms.len())?;
         let sum = a.plus(b);
-        (sum.terms.len() <= TERMS).then_some(sum)
+        (sum.terms.len() <= self.terms).then_some(sum)
     }
 
     /// The product.
@@ -294,7 +306,7 @@ impl Ring {
         loop {
             let rewrites = |t: &Term| t.monomial.meets(self.squared) || self.cancels(t.monomial).is_some();
             if !p.terms.iter().any(rewrites) {
-                return (p.terms.len() <= TERMS).then_some(p);
+                return (p.terms.len() <= self.terms).then_some(p);
             }
             let mut terms = Vec::with_capacity(p.terms.len() + 4);
             for term in &p.terms {
@@ -348,6 +360,7 @@ impl Ring {
                 Atom::Atan2(y, x) => of(y).atan2(of(x)),
                 Atom::Power(a, b) => of(a).powf(of(b)),
                 Atom::Extreme(f, a, b) => f.apply(of(a), of(b)),
+                Atom::Table(_, lookup, x) => lookup.apply(std::array::from_fn(|k| x.get(k).map_or(0.0, of))),
             });
         }
         value(p, &values)

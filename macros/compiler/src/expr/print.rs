@@ -53,6 +53,11 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
         Node::Div(a, b) => (format!("{} / {}", at(a, 2), at(b, 3)), 2),
         Node::Call(f, a) => (format!("{}({})", f.name(), at(a, 0)), 4),
         Node::Atan2(a, b) => (format!("atan2({}, {})", at(a, 0), at(b, 0)), 4),
+        Node::Table(lookup, a, b, c) => {
+            let arguments: Vec<String> =
+                [a, b, c].into_iter().take(lookup.variables()).map(|a| at(a, 0)).collect();
+            (format!("{}({})", e.graph().table_name(lookup), arguments.join(", ")), 4)
+        }
         Node::Pow(a, b) => (format!("pow({}, {})", at(a, 0), at(b, 0)), 4),
         Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), at(a, 0), at(b, 0)), 4),
     };
@@ -148,6 +153,7 @@ impl<'a, S: Style> Writer<'a, S> {
             Atom::Atan2(y, x) => call("atan2", &[self.argument(y), self.argument(x)]),
             Atom::Power(a, b) => call("pow", &[self.argument(a), self.argument(b)]),
             Atom::Extreme(f, a, b) => call(f.name(), &[self.argument(a), self.argument(b)]),
+            Atom::Table(name, _, x) => call(name, &x.iter().map(|x| self.argument(x)).collect::<Vec<_>>()),
             Atom::Inverse(p) => {
                 let divisor = Factor::Sum(self.polynomial(p));
                 self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)

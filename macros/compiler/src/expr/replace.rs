@@ -61,5 +61,11 @@ fn rebuilt<'g>(
         Node::Atan2(a, b) => at(a).atan2(at(b)),
         Node::Pow(a, b) => at(a).pow(at(b)),
         Node::Extreme(f, a, b) => at(a).extreme(f, at(b)),
+        Node::Table(lookup, a, b, c) => {
+            // Those that the table does not have are not looked at.
+            let x = [a, b, c];
+            let last = lookup.variables().saturating_sub(1);
+            graph.lookup(lookup, std::array::from_fn(|k| at(x[k.min(last)])))
+        }
     }
 }

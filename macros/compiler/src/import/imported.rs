@@ -1,6 +1,7 @@
 //! What is made of a file.
 
 use crate::diag::Place;
+use crate::syntax::figures::FileField;
 use crate::syntax::{Body, Joint, Limit};
 
 /// What a file describes.
@@ -12,6 +13,8 @@ pub struct Imported {
     pub joints: Vec<Joint>,
     /// Limits of the joints.
     pub limits: Vec<Limit>,
+    /// Fields that hold figures of the file.
+    pub fields: Vec<FileField>,
     /// The file's root is the ground itself.
     pub is_ground: bool,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.

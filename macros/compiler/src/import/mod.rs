@@ -18,7 +18,7 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
-pub use file::read_file;
+pub use file::{LARGEST_FILE, read_file};
 pub use imported::Imported;
 
 /// Reads the text of a URDF file.
@@ -27,7 +27,7 @@ pub use imported::Imported;
 /// `None` if there was any.
 pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
-    if text.len() > file::LARGEST_FILE {
+    if text.len() > LARGEST_FILE {
         file::report(&file::too_large(text.len() as u64), options, cx);
         return None;
     }

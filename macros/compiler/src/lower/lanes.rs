@@ -104,7 +104,7 @@ impl Program {
                 _ if *fuses => 0,
                 Op::Lane(..) => LANE_COST,
                 Op::Sum(n, _) => SUM_COST * n,
-                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => CALL_COST * lanes,
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => CALL_COST * lanes,
                 _ => cost_of_lanes(lanes),
             })
             .sum();

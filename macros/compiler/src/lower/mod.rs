@@ -4,6 +4,7 @@
 use crate::expr::{Expr, Graph, Id, Node, Symbol};
 use std::time::Instant;
 
+mod angles;
 mod chain;
 mod factor;
 mod fuse;
@@ -19,6 +20,7 @@ mod terms;
 mod text;
 mod times;
 
+pub use angles::{Angle, Angles};
 pub use hoist::{hoisted, place_hoisted};
 pub use program::{Counts, Op, Operand, Program};
 
@@ -92,6 +94,7 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
             Node::Atan2(a, b) => Op::Atan2(at(a), at(b)),
             Node::Pow(a, b) => Op::Pow(at(a), at(b)),
             Node::Extreme(f, a, b) => Op::Extreme(f, at(a), at(b)),
+            Node::Table(lookup, a, b, c) => Op::Table(lookup, at(a), at(b), at(c)),
         };
         values.push(Operand::Value(program.instructions.len()));
         lanes.push(&op);

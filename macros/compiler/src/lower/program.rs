@@ -2,7 +2,7 @@
 
 use crate::expr::eval::joined;
 use crate::expr::lanes::MOST;
-use crate::expr::{Extreme, Function, Symbol};
+use crate::expr::{Extreme, Function, Lookup, Symbol};
 use std::collections::BTreeSet;
 
 /// Where an operand comes from.
@@ -65,6 +65,8 @@ pub enum Op {
     Pow(Operand, Operand),
     /// The smaller or the larger of `a` and `b`.
     Extreme(Extreme, Operand, Operand),
+    /// A table's value or derivative; variables that it does not have repeat the last.
+    Table(Lookup, Operand, Operand, Operand),
     /// The sum of so many lanes.
     Sum(usize, Operand),
     /// One lane.
@@ -89,6 +91,7 @@ impl Op {
                 f(a);
                 f(b);
             }
+            Op::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variables()).for_each(f),
             Op::MulAdd(a, b, c) | Op::MulSub(a, b, c) | Op::NegMulAdd(a, b, c) => {
                 f(a);
                 f(b);
@@ -213,7 +216,7 @@ impl Program {
                     counts.mul += 1;
                     counts.add += 1;
                 }
-                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) => counts.calls += 1,
+                Op::Call(..) | Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => counts.calls += 1,
                 Op::Lane(..) | Op::Join(..) => {}
             }
         }
@@ -297,6 +300,9 @@ impl Op {
             Op::Atan2(..) => get(0).atan2(get(1)),
             Op::Pow(..) => get(0).powf(get(1)),
             Op::Extreme(f, ..) => f.apply(get(0), get(1)),
+            Op::Table(lookup, ..) => {
+                lookup.apply(std::array::from_fn(|k| if k < lookup.variables() { get(k) } else { 0.0 }))
+            }
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
         }
     }
@@ -320,6 +326,13 @@ impl Op {
             Op::Atan2(a, b) => Op::Atan2(n(a), n(b)),
             Op::Pow(a, b) => Op::Pow(n(a), n(b)),
             Op::Extreme(f, a, b) => Op::Extreme(f, n(a), n(b)),
+            Op::Table(lookup, a, b, c) => {
+                let last = lookup.variables().saturating_sub(1);
+                let mut x = [a, b, c];
+                x.iter_mut().take(last + 1).for_each(|x| *x = n(*x));
+                let [a, b, c] = std::array::from_fn(|k: usize| x[k.min(last)]);
+                Op::Table(lookup, a, b, c)
+            }
             Op::Sum(count, a) => Op::Sum(count, n(a)),
             Op::Lane(k, a) => Op::Lane(k, n(a)),
             Op::Join(count, a, b) => Op::Join(count, n(a), n(b)),

@@ -45,6 +45,10 @@ fn op_text(op: &Op, at: &dyn Fn(Operand) -> String) -> String {
         Op::Atan2(a, b) => format!("atan2({}, {})", at(a), at(b)),
         Op::Pow(a, b) => format!("pow({}, {})", at(a), at(b)),
         Op::Extreme(f, a, b) => format!("{}({}, {})", f.name(), at(a), at(b)),
+        Op::Table(lookup, a, b, c) => {
+            let x: Vec<String> = [a, b, c].into_iter().take(lookup.variables()).map(at).collect();
+            format!("table{}{:?}({})", lookup.table(), lookup.orders(), x.join(", "))
+        }
         Op::Sum(n, a) => format!("sum of {n} lanes of {}", at(a)),
         Op::Lane(k, a) => format!("lane {k} of {}", at(a)),
         Op::Join(n, a, b) => format!("{n} lanes each of {} and {}", at(a), at(b)),

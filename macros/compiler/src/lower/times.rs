@@ -61,7 +61,7 @@ pub(super) fn latency(op: &Op) -> u32 {
         Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) | Op::Extreme(..) => MULTIPLY,
         Op::Sum(lanes, _) => HALVE * halvings(*lanes),
         Op::Div(..) => DIVIDE,
-        Op::Atan2(..) | Op::Pow(..) => CALL,
+        Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => CALL,
     }
 }
 

@@ -19,12 +19,17 @@ use crate::mechanism::{Model, Quantity};
 /// `J`: a row for each constraint, a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
+    jacobian_of(model, &rates)
+}
+
+/// How rates change with the velocities: a row for each.
+pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
     let row = |gradient: Vec<(usize, Expr<'g>)>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         gradient.into_iter().for_each(|(k, d)| row[k] = d);
         row
     };
-    velocity_gradients(&rates).into_iter().map(row).collect()
+    velocity_gradients(rates).into_iter().map(row).collect()
 }
 
 /// Residuals of the constraints on configurations.

@@ -119,5 +119,7 @@ pub fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
 
 /// True if every subspace is constant in link axes, so that the recursion applies.
 pub fn is_analytic(model: &Model<'_>) -> bool {
-    model.inertances.is_empty() && model.links.iter().all(|link| !matches!(link.motion, Motion::Placed))
+    model.inertances.is_empty()
+        && model.acceleration_forces.is_empty()
+        && model.links.iter().all(|link| !matches!(link.motion, Motion::Placed))
 }

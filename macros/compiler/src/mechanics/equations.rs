@@ -3,7 +3,7 @@
 //! Lagrange's equations are the same polynomials, as a test shows.
 
 use super::crba::Matrix;
-use super::{accelerations, constraints, energy, forces, rnea, velocities};
+use super::{accelerations, added_mass, constraints, energy, forces, rnea, velocities};
 use crate::expr::eval::Tape;
 use crate::expr::factor::without_noise;
 use crate::expr::normal::Normal;
@@ -14,19 +14,31 @@ use crate::expr::{Expr, Function, Node, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanism::{Chart, Model, Quantity};
 
+mod canonical;
 #[cfg(test)]
 mod tests;
 mod written;
 
-pub use written::written;
+pub use canonical::{Canonical, canonical, determinant};
+pub use written::{written, written_canonical};
 
-/// Most operations of the mass matrix, and of all equations, that are multiplied out: a look at them is cheap, and what takes
-/// more would be too long.
-const OPERATIONS: [usize; 2] = [200, 500];
-/// Most terms, of all equations together, that anybody would read.
-const READABLE: usize = 150;
-/// Most terms before they are shortened.
-const LONG: usize = 400;
+/// How much is multiplied out and written.
+pub struct Limits {
+    /// Most operations of the mass matrix, and of all equations, that are multiplied out: a look at them is cheap, and what takes
+    /// more would be too long.
+    operations: [usize; 2],
+    /// Most terms, of all equations together.
+    terms: usize,
+    /// Most terms before they are shortened.
+    long: usize,
+}
+
+impl Limits {
+    /// What anybody would read.
+    pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
+    /// What is written for those who ask.
+    pub const ASKED: Limits = Limits { operations: [2000, 5000], terms: 3000, long: 8000 };
+}
 
 /// The equations of a mechanism as polynomials of one ring.
 pub struct Equations {
@@ -40,20 +52,28 @@ pub struct Equations {
     pub forces: Vec<Polynomial>,
 }
 
-/// The equations of a mechanism; `None` where they would be too long to read. Their length decides, as soon as it is known.
-pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Equations> {
+/// The equations of a mechanism; `None` where they would be longer than the limits. Their length decides, as soon as it is known.
+pub fn derive<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    limits: &Limits,
+) -> Option<Equations> {
     let entries: Vec<Expr<'g>> = mass.iter().flatten().copied().collect();
-    if entries.is_empty() || Tape::of(&entries).steps() > OPERATIONS[0] {
+    if entries.is_empty() || Tape::of(&entries).steps() > limits.operations[0] {
         return None;
     }
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let right = right_sides(model, joints);
     let kept: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
     let all: Vec<Expr<'g>> = entries.iter().chain(&bias).chain(&right).chain(&kept).copied().collect();
-    if Tape::of(&all).steps() > OPERATIONS[1] {
+    if Tape::of(&all).steps() > limits.operations[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
+    if limits.terms > Limits::READABLE.terms {
+        normal.ring.allow_more();
+    }
     // Angles in the order of `q`, so that sums of them are read in this order.
     for angle in angles(model) {
         normal.of(angle.sin())?;
@@ -61,7 +81,13 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let entries = normals(&mut normal, &entries)?;
     let mut motion = normals(&mut normal, &bias)?;
     let (v, a) = (normals(&mut normal, &velocities(model))?, normals(&mut normal, &accelerations(model))?);
-    for (k, entry) in entries.iter().enumerate() {
+    let effective: Vec<Expr<'g>> = added_mass::effective(model, mass).concat();
+    let effective = if model.acceleration_forces.is_empty() {
+        entries.clone()
+    } else {
+        normals(&mut normal, &effective)?
+    };
+    for (k, entry) in effective.iter().enumerate() {
         let (i, j) = (k / model.nv(), k % model.nv());
         let force = normal.ring.times(entry, &a[j])?;
         motion[i] = normal.ring.plus(&motion[i], &force)?;
@@ -72,7 +98,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let mut forces = normals(&mut normal, &right)?;
     motion.extend(normals(&mut normal, &kept)?);
     forces.resize(motion.len(), Polynomial::default());
-    readable(normal.ring, &quaternions(model), lagrangian, motion, forces)
+    shortened(Short::new(normal.ring, quaternions(model), limits), lagrangian, motion, forces)
 }
 
 /// The components of all unit quaternions.
@@ -134,32 +160,45 @@ fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynom
     list.iter().map(|e| normal.of(*e)).collect()
 }
 
+/// Shortens polynomials, as long as there are few enough terms.
+struct Short {
+    ring: Ring,
+    quaternions: Vec<[Symbol; 4]>,
+    long: usize,
+    left: usize,
+}
+
+impl Short {
+    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Short {
+        Short { ring, quaternions, long: limits.long, left: limits.terms }
+    }
+
+    fn of(&mut self, p: &Polynomial) -> Option<Polynomial> {
+        let p = without_noise(&self.ring, p);
+        let mut p = simplified(&mut self.ring, &p)?;
+        for quaternion in &self.quaternions {
+            p = on_unit_sphere(&mut self.ring, &p, quaternion)?;
+        }
+        self.left = self.left.checked_sub(p.terms.len())?;
+        p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
+    }
+}
+
 /// Shortened, and few enough terms.
-fn readable(
-    mut ring: Ring,
-    quaternions: &[[Symbol; 4]],
+fn shortened(
+    mut short: Short,
     lagrangian: Polynomial,
     motion: Vec<Polynomial>,
     forces: Vec<Polynomial>,
 ) -> Option<Equations> {
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);
-    if all().map(|p| p.terms.len()).sum::<usize>() > LONG {
+    if all().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
     }
-    let mut left = READABLE;
-    let mut short = |p: &Polynomial| {
-        let p = without_noise(&ring, p);
-        let mut p = simplified(&mut ring, &p)?;
-        for quaternion in quaternions {
-            p = on_unit_sphere(&mut ring, &p, quaternion)?;
-        }
-        left = left.checked_sub(p.terms.len())?;
-        p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
-    };
-    let lagrangian = short(&lagrangian)?;
-    let motion = motion.iter().map(&mut short).collect::<Option<_>>()?;
-    let forces = forces.iter().map(&mut short).collect::<Option<_>>()?;
-    Some(Equations { ring, lagrangian, motion, forces })
+    let lagrangian = short.of(&lagrangian)?;
+    let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
+    Some(Equations { ring: short.ring, lagrangian, motion, forces })
 }
 
 fn rank(symbol: Symbol) -> Rank {

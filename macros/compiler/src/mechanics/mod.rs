@@ -6,7 +6,9 @@ use crate::expr::Expr;
 use crate::mechanism::{Model, Motion, Quantity};
 
 pub mod aba;
+pub mod added_mass;
 mod alike;
+pub mod conserved;
 pub mod constraints;
 pub mod crba;
 pub mod derivatives;
@@ -15,6 +17,7 @@ pub mod equations;
 pub mod forces;
 pub mod frames;
 pub mod friction;
+pub mod hamilton;
 pub mod independence;
 pub mod inertances;
 pub mod lagrange;
@@ -42,6 +45,7 @@ pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];
     model.inertances.is_empty()
+        && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| match &link.motion {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }

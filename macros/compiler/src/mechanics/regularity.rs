@@ -48,7 +48,8 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let smallest = TOLERANCE * n as f64;
     let mut failing = Vec::new();
     for (step, &k) in order.iter().enumerate() {
-        if m[k][k] <= smallest * scale[k] || scale[k] <= 0.0 {
+        // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
+        if m[k][k].abs() <= smallest * scale[k].abs() || scale[k] == 0.0 {
             failing.push(k);
             continue;
         }

@@ -3,7 +3,7 @@
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
 use super::alike::Alike;
-use super::inertances;
+use super::{added_mass, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanics::passive::passive_forces;
@@ -19,6 +19,9 @@ pub fn inverse_dynamics<'g>(
     let mut wrenches = wrenches(model, joints, v, a);
     let mut tau = passive_forces(model, true);
     inertances::add_to_forces(model, a, &mut tau);
+    if let Some(a) = a {
+        added_mass::subtract_from_forces(model, a, &mut tau);
+    }
     let alike = Alike::of(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];

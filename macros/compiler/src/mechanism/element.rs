@@ -1,6 +1,7 @@
 //! Force elements and inputs.
 
 use super::link::{Coordinate, LinkId};
+use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 
 /// A linear spring on a coordinate.
@@ -70,6 +71,17 @@ pub struct Load<'g> {
     pub force: Expr<'g>,
     /// It takes energy out, as a dashpot does; otherwise it is applied from outside.
     pub dissipative: bool,
+}
+
+/// What a load adds that is linear in the accelerations: the force `Σ factor v̇ₖ` on a rate, with `k` and its factor in each pair.
+#[derive(Clone, Debug)]
+pub struct AccelerationForce<'g> {
+    /// Linear in the velocities.
+    pub rate: Expr<'g>,
+    /// Velocities with the factors of their derivatives: expressions of state and time.
+    pub factors: Vec<(usize, Expr<'g>)>,
+    /// Where the force is written.
+    pub place: Place,
 }
 
 /// An inertance on a rate: kinetic energy `½ b rate²`.

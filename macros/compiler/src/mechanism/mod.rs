@@ -3,6 +3,7 @@
 //! sums of placements and of mass properties.
 
 mod constraint;
+mod contact;
 mod element;
 mod gradients;
 mod inertia;
@@ -12,10 +13,12 @@ mod model;
 mod passive;
 mod pose;
 mod quantity;
+mod requirement;
 mod units;
 
 pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission};
-pub use element::{CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
+pub use contact::Contact;
+pub use element::{AccelerationForce, CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
 pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;
 pub use limit::Limit;
@@ -24,4 +27,5 @@ pub use model::{Model, OutputValue, Released, Uses};
 pub use passive::PassiveForces;
 pub use pose::Pose;
 pub use quantity::Quantity;
+pub use requirement::{Requirement, Rule};
 pub use units::Units;

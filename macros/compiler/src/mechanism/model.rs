@@ -1,12 +1,14 @@
 //! The mechanism as a whole.
 
 use super::constraint::{Constraint, SolvedSide};
-use super::element::{CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
+use super::contact::Contact;
+use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::gradients::Gradients;
 use super::inertia::Inertia;
 use super::limit::Limit;
 use super::link::{Chart, Link, NamedFrame, Space};
 use super::passive::PassiveForces;
+use super::requirement::Requirement;
 use super::units::Units;
 use crate::diag::Place;
 use crate::expr::{Expr, Graph, Vec3};
@@ -49,6 +51,10 @@ pub struct Model<'g> {
     pub inputs: Vec<(String, Input<'g>)>,
     /// Limits, one for each entry of `v` that has any.
     pub limits: Vec<Limit<'g>>,
+    /// Contacts that open and close, stops among them.
+    pub contacts: Vec<Contact<'g>>,
+    /// What figures that follow from parameters must fulfil.
+    pub requirements: Vec<Requirement<'g>>,
     /// Named frames.
     pub frames: Vec<NamedFrame<'g>>,
     /// Springs.
@@ -63,6 +69,8 @@ pub struct Model<'g> {
     pub dissipations: Vec<Expr<'g>>,
     /// Other forces.
     pub loads: Vec<Load<'g>>,
+    /// What of other forces is linear in the accelerations.
+    pub acceleration_forces: Vec<AccelerationForce<'g>>,
     /// The forces of all these, where a function of its own computes them and all others take them as given.
     pub passive: Option<Rc<PassiveForces<'g>>>,
     /// Inertances.
@@ -139,6 +147,16 @@ impl<'g> Model<'g> {
     /// The bounds of all limits, in their order.
     pub fn limit_values(&self) -> Vec<Expr<'g>> {
         self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
+    }
+
+    /// The rates of all contacts, each with its normal one first.
+    pub fn contact_rates(&self) -> Vec<Expr<'g>> {
+        self.contacts.iter().flat_map(|contact| &contact.rates).copied().collect()
+    }
+
+    /// The figures of all requirements, in their order.
+    pub fn figures(&self) -> Vec<Expr<'g>> {
+        self.requirements.iter().flat_map(|requirement| &requirement.values).copied().collect()
     }
 
     /// Number of constraints on configurations.

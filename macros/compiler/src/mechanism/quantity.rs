@@ -29,6 +29,8 @@ pub enum Quantity {
     PassiveForce(usize),
     /// A derivative of passive forces that a function of its own computes, in the order of its results.
     PassiveDerivative(usize),
+    /// A force at a contact that opens and closes, in the order of the rates of all contacts.
+    ContactForce(usize),
 }
 
 impl Quantity {
@@ -49,6 +51,7 @@ impl Quantity {
             Quantity::Reaction(k) => (9, k),
             Quantity::PassiveForce(k) => (10, k),
             Quantity::PassiveDerivative(k) => (11, k),
+            Quantity::ContactForce(k) => (12, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -68,7 +71,8 @@ impl Quantity {
             8 => Quantity::Prepared(index),
             9 => Quantity::Reaction(index),
             10 => Quantity::PassiveForce(index),
-            _ => Quantity::PassiveDerivative(index),
+            11 => Quantity::PassiveDerivative(index),
+            _ => Quantity::ContactForce(index),
         }
     }
 

@@ -5,6 +5,8 @@
 pub struct Units {
     /// Of every parameter.
     pub parameters: Vec<String>,
+    /// Of every table: its variables, then its value.
+    pub tables: Vec<Vec<String>>,
     /// Of every entry of `q`.
     pub configuration: Vec<String>,
     /// Of every entry of `v`.

@@ -154,6 +154,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         potentials: _,
         dissipations: _,
         loads: _,
+        acceleration_forces: _,
         passive: _,
         constraints: _,
         redundant: _,
@@ -164,6 +165,8 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         outputs: _,
         released: _,
         limits: _,
+        contacts: _,
+        requirements: _,
         units: _,
     } = model;
     for frame in frames {

@@ -5,7 +5,7 @@ use super::motion::{Moving, needs_motion};
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
-use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Load, Pose, Spring};
+use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Pose, Rule, Spring};
 use crate::syntax::{Action, ActionKind, Expr, ExprKind, GROUND, Law, Target as On};
 
 /// What an element acts on.
@@ -160,6 +160,8 @@ impl<'g> Builder<'_, 'g> {
                     cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
                 }
                 if let Some(damping) = damping {
+                    let figure = || format!("the damping of `{}`", action.name.text);
+                    self.scope.require(Rule::NotNegative, figure, &[damping]);
                     self.model.dashpots.push(Dashpot { on, damping });
                 }
             }
@@ -270,10 +272,10 @@ impl<'g> Builder<'_, 'g> {
                     return;
                 }
                 let ground = Some((None, Pose::identity(self.scope.graph)));
-                let context = Context::new(Allowed::Motion, ground);
+                let context = Context::new(Allowed::Acceleration, ground);
                 if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
                     let rate = self.coordinate_stretch(&c).rate;
-                    self.model.loads.push(Load { rate, force, dissipative: false });
+                    self.add_value_load(rate, force, &value.place, cx);
                 }
                 return;
             }
@@ -286,7 +288,7 @@ impl<'g> Builder<'_, 'g> {
             cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
             return;
         };
-        let context = Context::new(Allowed::Motion, Some((place.link, place.pose.clone())));
+        let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
         let Some(terms) = self.scope.in_context(context, |scope| scope.terms(value, cx)) else { return };
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
@@ -297,7 +299,7 @@ impl<'g> Builder<'_, 'g> {
             true => twist.angular,
             false => twist.linear + twist.angular.cross(place.pose.translation),
         };
-        self.add_load(rate, force);
+        self.add_load(rate, force, &value.place, cx);
     }
 
     fn add_input(

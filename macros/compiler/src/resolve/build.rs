@@ -1,13 +1,14 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
 use super::builder::{Builder, JointedBody};
+use super::functions::is_function;
 use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
 use super::tree::find_tree;
 use super::{reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
-use crate::mechanism::{Constraint, Gradients, Inertia, Model, Released, Units};
+use crate::mechanism::{Constraint, Gradients, Inertia, Model, Released, Rule, Units};
 use crate::syntax::{Description, GROUND, Inertias, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -82,6 +83,8 @@ fn build<'g>(
             builder.add_limits(cx);
             let solved = builder.add_solved(cx);
             let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
+            builder.add_contacts(moving, cx);
+            builder.check_acceleration_forces(cx);
             builder.add_expressions(constrained, cx);
             builder.find_dependencies(constrained);
             builder.add_frames();
@@ -90,6 +93,7 @@ fn build<'g>(
         None => builder.check_actions(cx),
     }
     builder.check_unused(cx);
+    builder.gather_requirements();
     if cx.is_empty() && releasing.is_none() {
         let coordinates = &builder.scope.kinematics.borrow().coordinates;
         builder.model.units = units::infer(description, &builder.model, coordinates, cx);
@@ -125,6 +129,8 @@ fn empty_model<'g>(
         velocities: Vec::new(),
         inputs: Vec::new(),
         limits: Vec::new(),
+        contacts: Vec::new(),
+        requirements: Vec::new(),
         frames: Vec::new(),
         springs: Vec::new(),
         dashpots: Vec::new(),
@@ -137,6 +143,7 @@ fn empty_model<'g>(
         solved: Vec::new(),
         freedom: [0; 2],
         loads: Vec::new(),
+        acceleration_forces: Vec::new(),
         passive: None,
         inertances: Vec::new(),
         outputs: Vec::new(),
@@ -166,6 +173,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             graph,
             parameters: &description.parameters,
             used: vec![false; description.parameters.len()].into(),
+            tables: &description.tables,
+            used_tables: vec![false; description.tables.len()].into(),
             bodies: all
                 .clone()
                 .chain(description.frames.iter().map(|f| &f.name))
@@ -176,6 +185,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
             inputs: &description.inputs,
             driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count(),
+            states: &description.states,
             definitions: &description.definitions,
             context: Context::new(Allowed::Constant, None).into(),
             kinematics: Kinematics::default().into(),
@@ -184,7 +194,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             failed: BTreeSet::new().into(),
             constrains: false.into(),
             known: BTreeMap::new().into(),
+            requirements: Vec::new().into(),
         };
+        graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
         for name in all.clone().filter(|n| n.text == GROUND) {
             cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move")
                 .help("choose another name, or remove the body: joints begin at `ground` as it is");
@@ -201,6 +213,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
                 .help("around it Coulomb's law is smooth; 0.01 is usual");
         }
+        scope.require(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
         let places = vec![None; jointed.len()];
         let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
@@ -228,8 +241,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         if !cx.is_empty() {
             return;
         }
-        let used = self.scope.used.borrow();
+        let (used, tables) = (self.scope.used.borrow(), self.scope.used_tables.borrow());
         let unused = self.description.parameters.iter().zip(used.iter());
+        let names = self.description.tables.iter().map(|table| &table.name);
+        let unused = unused.chain(names.zip(tables.iter()));
         let unused: Vec<_> =
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
         // A whole attribute that says nothing of what was meant is one mistake.
@@ -281,6 +296,10 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
     let written = written.chain(description.coordinates.iter().map(|c| &c.name));
     let written = written.chain(description.definitions.iter().map(|d| &d.name));
     let joints = description.joints.iter().map(|joint| &joint.name);
+    for table in description.tables.iter().filter(|table| is_function(&table.name.text)) {
+        cx.error(table.name.place.clone(), format!("the name `{}` is taken by a function", table.name.text))
+            .help(format!("name the table otherwise, such as `{}_table`", table.name.text));
+    }
     for name in written.chain(joints) {
         if ["x", "y", "z", "t", "pi"].contains(&name.text.as_str()) && name.place.file.is_none() {
             cx.error(name.place.clone(), format!("the name `{}` is taken", name.text))

@@ -2,11 +2,11 @@
 
 use super::figures::Range;
 use super::joint::full_name;
-use super::scope::{Placed, PlacedKind, Scope};
+use super::scope::{MassProperties, Placed, PlacedKind, Scope};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::{Expr as Value, Rotation, Sym3, Vec3};
+use crate::expr::{Rotation, Vec3};
 use crate::kinematics::{Partials, joint, symbols_in};
-use crate::mechanism::{Constraint, Coordinate, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
+use crate::mechanism::{Constraint, Coordinate, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule};
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
 
 /// What is known of a joint once its coordinates are numbered.
@@ -26,9 +26,6 @@ pub struct ClosedFormLoop {
     /// The joints that hold the parent and the child of it.
     pub sides: [usize; 2],
 }
-
-/// Mass, centre of mass in body axes, inertia about it.
-pub type MassProperties<'g> = (Value<'g>, Vec3<'g>, Sym3<'g>);
 
 /// What a joint can hold: a body, or a particle without a place of its own.
 pub struct JointedBody<'a> {
@@ -107,6 +104,8 @@ impl<'g> Builder<'_, 'g> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
                 let range = Range::of(&self.description.scalar);
+                let place = || format!("the place of a joint on `{}`", end.body.text);
+                v.0.iter().for_each(|c| self.scope.require(Rule::Length, place, &[*c]));
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
             }),
             None => Some(Vec3::zero(self.scope.graph)),

@@ -32,6 +32,7 @@ pub fn expressions(d: &Description) -> Vec<&Expr> {
     all.extend(d.energies.iter().chain(&d.dissipations).map(|(_, e)| e));
     all.extend(d.constraints.iter().flat_map(|c| c.other.iter().chain([&c.value])));
     all.extend(d.constraints.iter().filter_map(|c| Some(&c.friction.as_ref()?.coefficient)));
+    all.extend(d.contacts.iter().flat_map(|c| [&c.first, &c.second]));
     for action in &d.actions {
         match &action.on {
             Target::On(e) => all.push(e),

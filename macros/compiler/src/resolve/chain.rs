@@ -6,7 +6,7 @@ use super::joint::{self, Elementary, own_coordinate};
 use super::scope::PlacedKind;
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
-use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose};
+use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose, Rule};
 use crate::syntax::Joint;
 
 impl<'g> Builder<'_, 'g> {
@@ -101,6 +101,10 @@ impl<'g> Builder<'_, 'g> {
         let (name, on) = (name.clone(), *on);
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        for (value, what) in [(damping, "damping"), (friction, "friction")] {
+            let figure = || format!("the {what} of `{}`", joint.name.text);
+            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, figure, &[*value]));
+        }
         self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
         if joint.driven && joint.mimic.is_none() {

@@ -1,10 +1,11 @@
 //! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
 
+use super::flight::{ANGLES, OF_HEIGHT};
 use super::functions::FUNCTIONS;
 use super::scope::{Axes, Scope, Value};
 use super::slips::{DOMAIN, VECTOR, check_angle, degrees, wrong_count};
 use crate::diag::Diagnostics;
-use crate::expr::{Expr, Extreme, Function, Vec3};
+use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
 use crate::kinematics::unit;
 use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 
@@ -208,6 +209,9 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
             return Some(Value::Scalar(s));
         }
+        if let Some(k) = self.tables.iter().position(|table| table.name.text == text) {
+            return self.lookup(k, function, arguments, cx);
+        }
         let two_scalars = |cx: &mut Diagnostics| match arguments {
             [a, b] => self.scalar(a, cx).zip(self.scalar(b, cx)),
             _ => wrong_count(function, 2, cx),
@@ -257,9 +261,15 @@ impl<'a, 'g> Scope<'a, 'g> {
             "angle" => self.angle(function, arguments, cx),
             "r" | "v" | "a" | "omega" | "alpha" => self.slash(function, arguments, cx),
             "reaction_force" | "reaction_torque" => self.reaction(function, arguments, cx),
+            "contact_force" => self.contact_force(function, arguments, cx),
+            "momentum" | "angular_momentum" | "kinetic_energy" => self.momentum(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
+            _ if OF_HEIGHT.contains(&text) => self.air(function, arguments, cx),
+            _ if ANGLES.contains(&text) => self.flight_angle(function, arguments, cx),
             _ => {
-                let known: Vec<&str> = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).collect();
+                let own = self.tables.iter().map(|table| table.name.text.as_str());
+                let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).chain(own);
+                let known: Vec<&str> = known.collect();
                 let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
                 let greek = words::spelt_otherwise(text, &known);
                 match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
@@ -273,6 +283,39 @@ impl<'a, 'g> Scope<'a, 'g> {
                 None
             }
         }
+    }
+}
+
+impl<'g> Scope<'_, 'g> {
+    /// The value of a table.
+    fn lookup(
+        &self,
+        k: usize,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let table = self.tables.get(k)?;
+        let (found, expected) = (arguments.len(), table.variables);
+        if found != expected {
+            let plural = if expected == 1 { "" } else { "s" };
+            cx.error(
+                function.place.clone(),
+                format!(
+                    "`{}` is a table of {expected} variable{plural}, but {found} stand here",
+                    function.text
+                ),
+            )
+            .help(format!("it is declared as `Table<{expected}>`"));
+            return None;
+        }
+        let values: Vec<Option<Expr<'g>>> = arguments.iter().map(|a| self.scalar(a, cx)).collect();
+        let values = values.into_iter().collect::<Option<Vec<_>>>()?;
+        if let Some(used) = self.used_tables.borrow_mut().get_mut(k) {
+            *used = true;
+        }
+        let x = std::array::from_fn(|k| values.get(k).copied().unwrap_or(self.graph.zero()));
+        Some(Value::Scalar(self.graph.lookup(Lookup::new(k, expected), x)))
     }
 }
 

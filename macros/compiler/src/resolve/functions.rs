@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 19] = [
+pub const FUNCTIONS: [&str; 34] = [
     "atan2",
     "degrees",
     "pow",
@@ -21,8 +21,23 @@ pub const FUNCTIONS: [&str; 19] = [
     "rate",
     "angle",
     "project",
+    "momentum",
+    "angular_momentum",
+    "kinetic_energy",
     "reaction_force",
     "reaction_torque",
+    "contact_force",
+    "density",
+    "pressure",
+    "temperature",
+    "speed_of_sound",
+    "angle_of_attack",
+    "sideslip",
+    "heading",
+    "elevation",
+    "bank",
+    "course",
+    "flight_path",
 ];
 
 /// True for a function of the language that has a value.

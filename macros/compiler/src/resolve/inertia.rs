@@ -3,6 +3,7 @@
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
+use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 
 /// The solids with the names of their arguments.
@@ -127,10 +128,11 @@ impl<'g> Scope<'_, 'g> {
         }
         let mut numbers = Vec::new();
         let mut complete = true;
-        for argument in &arguments[..arguments.len() - usize::from(has_axis)] {
+        for (argument, name) in arguments[..arguments.len() - usize::from(has_axis)].iter().zip(*names) {
             match self.scalar(argument, cx) {
                 Some(s) => {
                     complete &= self.check_not_negative(s, argument, cx);
+                    self.require(Rule::NotNegative, || format!("the {name} of a `{text}`"), &[s]);
                     numbers.push(s);
                 }
                 None => complete = false,

@@ -1,12 +1,12 @@
 //! Masses: those of bodies and particles go to the links that carry them.
 
-use super::builder::{Builder, MassProperties};
+use super::builder::Builder;
 use super::figures::Range;
 use super::inertia::check_inertia;
-use super::scope::Placed;
+use super::scope::{MassProperties, Placed};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::mechanism::{Inertia, LinkId, Pose};
+use crate::mechanism::{Inertia, LinkId, Pose, Rule};
 use crate::syntax::{Body, Inertias, Particle};
 
 impl<'g> Builder<'_, 'g> {
@@ -19,6 +19,8 @@ impl<'g> Builder<'_, 'g> {
             let mut silent = Diagnostics::new();
             let inertia = self.body_inertia(body, if is_fixed && from_file { &mut silent } else { cx });
             self.masses.push(inertia);
+            let known = inertia.map(|inertia| (body.name.text.clone(), inertia));
+            self.scope.kinematics.borrow_mut().masses.extend(known);
             if let Some(inertia) = inertia
                 && let Some((Some(link), pose)) = self.places[k].clone()
             {
@@ -35,6 +37,9 @@ impl<'g> Builder<'_, 'g> {
         let graph = self.scope.graph;
         let name = &body.name.text;
         let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
+        if let Some(mass) = mass {
+            self.scope.require(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
+        }
         let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
         let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
         if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
@@ -68,7 +73,23 @@ impl<'g> Builder<'_, 'g> {
             };
             check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
         }
-        Some((mass?, com?, inertia?))
+        let found = (mass?, com?, inertia?);
+        self.require_a_body(name, &found);
+        Some(found)
+    }
+
+    /// What can be said of a body's figures only where its parameters are known.
+    fn require_a_body(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
+        for c in com.0 {
+            self.scope.require(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
+        }
+        let entries: Vec<Expr<'g>> =
+            inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
+        let figure = || format!("the inertia of `{name}`");
+        match self.description.inertias {
+            Inertias::Check => self.scope.require(Rule::Inertia, figure, &entries),
+            _ => entries.iter().for_each(|entry| self.scope.require(Rule::Finite, figure, &[*entry])),
+        }
     }
 
     /// Adds the mass of what has this pose on a link to that of the link.
@@ -103,6 +124,7 @@ impl<'g> Builder<'_, 'g> {
         let mass = self.scope.scalar(&particle.mass, cx);
         if let Some(mass) = mass {
             Range::of(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
+            self.scope.require(Rule::Mass, || format!("the mass of `{}`", particle.name.text), &[mass]);
         }
         if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
             cx.error(
@@ -113,7 +135,9 @@ impl<'g> Builder<'_, 'g> {
         }
         let placed = self.scope.kinematics.borrow().places.get(&particle.name.text).cloned();
         if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
-            self.attach(link, &pose, (mass, Vec3::zero(graph), Sym3::zero(graph)));
+            let masses = (mass, Vec3::zero(graph), Sym3::zero(graph));
+            self.scope.kinematics.borrow_mut().masses.insert(particle.name.text.clone(), masses);
+            self.attach(link, &pose, masses);
         }
     }
 }

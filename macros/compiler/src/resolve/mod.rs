@@ -2,6 +2,7 @@
 //! motions, bodies lumped into the links that carry them. All mistakes of the user are found here or before; knows
 //! neither algorithms nor generated code.
 
+mod accelerations;
 mod action;
 mod axis;
 mod build;
@@ -14,12 +15,14 @@ mod constraint;
 mod contact;
 mod expression;
 mod figures;
+mod flight;
 mod freedom;
 mod functions;
 mod inertia;
 mod joint;
 mod limit;
 mod masses;
+mod momenta;
 mod motion;
 mod names;
 mod numbering;
@@ -27,6 +30,7 @@ mod outline;
 mod place;
 mod quantities;
 mod reaction;
+mod requirements;
 mod rotation;
 mod rows;
 mod scope;

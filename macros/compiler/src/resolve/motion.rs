@@ -16,6 +16,7 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let g = self.scope.graph;
+        self.scope.kinematics.borrow_mut().charts.clone_from(&self.model.charts);
         let v: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
         let a: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Acceleration(k).expr(g)).collect();
         // Robots are large, and few of them name a velocity.

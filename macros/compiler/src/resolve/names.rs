@@ -16,6 +16,7 @@ impl<'g> Scope<'_, 'g> {
         let is = |list: &[String]| list.iter().any(|known| known == name);
         match name {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
+            _ if self.tables.iter().any(|table| table.name.text == name) => Some("a table"),
             _ if is(&self.frames) => Some("a frame"),
             _ if name == GROUND || is(&self.bodies) => Some("a body"),
             _ if is(&self.joints) => Some("a joint"),
@@ -56,6 +57,13 @@ impl<'g> Scope<'_, 'g> {
         if self.bodies.iter().any(|b| b == name) || name == GROUND {
             cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
                 .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
+        } else if let Some(table) = self.tables.iter().find(|table| table.name.text == name) {
+            let variables = ["a", "b", "c"].get(..table.variables).unwrap_or_default().join(", ");
+            cx.error(
+                e.place.clone(),
+                format!("`{name}` is a table, which has a value for its variables alone"),
+            )
+            .help(format!("write `{name}({variables})`"));
         } else if let Some(what) = self.what(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
@@ -275,7 +283,7 @@ impl<'g> Scope<'_, 'g> {
         }
         if needed == Allowed::Reaction {
             cx.error(place.clone(), format!("{what} cannot stand here"))
-                .help("reactions stand in outputs: `#[output(reaction_force(joint))]`");
+                .help("forces of joints and contacts stand in outputs: `#[output(reaction_force(joint))]`");
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);

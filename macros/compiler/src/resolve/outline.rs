@@ -137,10 +137,15 @@ fn uses(d: &Description, e: &Expr) -> Uses {
     let mut uses = Uses::default();
     for part in with_definitions(d, e) {
         match &part.kind {
-            ExprKind::Call(function, _) => match function.text.as_str() {
-                "v" | "omega" | "rate" => uses.velocities = true,
+            ExprKind::Call(function, arguments) => match function.text.as_str() {
+                "rate" if arguments.iter().any(|argument| names_motion(d, argument)) => {
+                    (uses.velocities, uses.accelerations) = (true, true)
+                }
+                "v" | "omega" | "rate" | "momentum" | "angular_momentum" | "kinetic_energy" => {
+                    uses.velocities = true
+                }
                 "a" | "alpha" => uses.accelerations = true,
-                "reaction_force" | "reaction_torque" => {
+                "reaction_force" | "reaction_torque" | "contact_force" => {
                     (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
                 }
                 _ => {}
@@ -150,6 +155,12 @@ fn uses(d: &Description, e: &Expr) -> Uses {
         }
     }
     uses
+}
+
+/// Whether an expression names a velocity.
+fn names_motion(d: &Description, e: &Expr) -> bool {
+    let is_motion = |part: &&Expr| matches!(&part.kind, ExprKind::Call(f, _) if matches!(f.text.as_str(), "v" | "omega" | "rate"));
+    with_definitions(d, e).iter().any(is_motion)
 }
 
 /// Every name in an expression.

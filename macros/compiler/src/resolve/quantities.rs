@@ -41,7 +41,7 @@ impl<'g> Scope<'_, 'g> {
         Some((Axes::Link(link), all.iter().map(|t| kinematics.resolve(t, link, zero)).collect()))
     }
 
-    /// `rate(coordinate)`.
+    /// `rate(coordinate)`, or the rate of what depends on coordinates, velocities and time.
     pub fn rate_of(
         &self,
         function: &Name,
@@ -64,15 +64,14 @@ impl<'g> Scope<'_, 'g> {
         };
         let kinematics = self.kinematics.borrow();
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
+            if self.is_moving(argument) {
+                drop(kinematics);
+                return self.rate_of_value(function, argument, cx).map(Value::Scalar);
+            }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
             let known: Vec<&str> = known.collect();
             let error = cx.error(argument.place.clone(), "`rate` takes a coordinate");
-            match &argument.kind {
-                ExprKind::Call(inner, _) if matches!(inner.text.as_str(), "rate" | "r" | "v") => {
-                    error.help("velocities and accelerations of points are `v(point / point / frame)` and `a(point / point / frame)`");
-                }
-                _ => drop(error.suggest(&name, known)),
-            }
+            error.suggest(&name, known);
             if error.is_bare() {
                 error.help("a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a `Coordinate`");
             }
@@ -290,7 +289,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
+pub(super) fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
 }
 
@@ -303,7 +302,7 @@ fn link_of(axes: &Axes) -> Option<LinkId> {
 }
 
 /// The parts of `a / b / c`.
-fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
+pub(super) fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
     let mut at = e;
     while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {

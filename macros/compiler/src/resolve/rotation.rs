@@ -5,6 +5,7 @@ use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotat
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always;
 use crate::expr::{Expr, Mat3, Rotation};
+use crate::mechanism::Rule;
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
@@ -44,6 +45,7 @@ impl<'g> Scope<'_, 'g> {
                                 .help("its four numbers are x, y, z, w, and their squares add up to one");
                             return None;
                         }
+                        self.require(Rule::Unit, || "a quaternion".to_string(), &[square]);
                         return Some(Rotation::quaternion(q));
                     }
                     _ => {}

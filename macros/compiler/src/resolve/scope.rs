@@ -1,9 +1,9 @@
 //! What names mean where an expression stands: what is declared, what is placed so far and how it moves, what an expression
 //! may depend on.
 
-use crate::expr::{Expr, Graph, Rotation, Vec3};
+use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes};
-use crate::mechanism::{Coordinate, LinkId, Pose};
+use crate::mechanism::{Chart, Coordinate, LinkId, Pose, Requirement};
 use crate::syntax::{self, Name};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,6 +16,10 @@ pub struct Scope<'a, 'g> {
     pub parameters: &'a [Name],
     /// Whether each parameter was used.
     pub used: std::cell::RefCell<Vec<bool>>,
+    /// Functions that are parameters.
+    pub tables: &'a [syntax::Table],
+    /// Whether each of them was used.
+    pub used_tables: RefCell<Vec<bool>>,
     /// Names of bodies and particles.
     pub bodies: Vec<String>,
     /// Names of frames.
@@ -28,6 +32,8 @@ pub struct Scope<'a, 'g> {
     pub inputs: &'a [Name],
     /// How many joints are driven by inputs of their own.
     pub driven: usize,
+    /// States of first order, each with its number among the parameters.
+    pub states: &'a [(Name, usize)],
     /// Names for expressions.
     pub definitions: &'a [syntax::Definition],
     /// What expressions may depend on, and what `x`, `y` and `z` alone mean.
@@ -44,6 +50,8 @@ pub struct Scope<'a, 'g> {
     pub constrains: std::cell::Cell<bool>,
     /// Definitions that were looked up for the one whose value is asked for: each once, however often the others name it.
     pub known: RefCell<Known<'g>>,
+    /// What figures that follow from parameters must fulfil, as far as it was met.
+    pub requirements: RefCell<Vec<Requirement<'g>>>,
 }
 
 /// Values of definitions, by name, by what they may depend on, and by whether `x`, `y` and `z` alone are the ground's; `None`
@@ -143,6 +151,9 @@ pub struct Placed<'g> {
     pub kind: PlacedKind,
 }
 
+/// Mass, centre of mass in body axes, inertia about it.
+pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
+
 /// What is placed so far, and how it moves.
 #[derive(Debug, Default)]
 pub struct Kinematics<'g> {
@@ -152,12 +163,18 @@ pub struct Kinematics<'g> {
     pub coordinates: Vec<(String, Coordinate, bool)>,
     /// Kinematics of the links.
     pub joints: Vec<Joint<'g>>,
+    /// The configuration space, once all links are there.
+    pub charts: Vec<Chart>,
     /// Twists of the links, once all are there.
     pub twists: Vec<Spatial<'g>>,
     /// By joint: its number, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
+    /// By contact: what its surfaces exert on each other, the second one on the first, by axes of links.
+    pub touches: BTreeMap<String, Vec<(Option<LinkId>, Vec3<'g>)>>,
     /// Accelerations of the links, once all are there.
     pub accelerations: Vec<Spatial<'g>>,
+    /// Mass, centre of mass and central inertia of bodies and particles.
+    pub masses: BTreeMap<String, MassProperties<'g>>,
 }
 
 /// A vector as a sum over the axes of links.

@@ -3,6 +3,7 @@
 
 use super::builder::Builder;
 use super::constraint::Constrained;
+use super::contact;
 use super::scope::{Allowed, Context, Placed, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
@@ -11,7 +12,7 @@ use crate::expr::replace::replace;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Function, Node, Symbol, Vec3};
 use crate::kinematics::{position_in, symbols_in, velocity_gradient};
-use crate::mechanism::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity};
+use crate::mechanism::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity, Rule};
 use crate::syntax::{self, Definition, ExprKind, Law};
 use std::collections::BTreeSet;
 
@@ -149,6 +150,7 @@ impl<'g> Builder<'_, 'g> {
             if let Some(n) = b.value().filter(|n| *n < 0.0) {
                 cx.error(inertance.place.clone(), format!("an inertance cannot be negative, but it is {n}"));
             }
+            self.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[b]);
             self.model.inertances.push(Inertance { rate: stretch.rate, inertance: b });
         }
     }
@@ -171,6 +173,10 @@ impl<'g> Builder<'_, 'g> {
         let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
         let mut check =
             |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
+                if let Some(found) = found {
+                    let rule = if positive { Rule::Positive } else { Rule::NotNegative };
+                    self.scope.require(rule, || format!("a {what} of dry friction"), &[found]);
+                }
                 let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
                 if n < 0.0 || positive && n == 0.0 {
                     let must = if positive { "must be positive" } else { "cannot be negative" };
@@ -231,15 +237,6 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A force with a value, at a point: three loads, one for each component.
-    pub fn add_load(&mut self, rate: Vec3<'g>, force: Vec3<'g>) {
-        for k in 0..3 {
-            if !force[k].is_zero() {
-                self.model.loads.push(Load { rate: rate[k], force: force[k], dissipative: false });
-            }
-        }
-    }
-
     /// Potential energies and dissipation functions given as expressions, and outputs.
     pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
@@ -261,6 +258,11 @@ impl<'g> Builder<'_, 'g> {
         }
         for output in &d.outputs {
             if let Some(values) = self.output(output, cx) {
+                if !contact::stands_alone(&values) {
+                    cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
+                        .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
+                    continue;
+                }
                 self.model.outputs.push(OutputValue { name: output.name.text.clone(), values });
             }
         }
@@ -319,6 +321,10 @@ impl<'g> Builder<'_, 'g> {
         let mut all: Vec<Expr<'g>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
         all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));
         all.extend(m.inertances.iter().flat_map(|i| [i.rate, i.inertance]));
+        for force in &m.acceleration_forces {
+            all.push(force.rate);
+            all.extend(force.factors.iter().map(|(_, factor)| *factor));
+        }
         all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
         all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
         all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));

@@ -1,6 +1,7 @@
 //! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
 
 use super::expression::{parse_expr, parse_name};
+use super::figures::{self, FileFigures};
 use super::{BinaryOp, Expr, ExprKind, Name, words};
 use crate::diag::{Diagnostics, Place, nearest, syn_error};
 
@@ -46,6 +47,7 @@ const ENDS: [(&str, &str); 14] = [
 ];
 
 enum Value {
+    Figures(Vec<FileFigures>),
     Expr(Expr),
     Text(LitStr),
     Texts(Vec<LitStr>),
@@ -173,7 +175,7 @@ impl Arguments {
                     .help("write it without quotes");
                 None
             }
-            (name, Value::Texts(_)) => {
+            (name, Value::Texts(_) | Value::Figures(_)) => {
                 cx.error(name.place, format!("expected an expression for `{key}`, found texts"))
                     .help("write it without quotes");
                 None
@@ -274,6 +276,14 @@ impl Arguments {
                     .help(format!("write `{key} = [\"…\", \"…\"]`"));
                 Vec::new()
             }
+        }
+    }
+
+    /// The figures of a file that are parameters.
+    pub fn take_figures(&mut self, key: &str) -> Vec<FileFigures> {
+        match self.take(key) {
+            Some((_, Value::Figures(figures))) => figures,
+            _ => Vec::new(),
         }
     }
 
@@ -461,7 +471,10 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             let message = format!("`{}` has no value", key.text);
             return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
         }
-        let value = parse_value(input)?;
+        let value = match key.text.as_str() {
+            "parameters" => Value::Figures(figures::parse(input)?),
+            _ => parse_value(input)?,
+        };
         arguments.named.push((key, value));
         return Ok(());
     }

@@ -2,8 +2,12 @@
 
 use super::arguments::Arguments;
 use super::expression::name;
-use super::mechanism::{Mechanism, REQUESTS, Requests, Shell, Skipped, UrdfOptions};
+use super::figures::{self, FileFigures};
+use super::lists::Lists;
+use super::mechanism::{LimitOption, Mechanism, Printed, REQUESTS, Requests, Shell, Skipped, UrdfOptions};
 use super::sound::Reading;
+use super::state::{give_type, read_state};
+use super::table::{read_table, table_variables};
 use super::{
     Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, declaration, element, guard,
     home, skipped, words,
@@ -18,7 +22,7 @@ use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type}
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 16] = [
+const OPTIONS: [&str; 18] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -33,8 +37,10 @@ const OPTIONS: [&str; 16] = [
     "inputs",
     "lock",
     "snap",
+    "parameters",
     "processor",
     "skip_passes",
+    "equations",
 ];
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
@@ -44,6 +50,13 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     }
     let fields = declaration::fields(&item);
     let mut item = parse_struct(item, cx)?;
+    let before = cx.len();
+    let mut lists = Lists::write_out(&mut item.fields, cx);
+    let arguments = lists.rewrite(arguments, None, cx);
+    let mut reading = Reading::default();
+    if cx.len() > before {
+        reading.lose();
+    }
     let (arguments, home) = home::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
     let mut description = empty_description(&item);
@@ -53,6 +66,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         ident: item.ident.clone(),
         generics: item.generics.clone(),
         parameters: Vec::new(),
+        tables: Vec::new(),
+        file_fields: Vec::new(),
         elements: Vec::new(),
         notes: declaration::notes(&item),
         declaration: declaration::text(&item, fields),
@@ -61,10 +76,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let mut scalar: Option<(ScalarType, Place)> = None;
     // A type that is not known is told once.
     let mut strangers: Vec<Ident> = Vec::new();
-    let mut reading = Reading::default();
     for field in item.fields {
         reading.field(&field);
-        let kind = type_name(&field.ty);
+        let kind = type_name(&field.ty).filter(|_| table_variables(&field.ty).is_none());
         if kind.as_ref().is_some_and(|kind| refused.contains(kind) || strangers.contains(kind)) {
             reading.blame_last();
             continue;
@@ -84,6 +98,12 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
+    // The fields that hold figures of a file have its type.
+    if let (Some(generic), true, true) =
+        (&generic, requests.file_parameters, description.parameters.is_empty())
+    {
+        description.scalar = ScalarType::Generic(generic.clone());
+    }
     if let Some(generic) = generic
         && description.scalar != ScalarType::Generic(generic.clone())
     {
@@ -96,6 +116,9 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
             );
         }
     }
+    give_type(&description, &mut shell);
+    // Linear systems have the derivatives by states, which are parameters.
+    requests.sensitivities |= requests.derivatives && !description.states.is_empty();
     check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
     Some(Mechanism { description, shell, urdf, requests, reading })
 }
@@ -168,12 +191,16 @@ fn empty_description(item: &ItemStruct) -> Description {
         friction_speed: None,
         scalar: ScalarType::F64,
         parameters: Vec::new(),
+        tables: Vec::new(),
+        states: Vec::new(),
         units: Vec::new(),
+        file_units: Vec::new(),
         bodies: Vec::new(),
         particles: Vec::new(),
         joints: Vec::new(),
         actions: Vec::new(),
         limits: Vec::new(),
+        contacts: Vec::new(),
         coordinates: Vec::new(),
         inputs: Vec::new(),
         frames: Vec::new(),
@@ -205,6 +232,10 @@ fn read_field(
         cx.error(ident.span(), "a field of a mechanism needs a name").help("write a name, such as `_unused`");
         return;
     }
+    if let Some(variables) = table_variables(&field.ty) {
+        read_table(field, &field_name, variables, description, shell, cx);
+        return;
+    }
     let Some(kind) = type_name(&field.ty) else {
         element::unknown_type(&field_name, "", span_of(&field.ty), cx);
         return;
@@ -213,6 +244,10 @@ fn read_field(
         "f64" => ScalarType::F64,
         "f32" => ScalarType::F32,
         k if Some(k) == generic => ScalarType::Generic(k.to_string()),
+        "State" => {
+            read_state(field, kind, &field_name, description, shell, cx);
+            return;
+        }
         _ => {
             element::read_element(&field_name, &kind, &field.attrs, description, cx);
             shell.elements.push((ident, kind));
@@ -264,7 +299,7 @@ fn spell(scalar: &ScalarType) -> &str {
 }
 
 /// From the first to the last token of a type.
-fn span_of(ty: &Type) -> Place {
+pub(super) fn span_of(ty: &Type) -> Place {
     let mut tokens = ty.to_token_stream().into_iter();
     let Some(first) = tokens.next() else { return ty.span().into() };
     let last = tokens.last().map_or(first.span(), |last| last.span());
@@ -297,7 +332,7 @@ fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut 
     }
 }
 
-fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
+pub(super) fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
         if element::is_conditional(attribute) {
             cx.error(attribute.path().span(), "a parameter cannot be conditional").help(element::CONDITIONS);
@@ -334,7 +369,7 @@ fn read_options(
         unify_scalar(scalar, found, place, cx);
     }
     let path = arguments.take_text("urdf", cx);
-    let file_only = ["base", "passive", "mimic", "limits", "inputs", "lock", "snap"];
+    let file_only = ["base", "passive", "mimic", "limits", "inputs", "lock", "snap", "parameters"];
     if path.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -349,29 +384,41 @@ fn read_options(
             }
         }
     }
+    let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
+    let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
+        "ignore" => LimitOption::Ignore,
+        "stops" => LimitOption::Stops,
+        _ => LimitOption::Honour,
+    });
     let mut choice =
         |key: &str, words: [&str; 2]| arguments.take_word(key, &words, cx).map(|(word, _)| word == words[1]);
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
-    let ignore_limits = choice("limits", ["honour", "ignore"]).unwrap_or(false);
     let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &asked, description, cx);
     requests.skipped = skipped::read(&mut arguments, cx);
+    let printed = arguments.take_word("equations", &Printed::WORDS.map(|(word, _)| word), cx);
+    let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
+    requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
+    let parameters = read_figures(&mut arguments, description.inertias, cx);
+    requests.file_parameters = !parameters.is_empty();
+    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == figures::INERTIAL);
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     Some(UrdfOptions {
         path: path?,
         base: if base { Base::Free } else { Base::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
-        honour_limits: !ignore_limits,
+        limits,
         inertias: description.inertias,
         inputs: !no_inputs,
         lock,
         snap,
+        parameters,
     })
 }
 
@@ -412,6 +459,21 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     }
 }
 
+/// `parameters = inertial("trunk")`. Without inertia there are no mass properties.
+fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnostics) -> Vec<FileFigures> {
+    let mut found = figures::check(arguments.take_figures("parameters"), cx);
+    found.retain(|figures| {
+        let good = inertias != Inertias::None || figures.word.text == figures::PLACEMENT;
+        if !good {
+            let word = &figures.word;
+            cx.error(word.place.clone(), format!("`{}` needs inertia", word.text))
+                .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+        }
+        good
+    });
+    found
+}
+
 /// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.
 fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
     let place = arguments.place_of("independent");
@@ -447,17 +509,22 @@ fn read_requests(
         derivatives: is_asked("derivatives") || is_asked("second_derivatives"),
         second_derivatives: is_asked("second_derivatives"),
         centroidal: is_asked("centroidal"),
+        hamilton: is_asked("hamilton"),
+        conserved: is_asked("conserved"),
         regressor: is_asked("regressor"),
         sensitivities: is_asked("sensitivities"),
         packed: is_asked("packed"),
         prepare: is_asked("prepare"),
         batch: is_asked("batch"),
+        file_parameters: false,
+        file_inertials: false,
         target_only: false,
         skipped: Skipped::default(),
+        equations: Printed::default(),
     };
     for (word, place) in asked {
         let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
-        if description.parameters.is_empty() && without {
+        if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
             cx.error(
                 place.clone(),
                 format!("`{word}` has no meaning here: this mechanism has no parameters"),
@@ -496,11 +563,13 @@ fn read_requests(
 fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
     let mut names: Vec<&Name> = Vec::new();
     names.extend(&description.parameters);
+    names.extend(description.tables.iter().map(|t| &t.name));
     names.extend(description.bodies.iter().map(|b| &b.name));
     names.extend(description.particles.iter().map(|p| &p.name));
     names.extend(description.joints.iter().map(|j| &j.name));
     names.extend(description.actions.iter().map(|a| &a.name));
     names.extend(description.limits.iter().map(|l| &l.name));
+    names.extend(description.contacts.iter().map(|c| &c.name));
     names.extend(description.coordinates.iter().map(|c| &c.name));
     names.extend(description.frames.iter().map(|f| &f.name));
     names.extend(description.points.iter().map(|p| &p.name));

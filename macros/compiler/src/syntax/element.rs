@@ -3,6 +3,7 @@
 use super::action::{article, read_action};
 use super::arguments::Arguments;
 use super::constraint::read_constraint;
+use super::contact::read_contact;
 use super::expression::parse_expr;
 use super::joint::read_joint;
 use super::joint_kind;
@@ -18,7 +19,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
 /// The attributes of the language.
-pub const ATTRIBUTES: [&str; 13] = [
+pub const ATTRIBUTES: [&str; 15] = [
     "body",
     "particle",
     "frame",
@@ -29,8 +30,10 @@ pub const ATTRIBUTES: [&str; 13] = [
     "energy",
     "dissipation",
     "constraint",
+    "contact",
     "define",
     "output",
+    "state",
     "unit",
 ];
 
@@ -39,7 +42,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 13] = [
+const OTHERS: [(&str, &[&str]); 15] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -51,6 +54,8 @@ const OTHERS: [(&str, &[&str]); 13] = [
     ("Nonholonomic", &["constraint"]),
     ("Rolling", &["constraint"]),
     ("Slipping", &["constraint"]),
+    ("Contact", &["contact"]),
+    ("State", &["state"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
 ];
@@ -153,6 +158,15 @@ pub fn read_element(
             description.actions.extend(action);
         }
     }
+}
+
+/// The rate of a state.
+pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
+    let arguments = own_arguments(name, &kind.to_string(), "state", attributes, cx)?;
+    let mut arguments = arguments.owned_by(name);
+    let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
+    arguments.finish("a State", &["rate"], cx);
+    rate
 }
 
 /// True for an attribute of one of these names.
@@ -287,7 +301,9 @@ fn example(attribute: &str) -> &'static str {
         "body" => "`#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]`",
         "particle" => "`#[particle(mass = m, at = body.at(l * x))]`",
         "joint" => "`#[joint(parent -> child, about = z)]`",
+        "state" => "`#[state(rate = (command - level) / lag)]`",
         "limit" => "`#[limit(on = joint, from = a, to = b)]`",
+        "contact" => "`#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`",
         _ => "`#[acts(on = joint, …)]`",
     }
 }
@@ -399,6 +415,7 @@ fn read_other(
         "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
         "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
         "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
+        "Contact" => read_contact(name, arguments, description, cx),
         "Slipping" => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
         _ => read_expression(name, kind, attribute, arguments, description, cx),
     }

@@ -209,7 +209,7 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     } else if input.peek(Token![::]) {
         "names have no path: the number π is `pi`, a vector `[a, b, c]`, a constant a parameter"
     } else if input.peek(token::Bracket) {
-        "nothing is counted: coordinates have names, that of a joint or `joint.x` if it has several"
+        "coordinates have names, that of a joint or `joint.x` if it has several; what is counted is declared as a list, `hinge: [Pin; 2]`"
     } else if input.peek(Token![=]) {
         "arguments of a function stand in their order, without names"
     } else if input.peek(Token![:]) {

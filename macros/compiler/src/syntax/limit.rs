@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use super::{Description, Limit, Name};
 use crate::diag::Diagnostics;
 
-const KEYS: [&str; 5] = ["on", "from", "to", "max_speed", "max_effort"];
+const KEYS: [&str; 6] = ["on", "from", "to", "max_speed", "max_effort", "restitution"];
 
 /// Reads a limit.
 pub fn read_limit(
@@ -16,7 +16,7 @@ pub fn read_limit(
     let on = arguments.need_expr("on", "joint", "limit", &KEYS, cx);
     let mut take = |key: &str| arguments.take_expr(key, cx);
     let (from, to) = (take("from"), take("to"));
-    let (max_speed, max_effort) = (take("max_speed"), take("max_effort"));
+    let (max_speed, max_effort, restitution) = (take("max_speed"), take("max_effort"), take("restitution"));
     let is_empty = arguments.is_empty();
     arguments.finish("a Limit", &KEYS, cx);
     let Some(on) = on else { return };
@@ -27,5 +27,10 @@ pub fn read_limit(
         }
         return;
     }
-    description.limits.push(Limit { name, on, from, to, max_speed, max_effort });
+    if let (Some(e), None, None) = (&restitution, &from, &to) {
+        cx.error(e.place.clone(), "there is no bound to strike")
+            .help("write where it is: `from = …`, `to = …`, or both");
+        return;
+    }
+    description.limits.push(Limit { name, on, from, to, max_speed, max_effort, restitution });
 }

@@ -1,5 +1,6 @@
 //! What a use of `#[mechanism]` says as a whole: its description, its options, and what remains of the struct.
 
+use super::figures::{FileField, FileFigures};
 use super::sound::Reading;
 use super::{Base, Description, Inertias, Name};
 use syn::{Attribute, Field, Ident, Visibility};
@@ -27,6 +28,10 @@ pub struct Requests {
     pub second_derivatives: bool,
     /// The matrix of the momentum, and its bias.
     pub centroidal: bool,
+    /// Energy and canonical equations as functions of configuration and momentum.
+    pub hamilton: bool,
+    /// Quantities that keep their values.
+    pub conserved: bool,
     /// The dynamics as linear functions of the mass properties.
     pub regressor: bool,
     /// Derivatives of the dynamics by the parameters.
@@ -37,10 +42,36 @@ pub struct Requests {
     pub prepare: bool,
     /// Functions of several states at once, in lanes.
     pub batch: bool,
+    /// Figures of a file are parameters.
+    pub file_parameters: bool,
+    /// Mass properties of links are among them.
+    pub file_inertials: bool,
     /// No instructions beside those of the compilation's target.
     pub target_only: bool,
     /// Passes over the model that are left out.
     pub skipped: Skipped,
+    /// Which equations are printed.
+    pub equations: Printed,
+}
+
+/// Which equations are printed: `equations = word`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Printed {
+    /// Lagrange's, if they are short enough to be read.
+    #[default]
+    Readable,
+    /// Lagrange's, also where they are long.
+    Lagrange,
+    /// Hamilton's.
+    Hamilton,
+    /// Their structure alone.
+    Structure,
+}
+
+impl Printed {
+    /// The words that ask for others than the readable ones.
+    pub const WORDS: [(&str, Printed); 3] =
+        [("lagrange", Printed::Lagrange), ("hamilton", Printed::Hamilton), ("structure", Printed::Structure)];
 }
 
 /// The passes that are left out: `skip_passes = [word, …]`. No function depends on them, only what it costs.
@@ -68,6 +99,10 @@ pub struct Shell {
     pub generics: syn::Generics,
     /// The fields that stay.
     pub parameters: Vec<Field>,
+    /// The fields that are tables, which stay too.
+    pub tables: Vec<Field>,
+    /// The fields that hold figures of a file.
+    pub file_fields: Vec<FileField>,
     /// Name and type of the fields that go, for the editor's sake.
     pub elements: Vec<(Ident, Ident)>,
     /// What the user says of fields in doc comments: name of the field, first paragraph.
@@ -78,11 +113,40 @@ pub struct Shell {
     pub home: Option<syn::Path>,
 }
 
+impl Shell {
+    /// Whether generated code is concrete in its parameters: nothing is generic.
+    pub fn is_concrete(&self) -> bool {
+        self.generics.params.is_empty()
+    }
+
+    /// The name of every table.
+    pub fn table_names(&self) -> Vec<String> {
+        self.tables.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string)).collect()
+    }
+
+    /// How every parameter is written behind a mechanism.
+    pub fn accesses(&self) -> Vec<String> {
+        let own = self.parameters.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string));
+        own.chain(self.file_fields.iter().flat_map(FileField::members)).collect()
+    }
+}
+
 /// The name of the fixed frame.
 pub const GROUND: &str = "ground";
 
 /// The joint that holds the root of a file, which no file names; with a number if one does.
 pub const ROOT_JOINT: &str = "root_joint";
+
+/// What is made of the limits of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitOption {
+    /// They are bounds that controllers read.
+    Honour,
+    /// They are left out.
+    Ignore,
+    /// They are bounds, and stops for the motion.
+    Stops,
+}
 
 /// The options of `#[mechanism(urdf = "…", …)]`.
 #[derive(Clone, Debug)]
@@ -95,8 +159,8 @@ pub struct UrdfOptions {
     pub honour_passive: bool,
     /// Mimic joints follow their masters.
     pub follow_mimic: bool,
-    /// Limits of the file are kept.
-    pub honour_limits: bool,
+    /// What is made of the limits of the file.
+    pub limits: LimitOption,
     /// What is made of mass properties.
     pub inertias: Inertias,
     /// Every moving joint with one degree of freedom is an input.
@@ -105,13 +169,17 @@ pub struct UrdfOptions {
     pub lock: Vec<Name>,
     /// How far off round numbers the file's frames and axes may be to be taken for round, rad and m.
     pub snap: Option<f64>,
+    /// Figures that are parameters.
+    pub parameters: Vec<FileFigures>,
 }
 
 /// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 8] = [
+pub(super) const REQUESTS: [&str; 10] = [
     "derivatives",
     "second_derivatives",
     "centroidal",
+    "hamilton",
+    "conserved",
     "regressor",
     "sensitivities",
     "packed",

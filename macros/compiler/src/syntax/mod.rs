@@ -7,22 +7,29 @@ pub mod action;
 pub mod arguments;
 pub mod attribute;
 pub mod constraint;
+pub mod contact;
 pub mod declaration;
 pub mod element;
 pub mod expression;
+pub mod figures;
 pub mod guard;
 pub mod home;
 pub mod joint;
 pub mod joint_kind;
 pub mod limit;
+mod lists;
 pub mod mechanism;
 pub mod skipped;
 pub mod sound;
+pub mod state;
+mod table;
 pub mod words;
 
 pub use attribute::parse_mechanism;
 pub use joint_kind::JointKind;
-pub use mechanism::{GROUND, Mechanism, ROOT_JOINT, Requests, Shell, Skipped, UrdfOptions};
+pub use mechanism::{
+    GROUND, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests, Shell, Skipped, UrdfOptions,
+};
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
@@ -166,8 +173,14 @@ pub struct Description {
     pub scalar: ScalarType,
     /// Parameters: the fields that stay in the struct.
     pub parameters: Vec<Name>,
+    /// Tables: functions that are parameters.
+    pub tables: Vec<Table>,
+    /// States of first order: parameters that change, each with its index among them.
+    pub states: Vec<(Name, usize)>,
     /// `#[unit(…)]` of parameters, by index.
     pub units: Vec<(usize, Expr)>,
+    /// Units of the last parameters: those that are figures of a file.
+    pub file_units: Vec<&'static str>,
     /// Rigid bodies.
     pub bodies: Vec<Body>,
     /// Particles.
@@ -196,6 +209,8 @@ pub struct Description {
     pub dissipations: Vec<(Name, Expr)>,
     /// Constraints beside those of joints that close loops.
     pub constraints: Vec<Constraint>,
+    /// Surfaces that may touch.
+    pub contacts: Vec<Contact>,
     /// How constrained motion is solved.
     pub formulation: Formulation,
     /// Numbers of a file that were rounded, as the user asked for.
@@ -274,6 +289,15 @@ pub struct Constraint {
     pub friction: Option<SlipFriction>,
 }
 
+/// A function that is a parameter, given by a table.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Its name.
+    pub name: Name,
+    /// How many variables it has, one to three.
+    pub variables: usize,
+}
+
 /// A generalized coordinate that belongs to no joint.
 #[derive(Clone, Debug)]
 pub struct FreeCoordinate {
@@ -298,6 +322,23 @@ pub struct Limit {
     pub max_speed: Option<Expr>,
     /// Largest force or torque, in both directions.
     pub max_effort: Option<Expr>,
+    /// How much of its speed a coordinate keeps that strikes a bound, which is a stop then.
+    pub restitution: Option<Expr>,
+}
+
+/// Two surfaces that may part, strike, slide and stick.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Its name.
+    pub name: Name,
+    /// One surface.
+    pub first: Expr,
+    /// The other.
+    pub second: Expr,
+    /// Coefficient of friction; none if absent.
+    pub friction: Option<Expr>,
+    /// Coefficient of restitution; zero if absent.
+    pub restitution: Option<Expr>,
 }
 
 /// A frame: axes without a place.

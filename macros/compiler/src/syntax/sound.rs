@@ -40,6 +40,11 @@ impl Reading {
         self.fields.extend(name.map(|name| Words { name, words, body, broken: false }));
     }
 
+    /// Nothing of it can be read.
+    pub fn lose(&mut self) {
+        self.lost = true;
+    }
+
     /// The last field could not be read as it stands.
     pub fn blame_last(&mut self) {
         if let Some(field) = self.fields.last_mut() {
@@ -89,6 +94,7 @@ impl Reading {
         d.energies.retain(|(name, _)| kept(name));
         d.dissipations.retain(|(name, _)| kept(name));
         d.constraints.retain(|c| kept(&c.name));
+        d.contacts.retain(|c| kept(&c.name));
         (!d.bodies.is_empty() || !d.particles.is_empty()).then_some(d)
     }
 

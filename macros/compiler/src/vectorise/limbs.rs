@@ -31,7 +31,7 @@ impl<'g> Limbs<'g> {
         groups: &[Group],
         passive_forces: impl FnOnce() -> Vec<Expr<'g>>,
     ) -> Option<Limbs<'g>> {
-        if groups.is_empty() || !model.inertances.is_empty() {
+        if groups.is_empty() || !model.inertances.is_empty() || !model.acceleration_forces.is_empty() {
             return None;
         }
         let rows = rows(joints.len(), groups);

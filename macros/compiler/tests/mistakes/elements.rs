@@ -79,7 +79,7 @@ const OTHERS: &[Row] = &[
     ("Tendon", "unknown element type `Tendon`", "max(stretch, 0)"),
     ("EndStop", "unknown element type `EndStop`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
     ("EndStop", "unknown element type `EndStop`", "energy = k / 2 * pow(min(stretch - low, 0), 2)"),
-    ("Contact", "unknown element type `Contact`", "`Rolling` or `Slipping`"),
+    ("Collision", "unknown element type `Collision`", "are a `Contact`"),
     ("Wheel", "unknown element type `Wheel`", "rolls(wheel.circle(radius, y), ground.plane(z))"),
     ("Controller", "unknown element type `Controller`", "an input, `Force`, `Torque` or `Input`"),
     ("Geometry", "unknown element type `Geometry`", "inertia = cuboid(m, a, b, c)"),

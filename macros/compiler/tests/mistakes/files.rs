@@ -49,3 +49,71 @@ fn a_wrong_path_is_one_mistake() {
         && one.contains("= help: "));
     assert!(good, "{found:#?}");
 }
+
+/// A robot on a pedestal whose second link has no mass properties and whose last joint is fixed.
+const ROBOT: &str = r#"<robot name="r">
+<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="bare"/>
+<link name="hand"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="bare"/></joint>
+<joint name="mount" type="fixed"><parent link="bare"/><child link="hand"/></joint>
+</robot>"#;
+
+/// What is written for `parameters`, the first line of what is said, and a part of the help.
+const PARAMETERS: &[(&str, &str, &str)] = &[
+    ("inertial(\"hnad\")", "unknown link `hnad` in `parameters`", "did you mean `hand`?"),
+    ("placement(\"tunr\")", "unknown joint `tunr` in `parameters`", "did you mean `turn`?"),
+    ("inertial(\"bare\")", "link `bare` has no mass properties in the file", "leave it out of `parameters`"),
+    (
+        "inertial(\"base\")",
+        "link `base` stands on the ground: its mass properties enter no equation",
+        "leave it out of `parameters`",
+    ),
+    ("damping(\"mount\")", "joint `mount` has no damping", "about one axis"),
+    ("placement(\"root_joint\")", "joint `root_joint` has no placement", "the root of the file"),
+    ("inertail", "unknown figures `inertail`", "did you mean `inertial`?"),
+    ("mass(\"hand\")", "unknown figures `mass`", "`inertial`, `placement`, `damping` or `friction`"),
+    ("[damping, damping]", "`damping` stands here twice", "name all in one"),
+    ("inertial(\"hand\", \"hand\")", "link `hand` stands here twice", "remove one of the two"),
+    ("\"hand\"", "expected a kind of figures, found a text", "write `inertial(\"hand\")`"),
+    ("inertial(hand)", "expected a name in quotation marks", "names of the file are texts"),
+    ("inertial()", "no name stands in these parentheses", "write `inertial` alone"),
+    ("3", "expected a kind of figures", "write `parameters = inertial(\"link\")`"),
+];
+
+#[test]
+fn figures_that_are_parameters_are_those_of_the_file() {
+    fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures.urdf"), ROBOT).unwrap();
+    let mut wrong = Vec::new();
+    for (said, message, help) in PARAMETERS {
+        let found = messages(&format!("urdf = \"figures.urdf\", parameters = {said}"), "");
+        let good = matches!(found.as_slice(), [one] if one.lines().next().is_some_and(|line| line.ends_with(message))
+            && one.contains(help));
+        if !good {
+            wrong.push(format!("{said}: {found:#?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    for good in [
+        "inertial",
+        "inertial(\"hand\")",
+        "[inertial, placement, damping(\"turn\"), friction]",
+        "[placement,]",
+    ] {
+        let found = messages(&format!("urdf = \"figures.urdf\", parameters = {good}, prepare"), "");
+        assert_eq!(found, Vec::<String>::new(), "{good}");
+    }
+    let rest = [
+        ("parameters = inertial", "", "`parameters` is an option of a file"),
+        ("urdf = \"figures.urdf\", parameters = inertial", "hand: f64,", "the name `hand` is used twice"),
+        ("urdf = \"figures.urdf\", inertia = none, parameters = inertial", "", "`inertial` needs inertia"),
+    ];
+    for (attribute, field, message) in rest {
+        let fields = match attribute.contains("urdf") {
+            true => field.to_string(),
+            false => super::ARM.to_string(),
+        };
+        let found = messages(attribute, &fields);
+        assert!(matches!(found.as_slice(), [one] if one.starts_with(message)), "{attribute}: {found:#?}");
+    }
+}

@@ -27,11 +27,12 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         base: if robot.free { Base::Free } else { Base::Fixed },
         honour_passive: true,
         follow_mimic: true,
-        honour_limits: true,
+        limits: linkwork_compiler::syntax::LimitOption::Honour,
         inertias: Inertias::Check,
         inputs: true,
         lock: robot.locked().map(name).collect(),
         snap: None,
+        parameters: Vec::new(),
     };
     let imported = import::import_urdf(&robot.text(), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));

@@ -200,14 +200,17 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let state = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
     let zero = vec![real(0.0); nv];
     let bias = inverse_dynamics(spec, &state(v, zero.clone()));
-    // At rest: what velocities add would only be taken away again.
-    let rest = inverse_dynamics(spec, &state(&zero, zero.clone()));
+    // Of inertia alone, at rest: what forces add would only be taken away again, and leave its rounding behind.
+    let inertial = |element: &&Element| {
+        matches!(element, Element::Between(Law::Inerter(_), ..) | Element::On(Law::Inerter(_), ..))
+    };
+    let elements = spec.elements.iter().filter(inertial).cloned().collect();
+    let unloaded = Spec { gravity: [0.0; 3], elements, ..spec.clone() };
     let columns = (0..nv)
         .map(|k| {
             let mut a = zero.clone();
             a[k] = real(1.0);
-            let forces = inverse_dynamics(spec, &state(&zero, a));
-            forces.iter().zip(&rest).map(|(f, r)| f - r).collect()
+            inverse_dynamics(&unloaded, &state(&zero, a))
         })
         .collect();
     (columns, bias)

@@ -3,6 +3,8 @@
 //! springs, dashpots and inerters between bodies and the ground; alike limbs; masses over many powers of ten; angles that
 //! miss those of a plain machine by rounding. Random URDF files with joints of every type, by the same motions.
 
+mod combinations;
+mod combined;
 mod files;
 mod jet;
 mod kane;
@@ -15,10 +17,11 @@ mod words;
 
 use spec::{Style, spec};
 
-/// Each test looks at so many mechanisms, or at as many as the variable `LINKWORK_ORACLE` says.
+/// Each test looks at so many mechanisms, or at as many as the variable `LINKWORK_ORACLE` says: `20000`, or `400..405`.
 fn seeds(usual: u64) -> std::ops::Range<u64> {
-    let asked = std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok());
-    0..asked.unwrap_or(usual)
+    let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
+    let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
+    from.parse().unwrap_or(0)..to.parse().unwrap_or(usual)
 }
 
 const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };

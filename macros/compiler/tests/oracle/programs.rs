@@ -5,6 +5,7 @@ use crate::kane::{self, State};
 use crate::random::Random;
 use crate::spec::Spec;
 use crate::words;
+use linkwork_compiler::catalogue::Called;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -97,7 +98,7 @@ impl Case<'_> {
             .iter()
             .find(|f| f.name == name)
             .unwrap_or_else(|| panic!("no function {name}"));
-        let at = |s| match Quantity::of(s) {
+        let state = |s| match Quantity::of(s) {
             Quantity::Parameter(k) => self.spec.bodies[k].mass,
             Quantity::Configuration(k) => self.point.q[k],
             Quantity::Velocity(k) => self.point.v[k],
@@ -105,6 +106,16 @@ impl Case<'_> {
             Quantity::Force(k) => self.point.tau[k],
             Quantity::Given(k) => self.point.lambda[k],
             _ => f64::NAN,
+        };
+        // Functions that call others are told what those give.
+        let called = Called::ALL.map(|called| {
+            let function = self.output.functions.iter().find(|f| f.name == called.function());
+            function.map_or_else(Vec::new, |f| f.program.run(&state))
+        });
+        let at = |s| match Quantity::of(s) {
+            Quantity::PassiveForce(k) => called[0][k],
+            Quantity::PassiveDerivative(k) => called[1][k],
+            _ => state(s),
         };
         let program = &function.program;
         [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&at)).collect()
@@ -182,7 +193,10 @@ impl Case<'_> {
     fn check_second_derivatives(&self) {
         let Point { q, v, a, lambda, along, .. } = &self.point;
         let (nv, state) = (v.len(), State::new(q, v, a));
-        let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry)).collect();
+        let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry, 0.5 * H)).collect();
+        // What halving the step changes is 64 times what is left: much where points that a spring joins nearly meet.
+        let doubt = (0..3 * nv).map(|entry| (self.mixed(&state, entry, H) - expected[entry]).abs());
+        let doubt = doubt.fold(0.0, f64::max) / 16.0;
         // Differences round relative to what they are differences of.
         let sizes = ["mass_matrix", "bias_forces", "inverse_dynamics_derivatives"]
             .map(|name| self.run(name).concat());
@@ -200,7 +214,7 @@ impl Case<'_> {
                 for (kind, product) in products.iter().enumerate() {
                     let expected = expected[kind * nv + i];
                     assert!(
-                        (product - expected).abs() <= TOLERANCE * scale,
+                        (product - expected).abs() <= TOLERANCE * scale + doubt,
                         "second derivatives, row {i} of kind {kind}: {product} and {expected} of {scale} with {lambda:?}, {}",
                         self.name
                     );
@@ -210,8 +224,8 @@ impl Case<'_> {
     }
 
     /// The second derivative of the power of the factors by one entry of configuration, velocity or acceleration and along the
-    /// direction, the mean of both orders.
-    fn mixed(&self, state: &State, entry: usize) -> f64 {
+    /// direction, the mean of both orders, by differences over steps of `size`.
+    fn mixed(&self, state: &State, entry: usize, size: f64) -> f64 {
         let Point { lambda, along, .. } = &self.point;
         let nv = lambda.len();
         let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
@@ -234,7 +248,7 @@ impl Case<'_> {
                 slope(&State { q, v: add(&state.v, &outer[1]), a: add(&state.a, &outer[2]) }, inner)
             };
             let part = |h: f64| at(h) - at(-h);
-            (part(H) * 45.0 - part(2.0 * H) * 9.0 + part(3.0 * H)) / (60.0 * H)
+            (part(size) * 45.0 - part(2.0 * size) * 9.0 + part(3.0 * size)) / (60.0 * size)
         };
         (difference(along, &unit) + difference(&unit, along)) * 0.5
     }

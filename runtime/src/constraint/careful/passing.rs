@@ -1,10 +1,14 @@
 //! Accelerations in singular positions, from the motion that passes through.
 
-use super::{Structure, System, Weak, far, zone};
+use super::{Structure, System, Triangle, Weak, far, zone};
 use crate::Real;
 use crate::constraint::Constrained;
+use crate::constraint::span::{Metric, Span, norm, rounding};
 use crate::private::{constant, epsilon};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
+
+/// Newton steps to a point of a way, at most.
+const MOST_STEPS: usize = 12;
 
 /// The motion to third order about an instant: acceleration and jerk.
 type Course<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
@@ -24,12 +28,13 @@ pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
 }
 
-/// The acceleration `A f + c` of the motion that passes through a state, interpolated from a little before and after.
+/// The acceleration of the motion that passes through a state, with what constraints leave possible interpolated from a
+/// little before and after.
 ///
-/// How accelerations follow from forces, `A`, and what they are without, `c`, depend on where a branch is and how fast it is
-/// passed, and change little over the way; forces of stiff elements change as much as they like, and are therefore those
-/// at the state. The way leads along the velocity of the state or, at rest, along the acceleration `least`. `None` where
-/// the position is singular around as well, or nothing moves.
+/// Which accelerations constraints leave possible depends on where a branch is and how fast it is passed, and changes
+/// little over the way. Masses and forces are those at the state: what a heavy body adds that is at rest there, or a stiff
+/// element, changes as much as it likes. The way leads along the velocity of the state or, at rest, along the acceleration
+/// `least`. `None` where the position is singular around as well, or nothing moves.
 pub(super) fn acceleration<
     M,
     T: Real,
@@ -43,7 +48,7 @@ pub(super) fn acceleration<
     structure: &Structure<NC>,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
-    force: &[T; NV],
+    system: &System<T, NV, NC>,
     least: &SVector<T, NV>,
 ) -> Option<SVector<T, NV>>
 where
@@ -60,41 +65,89 @@ where
         let pace = far::<T>() / size(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
-        steps.into_iter().find_map(|step| interpolated(mechanism, structure, &way.points(step, clear), force))
+        steps.into_iter().find_map(|step| way.points(step, clear).interpolated(mechanism, structure))
     };
     // Farther on, or nearer, other things happen.
     passed(&way, &[1.0, 2.0], clear)
-        .or_else(|| passed(&aside(mechanism, structure, &way)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+        .or_else(|| passed(&way.aside(mechanism, structure)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+        .or_else(|| passed(&way.aside(mechanism, structure)?.across(&way), &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
         .or_else(|| passed(&way, &[4.0, 16.0], clear))
-        .or_else(|| passed(&way, &[1.0, 0.5, 0.25], within))
+        .or_else(|| passed(&way, &[1.0, 0.5, 0.25], within))?
+        .acceleration(structure, system)
 }
 
-/// Another way along the branch, for states whose velocity leads out slowly beside that of other coordinates: into a direction
-/// with all of them, which a little before and after is known well enough.
-fn aside<M, T: Real, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
-    mechanism: &M,
-    structure: &Structure<NC>,
-    way: &Way<T, NQ, NV>,
-) -> Option<Way<T, NQ, NV>>
-where
-    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
-{
-    let own = far::<T>() / size(&way.heading);
-    let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
-    // Pushes as large as inertia move heavy bodies, and equal ones light bodies.
-    let pushes = [(mechanism.mass_matrix(way.t, &way.q) * any).data.0[0], any.data.0[0]];
-    let still = Way { v: SVector::zeros(), moves: false, ..*way };
-    let heading = [0.1, 0.3, 1.0].into_iter().find_map(|part| {
-        let points = still.points(own * constant(part), epsilon::<T>().cbrt());
-        let course = (SVector::zeros(), SVector::zeros());
-        let at = |h: T, force: &[T; NV]| points.at(mechanism, structure, h, &course, force);
-        let along = |force: &[T; NV]| {
-            let both = at(-points.step, force)? + at(points.step, force)?;
-            Some(both / size(&both))
-        };
-        Some(along(&pushes[0])? + along(&pushes[1])? * constant::<T>(0.8))
-    })?;
-    Some(Way { heading, moves: false, ..*way })
+impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
+    fn points(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
+        Points { way: self, step, clear }
+    }
+
+    /// Another way along the branch, for states whose velocity leads out slowly beside that of other coordinates: into a
+    /// direction with all of them, which a little before and after is known well enough.
+    fn aside<M, const NU: usize, const NH: usize, const NC: usize>(
+        &self,
+        mechanism: &M,
+        structure: &Structure<NC>,
+    ) -> Option<Self>
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
+        let own = far::<T>() / size(&self.heading);
+        let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
+        let still = Way { v: SVector::zeros(), moves: false, ..*self };
+        let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
+            let points = still.points(own * constant(part), epsilon::<T>().cbrt());
+            let course = (SVector::zeros(), SVector::zeros());
+            let at = |h: T| points.at(mechanism, structure, h, &course);
+            Some((at(-points.step)?.free + at(points.step)?.free) * any)
+        })?;
+        let size = size(&heading);
+        (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
+    }
+
+    /// What is left of the way without the part along another.
+    fn across(&self, other: &Self) -> Self {
+        let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
+        Way { heading: self.heading - other.heading * part, ..*self }
+    }
+
+    /// Time and state `h` along the way, on the constraints: as near as can be in the coordinates themselves, since heavy
+    /// bodies would hold what is near in the metric of the kinetic energy where they are.
+    fn moved<M, const NU: usize, const NH: usize, const NC: usize>(
+        &self,
+        mechanism: &M,
+        structure: &Structure<NC>,
+        h: T,
+        (a, jerk): &Course<T, NV>,
+    ) -> Option<(T, SVector<T, NQ>, SVector<T, NV>)>
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
+        let (half, third) = (constant::<T>(0.5), constant::<T>(1.0 / 3.0));
+        let t = if self.moves { self.t + h } else { self.t };
+        let displacement = (self.heading + (a + jerk * (h * third)) * (h * half)) * h;
+        let later = self.v + (a + jerk * (h * half)) * h;
+        let mut q = mechanism.integrate(&self.q, &displacement);
+        let mut last = None;
+        for _ in 0..MOST_STEPS {
+            let residuals = mechanism.constraint_residuals(t, &q);
+            let gap = SVector::<T, NC>::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
+            let off = size(&gap);
+            let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), zone());
+            q = mechanism.integrate(&q, &room.least(&gap));
+            // What is left of the constraints decides: once more, although it is rounding.
+            if off <= rounding() || last.is_some_and(|last| off * constant(2.0) > last) {
+                break;
+            }
+            last = Some(off);
+        }
+        let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), zone());
+        let mut v = later;
+        for _ in 0..2 {
+            v += room.least(&mechanism.constraint_rates(t, &q, &v));
+        }
+        let left = size(&mechanism.constraint_residuals(t, &q)) <= epsilon::<T>().sqrt();
+        (left && v.iter().all(|v| v.is_finite())).then_some((t, q, v))
+    }
 }
 
 /// Points of a way, a `step` apart, with rows of more than the size `clear`.
@@ -104,85 +157,135 @@ struct Points<'a, T, const NQ: usize, const NV: usize> {
     clear: T,
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
-    fn points(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
-        Points { way: self, step, clear }
-    }
-}
-
 impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
-    /// The acceleration under a force, `h` along the way.
+    /// What is possible `h` along the way.
     fn at<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<NC>,
         h: T,
         course: &Course<T, NV>,
-        force: &[T; NV],
-    ) -> Option<SVector<T, NV>>
+    ) -> Option<Possible<T, NV>>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let (t, q, v) = moved(mechanism, self.way, h, course)?;
-        let system = System::under(mechanism, t, (&q, &v), *force);
-        let ((a, _), regular) = system.solve(structure, self.clear, Weak::Taken);
+        let (t, q, v) = self.way.moved(mechanism, structure, h, course)?;
+        let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
+        let bend = room.least(&mechanism.constraint_bias(t, &q, &v));
+        let possible = Possible { free: room.free(), bend };
+        (room.regular && possible.bend.iter().all(|a| a.is_finite())).then_some(possible)
+    }
+
+    /// The polynomial of degree five through six points of a way.
+    fn interpolated<M, const NU: usize, const NH: usize, const NC: usize>(
+        &self,
+        mechanism: &M,
+        structure: &Structure<NC>,
+    ) -> Option<Possible<T, NV>>
+    where
+        M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+    {
+        let (step, half) = (self.step, constant::<T>(0.5));
+        let at = |h: T, course: &Course<T, NV>| self.at(mechanism, structure, h, course);
+        let mut course = (SVector::zeros(), SVector::zeros());
+        // The way bends as little as the branch lets it.
+        for _ in 0..if self.way.moves { 2 } else { 0 } {
+            let (before, after) = (at(-step, &course)?.bend, at(step, &course)?.bend);
+            course = ((before + after) * half, (after - before) * (half / step));
+        }
+        let mut sum = Possible { free: SMatrix::zeros(), bend: SVector::zeros() };
+        for (k, weight) in [(1.0, 0.75), (2.0, -0.3), (3.0, 0.05)] {
+            for side in [-k, k] {
+                let possible = at(step * constant(side), &course)?;
+                sum.free += possible.free * constant::<T>(weight);
+                sum.bend += possible.bend * constant::<T>(weight);
+            }
+        }
+        Some(sum)
+    }
+}
+
+/// Rows of constraints in the metric of the coordinates.
+struct Room<T, const NV: usize, const NC: usize> {
+    span: Span<T, NV, NC>,
+    triangle: Triangle<T, NC>,
+    /// Whether the rank is the one that the constraints have elsewhere.
+    regular: bool,
+}
+
+impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
+    /// With rows of more than the size `clear`, or with all that there are.
+    fn of(structure: &Structure<NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
+        let mut span = Span::of(&Metric::of(&SMatrix::identity().data.0), jacobian, &structure.groups);
+        span.extend(clear, structure.rank);
+        let regular = span.rank >= structure.rank;
+        span.extend(rounding(), structure.rank);
+        let triangle = Triangle::of(&span);
+        Self { span, triangle, regular }
+    }
+
+    /// The least `x` with `J x = −gap`.
+    fn least(&self, gap: &SVector<T, NC>) -> SVector<T, NV> {
+        let known = self.triangle.particular(&self.span, &gap.data.0[0]);
+        let mut x = [T::zero(); NV];
+        x.iter_mut().zip(&known).take(self.span.rank).for_each(|(x, known)| *x = *known);
+        SVector::from(self.span.backward(x))
+    }
+
+    /// The projection `P` on what the rows leave free.
+    fn free(&self) -> SMatrix<T, NV, NV> {
+        let mut free = SMatrix::<T, NV, NV>::identity();
+        for column in &mut free.data.0 {
+            let mut x = self.span.forward(column);
+            x.iter_mut().take(self.span.rank).for_each(|x| *x = T::zero());
+            *column = self.span.backward(x);
+        }
+        free
+    }
+}
+
+/// Possible accelerations: `P y + c` for any `y`.
+struct Possible<T, const NV: usize> {
+    free: SMatrix<T, NV, NV>,
+    bend: SVector<T, NV>,
+}
+
+impl<T: Real, const NV: usize> Possible<T, NV> {
+    /// The one that masses and forces choose (Gauss): rows that span what is not possible are constraints like others.
+    fn acceleration<const NC: usize>(
+        &self,
+        structure: &Structure<NC>,
+        system: &System<T, NV, NC>,
+    ) -> Option<SVector<T, NV>> {
+        let mut rest = (SMatrix::identity() - self.free).data.0;
+        let (mut jacobian, mut bias) = (SMatrix::<T, NC, NV>::zeros(), [T::zero(); NC]);
+        for row in 0..NC {
+            if row >= structure.rank {
+                break;
+            }
+            let mut best = ([T::zero(); NV], T::zero());
+            for column in &rest {
+                let length = norm(column);
+                if length > best.1 {
+                    best = (*column, length);
+                }
+            }
+            let normal = best.0.map(|x| x / best.1);
+            rest.iter_mut().for_each(|column| {
+                for _ in 0..2 {
+                    let part = super::dot(&normal, column);
+                    column.iter_mut().zip(&normal).for_each(|(x, n)| *x -= part * *n);
+                }
+            });
+            jacobian.data.0.iter_mut().zip(&normal).for_each(|(column, n)| column[row] = *n);
+            bias[row] = -super::dot(&normal, &self.bend.data.0[0]);
+        }
+        let (mass, force) = system.loaded(structure);
+        let groups = core::array::from_fn(|k| k);
+        let open = Structure { groups, determining: &[], rank: structure.rank };
+        let system =
+            System { mass: SMatrix::from_array_storage(nalgebra::ArrayStorage(mass)), jacobian, force, bias };
+        let ((a, _), regular) = system.solve(&open, rounding(), Weak::Dropped);
         (regular && a.iter().all(|a| a.is_finite())).then_some(a)
     }
-}
-
-/// The polynomial of degree five through six points of a way.
-fn interpolated<
-    M,
-    T: Real,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NH: usize,
-    const NC: usize,
->(
-    mechanism: &M,
-    structure: &Structure<NC>,
-    points: &Points<'_, T, NQ, NV>,
-    force: &[T; NV],
-) -> Option<SVector<T, NV>>
-where
-    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
-{
-    let (step, half) = (points.step, constant::<T>(0.5));
-    let at =
-        |h: T, course: &Course<T, NV>, force: &[T; NV]| points.at(mechanism, structure, h, course, force);
-    let mut course = (SVector::zeros(), SVector::zeros());
-    // Free of forces, the way bends as little as the branch lets it.
-    for _ in 0..if points.way.moves { 2 } else { 0 } {
-        let none = [T::zero(); NV];
-        let (before, after) = (at(-step, &course, &none)?, at(step, &course, &none)?);
-        course = ((before + after) * half, (after - before) * (half / step));
-    }
-    let both =
-        |k: f64| Some(at(step * constant(-k), &course, force)? + at(step * constant(k), &course, force)?);
-    let [near, middle, beyond] = [both(1.0)?, both(2.0)?, both(3.0)?];
-    Some(near * constant::<T>(0.75) - middle * constant::<T>(0.3) + beyond * constant::<T>(0.05))
-}
-
-/// Time and state `h` along a way, on the constraints.
-fn moved<M, T: Real, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
-    mechanism: &M,
-    way: &Way<T, NQ, NV>,
-    h: T,
-    (a, jerk): &Course<T, NV>,
-) -> Option<(T, SVector<T, NQ>, SVector<T, NV>)>
-where
-    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
-{
-    let (half, third) = (constant::<T>(0.5), constant::<T>(1.0 / 3.0));
-    let t = if way.moves { way.t + h } else { way.t };
-    let displacement = (way.heading + (a + jerk * (h * third)) * (h * half)) * h;
-    let later = way.v + (a + jerk * (h * half)) * h;
-    let q = mechanism.project_configuration(t, &mechanism.integrate(&way.q, &displacement)).ok()?;
-    // What is left of the constraints decides here: once more, although it is rounding.
-    let residuals = mechanism.constraint_residuals(t, &q);
-    let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
-    let q = mechanism.integrate(&q, &mechanism.constraint_correction(t, &q, &gap));
-    let v = mechanism.project_velocity(t, &q, &later).ok()?;
-    Some((t, q, v))
 }

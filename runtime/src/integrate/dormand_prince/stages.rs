@@ -1,61 +1,17 @@
 //! The seven stages of one step, its error estimate and its interpolating polynomial.
 
 use crate::Real;
-use crate::integrate::{Dynamics, State, Step};
+use crate::integrate::adaptive::{Attempt, Trial};
+use crate::integrate::stages::{Rates, stage, sum};
+use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
-use nalgebra::SVector;
-
-/// `φ̇` and `v̇` at one stage.
-#[derive(Clone, Copy)]
-pub(super) struct Rates<T, const NV: usize> {
-    pub(super) displacement: SVector<T, NV>,
-    pub(super) velocity: SVector<T, NV>,
-}
-
-/// A step that the error estimate has still to accept.
-pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
-    pub(super) step: Step<T, NQ, NV>,
-    /// `φ` at the end.
-    pub(super) displacement: SVector<T, NV>,
-    /// Acceleration at the end.
-    pub(super) acceleration: SVector<T, NV>,
-    /// Difference of the results of order 5 and 4.
-    pub(super) error: Rates<T, NV>,
-}
-
-/// `h Σ weight · rates`.
-fn sum<T: Real, const NV: usize, const N: usize>(h: T, terms: [(f64, &Rates<T, NV>); N]) -> Rates<T, NV> {
-    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
-    for (weight, rates) in terms {
-        let weight = h * constant(weight);
-        total.displacement += rates.displacement * weight;
-        total.velocity += rates.velocity * weight;
-    }
-    total
-}
-
-/// The rates at time `t`, after the change `change` from `start`; the state there.
-fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
-    system: &mut D,
-    start: &State<T, NQ, NV>,
-    t: T,
-    change: &Rates<T, NV>,
-) -> (Rates<T, NV>, State<T, NQ, NV>) {
-    let v = start.v + change.velocity;
-    let q = system.integrate(&start.q, &change.displacement);
-    let displacement = system.tangent_rate(&change.displacement, &v);
-    let velocity = system.acceleration(t, &q, &v);
-    (Rates { displacement, velocity }, State { t, q, v })
-}
 
 /// One step of length `h` that ends at `t`. Hairer, Nørsett and Wanner, II, table 5.2 and (6.12).
 pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    start: &State<T, NQ, NV>,
-    acceleration: &SVector<T, NV>,
-    h: T,
-    t: T,
+    attempt: &Attempt<'_, T, NQ, NV>,
 ) -> Trial<T, NQ, NV> {
+    let Attempt { start, acceleration, scale, h, t } = *attempt;
     let after = |part: f64| start.t + h * constant(part);
     let k1 = &Rates { displacement: start.v, velocity: *acceleration };
     let change = sum(h, [(1.0 / 5.0, k1)]);
@@ -121,5 +77,6 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
         velocity: step.velocity.with_fourth(fourth.velocity),
         ..step
     };
-    Trial { step, displacement, acceleration: k7.velocity, error }
+    let error = scale.error(&step, &displacement, &error);
+    Trial { step, acceleration: Some(k7.velocity), error }
 }

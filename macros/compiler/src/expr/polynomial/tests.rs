@@ -43,6 +43,10 @@ pub fn expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g>
                 Atom::Call(f, p) => expression(graph, ring, p).call(*f),
                 Atom::Atan2(y, x) => expression(graph, ring, y).atan2(expression(graph, ring, x)),
                 Atom::Power(a, b) => expression(graph, ring, a).pow(expression(graph, ring, b)),
+                Atom::Table(_, lookup, x) => {
+                    let at = |k: usize| x.get(k).map_or(graph.zero(), |x| expression(graph, ring, x));
+                    graph.lookup(*lookup, [at(0), at(1), at(2)])
+                }
                 Atom::Extreme(f, a, b) => expression(graph, ring, a).extreme(*f, expression(graph, ring, b)),
             };
             product = (0..power).fold(product, |p, _| p * base);

@@ -5,6 +5,7 @@ use super::style::{Argument, Factor, Number, Style};
 use crate::expr::node::Symbol;
 
 /// LaTeX, with names for symbols and how many dots stand above them: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
+#[derive(Clone, Copy)]
 pub struct Latex<'a> {
     /// Name of a symbol, and its dots.
     pub name: &'a dyn Fn(Symbol) -> (Name, u8),

@@ -147,6 +147,7 @@ impl fmt::Display for Number {
 }
 
 /// Plain text, with names for symbols: `1/3 m l² cos(theta)`.
+#[derive(Clone, Copy)]
 pub struct Plain<'a> {
     /// Name of a symbol.
     pub name: &'a dyn Fn(Symbol) -> String,

@@ -2,7 +2,7 @@
 
 use super::{Imported, UrdfOptions, import_urdf};
 use crate::diag::Diagnostics;
-use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Inertias, Joint, Name};
+use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Inertias, Joint, LimitOption, Name};
 use proc_macro2::Span;
 
 mod files;
@@ -23,11 +23,12 @@ fn defaults() -> UrdfOptions {
         base: Base::Fixed,
         honour_passive: true,
         follow_mimic: true,
-        honour_limits: true,
+        limits: LimitOption::Honour,
         inertias: Inertias::Check,
         inputs: false,
         lock: Vec::new(),
         snap: None,
+        parameters: Vec::new(),
     }
 }
 

@@ -7,7 +7,9 @@ use super::robot::Robot;
 use super::tree::Order;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
-use crate::syntax::{Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, Name, ROOT_JOINT, UrdfOptions};
+use crate::syntax::{
+    Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, LimitOption, Name, ROOT_JOINT, UrdfOptions,
+};
 
 /// Puts the robot together. Bodies come in the order of the joints that carry them.
 pub(super) fn assemble(
@@ -24,17 +26,17 @@ pub(super) fn assemble(
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
-    let mut limits = Vec::new();
+    let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     for (joint, child) in &order.joints {
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
             Motion::Frozen(_) => None,
-            Motion::Own => joint.limits.of_joint(&joint.name, false),
-            Motion::Follows(_) => joint.limits.of_joint(&joint.name, true),
+            Motion::Own => joint.limits.of_joint(&joint.name, false, stops),
+            Motion::Follows(_) => joint.limits.of_joint(&joint.name, true, stops),
         }));
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints, limits, is_ground, snapped: robot.snapped }
+    Imported { bodies, joints, limits, fields: Vec::new(), is_ground, snapped: robot.snapped }
 }
 
 /// The joint that holds the root, which no URDF file names.

@@ -6,7 +6,7 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, children, name, number, numbers, place, required};
 use crate::import::imported::Placed;
-use crate::syntax::{Expr, JointKind, Mimic, Name, UrdfOptions};
+use crate::syntax::{Expr, JointKind, LimitOption, Mimic, Name, UrdfOptions};
 
 /// URDF's words for the joints, and `spherical`, which simulators take as well.
 const TYPES: [(&str, JointKind); 7] = [
@@ -84,7 +84,7 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     let [damping, friction] =
         read_dynamics(dynamics.filter(|_| moves && options.honour_passive), word, kind, cx);
     let mimic = mimic.filter(|_| moves && options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));
-    let limit = limit.filter(|_| has_coordinate(kind) && options.honour_limits);
+    let limit = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore);
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
     Some(FileJoint { name, kind, word, parent, child, origin, axis, mimic, limits, damping, friction })

@@ -63,7 +63,7 @@ fn bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option
 impl FileLimits {
     /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's motion, and not
     /// what drives it.
-    pub(super) fn of_joint(&self, joint: &Name, follows: bool) -> Option<Limit> {
+    pub(super) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
         let expression =
             |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));
         let limit = Limit {
@@ -73,6 +73,9 @@ impl FileLimits {
             to: expression(&self.upper),
             max_speed: expression(&self.velocity),
             max_effort: expression(&self.effort).filter(|_| !follows),
+            restitution: stops
+                .then(|| Expr::number(0.0, &joint.place))
+                .filter(|_| self.lower.is_some() || self.upper.is_some()),
         };
         let bounds = [&limit.from, &limit.to, &limit.max_speed, &limit.max_effort];
         bounds.iter().any(|bound| bound.is_some()).then_some(limit)

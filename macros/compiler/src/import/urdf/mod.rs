@@ -11,6 +11,7 @@ use crate::syntax::UrdfOptions;
 use robot::Robot;
 
 mod assemble;
+mod figures;
 mod joint;
 mod limit;
 mod link;
@@ -44,7 +45,9 @@ pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Op
     let (Some(order), Some(motions)) = (order, motions) else {
         return None;
     };
-    let imported = assemble::assemble(robot, &order, motions, options, cx);
+    let standing = standing::links(node, options).into_iter().map(ToString::to_string).collect::<Vec<_>>();
+    let mut imported = assemble::assemble(robot, &order, motions, options, cx);
+    figures::make_fields(&mut imported, &standing, options, cx);
     (!cx.failed()).then_some(imported)
 }
 

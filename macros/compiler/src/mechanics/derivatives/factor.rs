@@ -1,17 +1,21 @@
 //! The mass matrix factorised, `M = Lᵀ D L`, with the zeros of a tree kept (Featherstone 2008, ch. 6.5), for both an
-//! acceleration and the inverse.
+//! acceleration and the inverse. Where forces depend on accelerations the matrix is not symmetric, and it is `M = U D L` with
+//! triangles of both sides, eliminated in the same order: pivots stay away from zero as long as its symmetric part is positive
+//! definite (Golub and Van Loan, *Matrix Computations*, 2013, § 4.4).
 
 use super::super::crba::Matrix;
 use super::super::ldl::{elimination_order, inverses};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// `M = Lᵀ D L`, `L` with a unit diagonal.
+/// `M = Lᵀ D L`, or `U D L` of a matrix that is not symmetric; `L` and `U` with unit diagonals.
 pub struct Factor<'g> {
     /// Entries of `v` from the leaves to the root.
     order: Vec<usize>,
     /// By entry: the entries of its row of `L` that are not zero, without the diagonal.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
+    /// By entry: those of its column of `U`, if that is not the transpose of `L`.
+    columns: Option<Vec<Vec<(usize, Expr<'g>)>>>,
     /// Diagonal of `D⁻¹`.
     inverse: Vec<Expr<'g>>,
 }
@@ -19,7 +23,35 @@ pub struct Factor<'g> {
 impl<'g> Factor<'g> {
     /// Factorises.
     pub fn of(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
-        Factor::in_order(mass, &elimination_order(joints, mass.len()))
+        let order = elimination_order(joints, mass.len());
+        let n = mass.len();
+        match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
+            true => Factor::in_order(mass, &order),
+            false => Factor::unsymmetric(mass, &order),
+        }
+    }
+
+    /// Factorises a matrix that need not be symmetric.
+    fn unsymmetric(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+        let mut m = mass.clone();
+        let (mut rows, mut columns) = (vec![Vec::new(); m.len()], vec![Vec::new(); m.len()]);
+        let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
+        for (step, &k) in order.iter().enumerate() {
+            inverse[k] = inverse[k] / m[k][k];
+            let rest = &order[step + 1..];
+            let row: Vec<usize> = rest.iter().copied().filter(|&j| !m[k][j].is_zero()).collect();
+            let below: Vec<usize> = rest.iter().copied().filter(|&i| !m[i][k].is_zero()).collect();
+            for i in below {
+                let factor = m[i][k] * inverse[k];
+                for &j in &row {
+                    let taken = factor * m[k][j];
+                    m[i][j] -= taken;
+                }
+                columns[k].push((i, factor));
+            }
+            rows[k] = row.into_iter().map(|j| (j, m[k][j] * inverse[k])).collect();
+        }
+        Factor { order: order.to_vec(), rows, columns: Some(columns), inverse }
     }
 
     /// Factorises the block of some entries of `v`, from the leaves to the root.
@@ -45,26 +77,61 @@ impl<'g> Factor<'g> {
                 rows[k].push((i, factor));
             }
         }
-        Factor { order: order.to_vec(), rows, inverse }
+        Factor { order: order.to_vec(), rows, columns: None, inverse }
     }
 
     /// `M⁻¹ r`.
-    pub fn solve(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    pub fn solve(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.complete(self.reduced(r))
+    }
+
+    /// `L⁻ᵀ r`, or `U⁻¹ r`.
+    fn reduced(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        let columns = self.columns.as_ref().unwrap_or(&self.rows);
         for &k in &self.order {
-            for (i, factor) in &self.rows[k] {
+            for (i, factor) in &columns[k] {
                 r[*i] = r[*i] - *factor * r[k];
             }
         }
+        r
+    }
+
+    /// `L⁻¹ D⁻¹ r`.
+    fn complete(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         for &k in self.order.iter().rev() {
             r[k] = self.rows[k].iter().fold(r[k] * self.inverse[k], |x, (i, factor)| x - *factor * r[*i]);
         }
         r
     }
 
+    /// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`.
+    pub fn responses(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let Some(zero) = self.inverse.first().map(|d| d.zero()) else { return Vec::new() };
+        let reduced: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| self.reduced(row.clone())).collect();
+        let mut out: Vec<Expr<'g>> = reduced.iter().flat_map(|row| self.complete(row.clone())).collect();
+        let weighted: Vec<Vec<Expr<'g>>> =
+            reduced.iter().map(|row| row.iter().zip(&self.inverse).map(|(r, d)| *r * *d).collect()).collect();
+        for i in 0..rows.len() {
+            out.extend((0..rows.len()).map(|j| {
+                // The lower triangle, twice.
+                let (low, high) = (i.min(j), i.max(j));
+                let products = reduced[high].iter().zip(&weighted[low]).map(|(a, b)| *a * *b);
+                products.fold(zero, |a, b| a + b)
+            }));
+        }
+        out
+    }
+
     /// The inverse, zero outside the block, from the root to the leaves: a unit force on an entry reaches only those
     /// above it, so for all others the substitution starts from zero, and symmetry gives the rest.
     pub fn inverse(&self) -> Matrix<'g> {
         let n = self.rows.len();
+        if self.columns.is_some() {
+            let unit =
+                |c: usize| (0..n).map(|k| self.inverse[k].num(if k == c { 1.0 } else { 0.0 })).collect();
+            let columns: Matrix<'g> = (0..n).map(|c| self.solve(unit(c))).collect();
+            return (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+        }
         let mut out: Matrix<'g> = self.inverse.iter().map(|d| vec![d.zero(); n]).collect();
         for (step, &k) in self.order.iter().enumerate().rev() {
             for &c in self.order[step..].iter().rev() {

@@ -1,7 +1,7 @@
 //! Derivatives of the equations of motion by the parameters of the mechanism, by differentiation.
 
 use super::super::crba::Matrix;
-use super::super::{accelerations, crba, rnea, velocities};
+use super::super::{accelerations, added_mass, crba, forces, rnea, velocities};
 use super::Factor;
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
@@ -12,15 +12,23 @@ use crate::mechanism::{Model, Quantity};
 /// `∂τ/∂p` of inverse dynamics, by columns: one for each parameter.
 pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     let a = accelerations(model);
-    let tau = rnea::inverse_dynamics(model, joints, &velocities(model), Some(&a));
+    columns(model, &rnea::inverse_dynamics(model, joints, &velocities(model), Some(&a)))
+}
+
+/// `∂τ/∂p` of the inputs' forces, by columns.
+pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
+    columns(model, &forces::generalized_forces(model, joints))
+}
+
+fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
     let by = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let column = |mut d: Derivative<'g>| tau.iter().map(|e| d.of(*e)).collect();
+    let column = |mut d: Derivative<'g>| values.iter().map(|e| d.of(*e)).collect();
     (0..model.parameters.len()).map(|k| column(by(k))).collect()
 }
 
 /// `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`, by columns.
 pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>]) -> Matrix<'g> {
-    let factor = Factor::of(&crba::mass_matrix(model, joints), joints);
+    let factor = Factor::of(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let a = factor.solve(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
     let by = |s| match Quantity::of(s) {

@@ -70,7 +70,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 fn check(model: &Model<'_>) {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
-    let e = derive(model, &joints, &mass).expect("small");
+    let e = derive(model, &joints, &mass, &Limits::READABLE).expect("small");
     let (v, a) = (velocities(model), accelerations(model));
     let mut outputs = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     outputs.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
@@ -274,4 +274,112 @@ L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 ";
     let text = equations_of("-g * z", BALL);
     assert!(text.ends_with(expected), "{text}");
+}
+
+/// Hamilton's form against velocities, energies and rates of the recursive algorithms.
+fn check_canonical(model: &Model<'_>) -> String {
+    let joints = crate::kinematics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let c = canonical(model, &joints, &mass).expect("small");
+    let v = velocities(model);
+    let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &v);
+    let kinetic = energy::kinetic_energy(model, &joints, &v);
+    let power = momenta.iter().zip(&v).fold(model.graph.zero(), |sum, (p, v)| sum + *p * *v);
+    let mut expected = vec![power - kinetic + energy::potential_energy(model, &joints)];
+    expected.extend(&v);
+    let rate = crate::mechanics::momentum::momentum_rate(model, &joints, &v);
+    let inputs = forces::generalized_forces(model, &joints);
+    expected.extend(rate.into_iter().zip(inputs).map(|(rate, input)| rate + input));
+    for seed in 1..10 {
+        let symbol = state(model, seed);
+        let p = eval(&momenta, &symbol);
+        // In those themselves no other stands; the ring evaluates its atoms all the same.
+        let one = |s: Symbol| match Quantity::of(s) {
+            Quantity::Given(_) | Quantity::Prepared(_) => 1.0,
+            _ => symbol(s),
+        };
+        let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
+        let at = |s: Symbol| match Quantity::of(s) {
+            Quantity::Given(k) => p[k],
+            Quantity::Prepared(k) => determinants[k],
+            Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
+            _ => symbol(s),
+        };
+        let all = [&c.hamiltonian].into_iter().chain(&c.velocity).chain(&c.momentum_rate);
+        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &at)).collect();
+        assert_near(&found, &eval(&expected, &symbol), &model.name);
+    }
+    let written = written_canonical(model, &c);
+    assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+    written.plain
+}
+
+#[test]
+fn hamiltons_form_is_that_of_the_functions() {
+    let text = with_model("-9.81 * y", CART_POLE, |model| check_canonical(&model));
+    for line in [
+        "rail' = 1/3 pole_mass pole_length² p_rail/D + 1/2 pole_mass pole_length p_hinge cos(hinge)/D\n",
+        "hinge' = p_hinge (cart_mass + pole_mass)/D + 1/2 pole_mass pole_length p_rail cos(hinge)/D\n",
+        "D = 1/3 pole_mass pole_length² (cart_mass + pole_mass) - 1/4 pole_mass² pole_length² cos²(hinge)\n",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+    for item in [DOUBLE_PENDULUM, GYROSCOPE, SPHERICAL, BALL, FREE, TRIPLE, ARM] {
+        with_model("-g * z", item, |model| check_canonical(&model));
+        with_model("-g * y", item, |model| check_canonical(&model));
+    }
+    // Euler's equations, in momenta.
+    let text = with_model("-g * z", FREE, |model| check_canonical(&model));
+    assert!(text.contains("p_pose.wx' = p_pose.wy p_pose.wz (1/c - 1/b)\n"), "{text}");
+    let text = with_model("-g * z", BALL, |model| check_canonical(&model));
+    assert!(text.contains("p_tip.wz' = 0\n") && !text.contains("D is"), "{text}");
+}
+
+#[test]
+fn forms_that_there_are_not_are_refused() {
+    let said = |words: &str, item: &str| {
+        let arguments = format!("gravity = -g * z, equations = {words}").parse().unwrap();
+        crate::check(arguments, item.parse().unwrap(), Path::new(""))
+    };
+    assert_eq!(said("lagrange", SPHERE), [""; 0]);
+    assert_eq!(said("structure", SPHERE), [""; 0]);
+    assert_eq!(said("hamilton", FREE), [""; 0]);
+    let rows = [
+        ("hamilton", SPHERE.to_string(), "printed for mechanisms without constraints"),
+        ("lagrange", masses(100), "have thousands of terms"),
+        ("newton", SPHERE.to_string(), "unknown choice `newton` for `equations`"),
+    ];
+    for (words, item, expected) in rows {
+        let messages = said(words, &item);
+        assert!(messages.len() == 1 && messages[0].contains(expected), "{words}: {messages:?}");
+        assert!(messages[0].contains("help"), "{messages:?}");
+    }
+}
+
+/// What is too long to be read is written for those who ask, and is as right.
+#[test]
+fn long_equations_are_written_on_request() {
+    let arm = "pub struct Arm { g: f64, m: f64,
+        #[body(mass = m, com = 0.5 * x, inertia = rod(m, 1, x))] a: Body,
+        #[body(mass = m, com = 0.4 * x, inertia = rod(m, 0.8, x))] b: Body,
+        #[body(mass = m, com = 0.3 * x, inertia = cuboid(m, 0.6, 0.1, 0.2))] c: Body,
+        #[joint(ground -> a, about = z)] one: Pin,
+        #[joint(a.at(x) -> b, about = y)] two: Pin,
+        #[body(mass = m, com = 0.1 * z, inertia = cuboid(m, 0.2, 0.1, 0.3))] d: Body,
+        #[joint(b.at(0.8 * x) -> c, about = z)] three: Pin,
+        #[joint(c.at(0.6 * x) -> d, about = x)] four: Pin }";
+    with_model("-g * z", arm, |model| {
+        let joints = crate::kinematics::joints(&model);
+        let mass = crba::mass_matrix(&model, &joints);
+        assert!(derive(&model, &joints, &mass, &Limits::READABLE).is_none());
+        let e = derive(&model, &joints, &mass, &Limits::ASKED).expect("not too long for that");
+        let (v, a) = (velocities(&model), accelerations(&model));
+        let forces = rnea::inverse_dynamics(&model, &joints, &v, Some(&a));
+        for seed in 1..10 {
+            let symbol = state(&model, seed);
+            let found: Vec<f64> = e.motion.iter().map(|p| e.ring.evaluate(p, &symbol)).collect();
+            assert_near(&found, &eval(&forces, &symbol), "on request");
+        }
+        assert!(written(&model, &e).plain.contains("0.00916667 m four'²"));
+    });
 }

@@ -1,6 +1,6 @@
 //! Equations of motion as text, plain and typeset, in the user's own names.
 
-use super::Equations;
+use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
 use crate::expr::Symbol;
 use crate::expr::print::names::Names;
@@ -52,6 +52,70 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     legend(model, rates).iter().fold(out, |out, sentence| out + &filled(sentence) + "\n")
 }
 
+/// The canonical equations in all ways of writing.
+pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
+    let rates = rates(model);
+    let momentum = |k: usize| format!("p_{}", model.velocities[k].0);
+    let momenta: Vec<String> = (0..model.nv()).map(momentum).collect();
+    let determinants = determinants(model, canonical.determinants.len());
+    let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
+    // Accelerations do not occur: their symbols stand for the rates of the momenta.
+    let name = |symbol| match Quantity::of(symbol) {
+        Quantity::Given(k) => (momenta[k].clone(), 0),
+        Quantity::Acceleration(k) => (momenta[k].clone(), 1),
+        Quantity::Prepared(k) => (determinants[k].clone(), 0),
+        _ => name(model, &rates, symbol),
+    };
+    let marked = |symbol| {
+        let (name, dots) = name(symbol);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let dotted = |symbol| {
+        let (name, dots) = name(symbol);
+        (all.get(&name), dots)
+    };
+    let lines = canonical_lines(canonical, Plain { name: &marked });
+    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain = line(&format!("H = {}", lines[0])) + "\n";
+    plain.extend(lines[1..].iter().map(line));
+    let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, and a prime marks a rate.".to_string();
+    match determinants.as_slice() {
+        [] => {}
+        [one] => about += &format!(" {one} is an inertia, of coupled coordinates its determinant."),
+        all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
+    }
+    plain = plain + "\n" + &filled(&about) + "\n";
+    let lines = canonical_lines(canonical, Latex { name: &dotted });
+    let lines: Vec<String> = lines.iter().map(|line| format!("& {line}")).collect();
+    let latex = format!(
+        "\\begin{{aligned}}\n& \\mathcal{{H}} = {}\n\\end{{aligned}}\n",
+        lines.join(" \\\\\n").split_off(2)
+    );
+    Written { plain, latex }
+}
+
+/// Names of determinants that nothing else has.
+fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
+    let mut letter = "D".to_string();
+    while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&letter)) {
+        letter.push('D');
+    }
+    if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
+}
+
+/// The Hamiltonian; then equations for the rates of coordinates and of momenta.
+fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
+    let writer = Writer::styled(&canonical.ring, style);
+    let mut lines = vec![writer.polynomial(&canonical.hamiltonian)];
+    let velocities = (0..).map(Quantity::Velocity).zip(&canonical.velocity);
+    let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);
+    let determinants = (0..).map(determinant).zip(&canonical.determinants);
+    for (left, right) in velocities.chain(momenta).chain(determinants) {
+        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.polynomial(right)));
+    }
+    lines
+}
+
 /// Words in lines that a page has room for.
 fn filled(text: &str) -> String {
     let (mut out, mut room) = (String::new(), 0);
@@ -90,11 +154,16 @@ fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
 
 /// All names, so that no two look alike.
 fn names(model: &Model<'_>) -> Names {
+    names_with(model, &[])
+}
+
+/// The same with others.
+fn names_with(model: &Model<'_>, others: &[String]) -> Names {
     let velocities = model.velocities.iter().map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
     let multipliers: Vec<String> = (1..=model.constraints.len()).map(|k| format!("lambda{k}")).collect();
     let names = model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
-    Names::new(names.chain(&multipliers).map(String::as_str))
+    Names::new(names.chain(&multipliers).chain(others).map(String::as_str))
 }
 
 /// By velocity, whether it is the rate of a coordinate that has its name.

@@ -11,7 +11,7 @@ use super::surface::Form;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular;
-use crate::mechanism::Measure;
+use crate::mechanism::{Measure, Rule};
 use crate::resolve::builder::Builder;
 use crate::syntax;
 
@@ -39,6 +39,8 @@ impl<'g> Builder<'_, 'g> {
                 .help("give the funnel a larger half angle than the cone");
             return;
         }
+        let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
+        self.scope.require(Rule::Positive, room, &[sine]);
         let (a, b) = (self.of_first(pair, axis), self.of_second(pair, axis_b));
         // Rows of the apex: three places, or one place and two velocities.
         let apex = match pair.b.form {

@@ -72,7 +72,7 @@ impl<'g> Builder<'_, 'g> {
         let across = u.cross(w);
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
-        let point = -farthest(&pair.a.form, normal, &|v| self.of_first(pair, v).value)?;
+        let point = -farthest(&pair.a.form, normal, 0.0, &|v| self.of_first(pair, v).value)?;
         let apart = pair.center.value - pair.base.value + point - of_surface(sheet.at);
         Some(Contact {
             gap: normal.dot(apart),

@@ -5,8 +5,11 @@
 
 mod cones;
 mod contact_point;
+mod force;
 mod slipping;
 mod surface;
+pub use force::stands_alone;
+mod unilateral;
 
 pub use slipping::check_pressed;
 pub use surface::FORMS;
@@ -115,18 +118,30 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let b = self.surface(second, &example, cx);
-        let (mut a, mut b) = (a?, b?);
+        let pair = self.two(a?, b?, Form::rolls_on, second, cx)?;
+        if !pair.a.form.rolls_on(&pair.b.form) {
+            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            return None;
+        }
+        Some(pair)
+    }
+
+    /// Two surfaces with their motions, in the order that is known.
+    fn two(
+        &self,
+        mut a: Surface<'g>,
+        mut b: Surface<'g>,
+        is_known: fn(&Form<'g>, &Form<'g>) -> bool,
+        second: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Pair<'g>> {
         if a.home.link == b.home.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
                 .help("surfaces touch that belong to bodies which move relative to each other");
             return None;
         }
-        if !a.form.rolls_on(&b.form) {
+        if !is_known(&a.form, &b.form) {
             std::mem::swap(&mut a, &mut b);
-        }
-        if !a.form.rolls_on(&b.form) {
-            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
-            return None;
         }
         let (on_a, on_b) = (self.relative(a.home.link, b.home.link), self.relative(b.home.link, a.home.link));
         let center = self.point(&on_a, a.home.pose.translation);
@@ -167,7 +182,7 @@ impl<'g> Builder<'_, 'g> {
             (a, Form::Plane(n)) => {
                 let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
                 let normal = turned_b(*n);
-                let point = -farthest(a, normal, &turned_a)?;
+                let point = -farthest(a, normal, 0.0, &turned_a)?;
                 let gap = normal.dot(c + point);
                 Some(Contact {
                     gap,
@@ -182,9 +197,9 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-impl Form<'_> {
+impl<'g> Form<'g> {
     /// True for pairs whose contact is known.
-    fn rolls_on(&self, b: &Form<'_>) -> bool {
+    fn rolls_on(&self, b: &Form<'g>) -> bool {
         match b {
             Form::Plane(_) => {
                 matches!(
@@ -251,11 +266,19 @@ fn sphere_contact<'g>(
 }
 
 /// The point of a convex body that is farthest along `n`, from its centre.
-fn farthest<'g>(form: &Form<'g>, n: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> Option<Vec3<'g>> {
+///
+/// Of a rim in the plane across `n` all are; with `least`, the least square of the sine of the angle between axis and `n`,
+/// its centre stands for them.
+fn farthest<'g>(
+    form: &Form<'g>,
+    n: Vec3<'g>,
+    least: f64,
+    turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> Option<Vec3<'g>> {
     let across = |axis: Vec3<'g>| {
         let a = turned(axis);
         let cosine = a.dot(n);
-        let sine = (cosine.num(1.0) - cosine.square()).sqrt();
+        let sine = (cosine.num(1.0 + least) - cosine.square()).sqrt();
         (n - a * cosine).map(|x| x / sine)
     };
     Some(match form {

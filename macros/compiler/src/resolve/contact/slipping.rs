@@ -4,7 +4,7 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
-use crate::mechanism::{Constraint, FrictionTerm, Pose};
+use crate::mechanism::{Constraint, FrictionTerm, Pose, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
@@ -45,6 +45,8 @@ impl<'g> Builder<'_, 'g> {
             let place = given.coefficient.place.clone();
             cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"));
         }
+        let name = &constraint.name.text;
+        self.scope.require(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
         let Some(written) = &given.speed else { return Some((coefficient, self.model.friction_speed)) };
         let speed =
             self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(written, cx))?;
@@ -53,6 +55,7 @@ impl<'g> Builder<'_, 'g> {
                 "around it Coulomb's law is smooth; the smaller it is, the stiffer is the motion at rest",
             );
         }
+        self.scope.require(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
         Some((coefficient, speed))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
+use crate::mechanism::Rule;
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context, Placed};
 use crate::syntax::{self, ExprKind, GROUND};
@@ -31,6 +32,12 @@ pub enum Form<'g> {
     Funnel(Expr<'g>, Vec3<'g>),
     /// A surface given by its points.
     Sheet(Sheet<'g>),
+    /// A point, which can only be in contact.
+    Point,
+    /// A box: its lengths along the body's axes.
+    Cuboid([Expr<'g>; 3]),
+    /// A cylinder between two halves of a sphere: radius, distance of their centres, axis.
+    Capsule(Expr<'g>, Expr<'g>, Vec3<'g>),
 }
 
 /// Points of a surface as expressions of two coordinates, in body axes from its place.
@@ -50,7 +57,7 @@ pub struct Surface<'g> {
 }
 
 /// The surfaces with their arguments.
-pub const FORMS: [(&str, &[&str]); 11] = [
+pub const FORMS: [(&str, &[&str]); 13] = [
     ("circle", &["radius", "axis"]),
     ("torus", &["radius", "tube_radius", "axis"]),
     ("sphere", &["radius"]),
@@ -62,6 +69,8 @@ pub const FORMS: [(&str, &[&str]); 11] = [
     ("cone", &["half_angle", "axis"]),
     ("funnel", &["half_angle", "axis"]),
     ("surface", &["u", "w", "point"]),
+    ("cuboid", &["a", "b", "c"]),
+    ("capsule", &["radius", "length", "axis"]),
 ];
 
 impl<'g> Builder<'_, 'g> {
@@ -108,7 +117,12 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => {
                     let value = self.scope.in_context(context, |s| s.scalar(argument, cx))?;
-                    check_size(name, argument, value, cx);
+                    if !check_size(name, argument, value, cx) {
+                        return None;
+                    }
+                    let rule = if *name == "half_angle" { Rule::HalfAngle } else { Rule::Positive };
+                    let figure = || format!("the {} of a {}", name.replace('_', " "), word.text);
+                    self.scope.require(rule, figure, &[value]);
                     numbers.push(value);
                 }
             }
@@ -124,6 +138,8 @@ impl<'g> Builder<'_, 'g> {
             ("tube", [r], Some(n)) => Form::Tube(*r, n),
             ("cone", [angle], Some(n)) => Form::Cone(*angle, n),
             ("funnel", [angle], Some(n)) => Form::Funnel(*angle, n),
+            ("cuboid", [a, b, c], _) => Form::Cuboid([*a, *b, *c]),
+            ("capsule", [r, length], Some(n)) => Form::Capsule(*r, *length, n),
             _ => return None,
         };
         Some(Surface { home: home?, form })
@@ -131,15 +147,18 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Reports a length that is not positive, and a half angle that is not between zero and a right one.
-fn check_size(name: &str, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) {
-    let Some(n) = value.value() else { return };
+fn check_size(name: &str, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
+    let Some(n) = value.value() else { return true };
     if name == "half_angle" {
         if n <= 0.0 || n >= FRAC_PI_2 {
             cx.error(e.place.clone(), format!("this half angle is not between 0 and π/2: it is {n}"))
                 .help("it is the angle between the axis and the surface, rad");
+            return false;
         }
     } else if n <= 0.0 {
         cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"))
             .help("the axis and the side of a surface are said by its form");
+        return false;
     }
+    true
 }

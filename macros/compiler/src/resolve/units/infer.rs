@@ -69,6 +69,8 @@ pub struct Inference<'a> {
     pub system: System,
     /// Names of parameters, coordinates, inputs and definitions. The first unknowns are those of the parameters.
     pub names: BTreeMap<String, Meaning>,
+    /// Tables by name: the unknowns of their variables, then of their values.
+    pub tables: BTreeMap<String, Vec<Variable>>,
     /// Names of the place at hand, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
     /// By unknown: what made it known.
@@ -91,6 +93,7 @@ impl<'a> Inference<'a> {
         let mut new = Inference {
             system: System::default(),
             names: BTreeMap::new(),
+            tables: BTreeMap::new(),
             locals: Vec::new(),
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
@@ -101,6 +104,10 @@ impl<'a> Inference<'a> {
         };
         for parameter in &description.parameters {
             new.name_unknown(&parameter.text, true);
+        }
+        for table in &description.tables {
+            let unknown = (0..=table.variables).map(|_| new.system.variable()).collect();
+            new.tables.insert(table.name.text.clone(), unknown);
         }
         new
     }

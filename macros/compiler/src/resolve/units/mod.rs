@@ -14,6 +14,7 @@ mod walk;
 
 use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Constraint, Coordinate, Measure, Model, Units};
+use crate::syntax::state::RATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind};
 use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
@@ -46,6 +47,13 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
         let (dimension, locals) = (Dimension::variable(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
+    // A state's rate is the state per second.
+    for (name, parameter) in &d.states {
+        let rate = format!("{}{RATE}", name.text);
+        let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
+        let Some(dimension) = Dimension::variable(*parameter).over(&si::TIME) else { continue };
+        places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
+    }
     let sides = std::mem::take(&mut places.sides);
     solve(places, &mut inference);
     if inference.gave_up {
@@ -57,6 +65,14 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     for (k, pinned) in pinned.into_iter().enumerate() {
         units.parameters.push(pinned.unwrap_or_else(|| shown(&mut inference, &Dimension::variable(k), k)));
     }
+    for table in &d.tables {
+        let unknown = inference.tables.get(&table.name.text).cloned().unwrap_or_default();
+        let each = unknown.iter().map(|v| shown(&mut inference, &Dimension::variable(*v), *v));
+        units.tables.push(each.collect());
+    }
+    // Figures of a file stand where they do: nothing else could follow from their use.
+    let of_file = units.parameters.iter_mut().rev().zip(d.file_units.iter().rev());
+    of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
         let unit = shown(&mut inference, &Dimension::variable(v), v);
         let energy = !output.vector && unit == "N·m";

@@ -78,6 +78,11 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     for constraint in &d.constraints {
         places.constraint(constraint, inference);
     }
+    for contact in &d.contacts {
+        places.surface(&contact.first);
+        places.surface(&contact.second);
+        places.all(contact.friction.iter().chain(&contact.restitution), &PLAIN, "1");
+    }
     for (_, e) in &d.energies {
         places.add(e, &ENERGY, "J");
     }
@@ -221,6 +226,7 @@ impl<'a> Places<'a> {
         self.all(limit.from.iter().chain(&limit.to), &q, length);
         self.maybe(&limit.max_speed, q.over(&TIME), speed);
         self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
+        self.all(&limit.restitution, &PLAIN, "1");
     }
 
     fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {
@@ -277,17 +283,26 @@ impl<'a> Places<'a> {
             self.all(&friction.speed, &SPEED, "m/s");
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
-        for surface in pair {
-            let ExprKind::Method(home, word, arguments) = &surface.kind else { continue };
-            self.points.push(home);
-            let Some((_, names)) = FORMS.iter().find(|(name, _)| *name == word.text) else { continue };
-            for (argument, name) in arguments.iter().zip(*names) {
-                match *name {
-                    "axis" | "normal" => self.add(argument, &PLAIN, "1"),
-                    "half_angle" => self.add(argument, &PLAIN, "rad"),
-                    "u" | "w" => {}
-                    _ => self.add(argument, &LENGTH, "m"),
-                }
+        pair.iter().for_each(|surface| self.surface(surface));
+    }
+
+    /// A surface of a body, or a point.
+    fn surface(&mut self, surface: &'a Expr) {
+        let ExprKind::Method(home, word, arguments) = &surface.kind else {
+            self.points.push(surface);
+            return;
+        };
+        let Some((_, names)) = FORMS.iter().find(|(name, _)| *name == word.text) else {
+            self.points.push(surface);
+            return;
+        };
+        self.points.push(home);
+        for (argument, name) in arguments.iter().zip(*names) {
+            match *name {
+                "axis" | "normal" => self.add(argument, &PLAIN, "1"),
+                "half_angle" => self.add(argument, &PLAIN, "rad"),
+                "u" | "w" => {}
+                _ => self.add(argument, &LENGTH, "m"),
             }
         }
     }

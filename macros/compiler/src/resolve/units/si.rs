@@ -26,8 +26,16 @@ pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
 pub const INERTIA: Dimension = Dimension::new(2, 1, 0);
 /// Force, N.
 pub const FORCE: Dimension = Dimension::new(1, 1, -2);
+/// Density, kg/m³.
+pub const DENSITY: Dimension = Dimension::new(-3, 1, 0);
+/// Pressure, Pa.
+pub const PRESSURE: Dimension = Dimension::new(-1, 1, -2);
 /// Energy, J, and torque, N·m.
 pub const ENERGY: Dimension = Dimension::new(2, 1, -2);
+/// Momentum, kg·m/s.
+pub const MOMENTUM: Dimension = Dimension::new(1, 1, -1);
+/// Angular momentum, kg·m²/s.
+pub const ANGULAR_MOMENTUM: Dimension = Dimension::new(2, 1, -1);
 /// Power, W.
 pub const POWER: Dimension = Dimension::new(2, 1, -3);
 /// Strength of an attraction by the square of the distance, N·m².

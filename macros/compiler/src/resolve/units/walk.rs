@@ -2,8 +2,11 @@
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::ratio::Ratio;
-use super::si::{ACCELERATION, ENERGY, FORCE, LENGTH, PLAIN, RATE, RATE_OF_RATE, SPEED, TIME};
-use super::unify::Dimension;
+use super::si::{
+    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, LENGTH, MOMENTUM, PLAIN, PRESSURE, RATE,
+    RATE_OF_RATE, SPEED, TIME,
+};
+use super::unify::{Dimension, Variable};
 use super::value::{Value, product};
 use crate::expr::Function;
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
@@ -145,6 +148,9 @@ impl<'a> Inference<'a> {
 
     fn call(&mut self, function: &'a Name, arguments: &'a [Expr]) -> Value {
         let text = function.text.as_str();
+        if let Some(unknown) = self.tables.get(text).cloned() {
+            return self.lookup(&unknown, arguments);
+        }
         match (text, arguments) {
             ("abs", [a]) => self.value(a),
             ("signum", [a]) => {
@@ -189,11 +195,45 @@ impl<'a> Inference<'a> {
                 other => other,
             },
             ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
-            ("reaction_force", _) => Value::quantity(FORCE),
+            ("momentum" | "angular_momentum" | "kinetic_energy", [a]) => {
+                self.slash("r", a);
+                Value::quantity(match text {
+                    "momentum" => MOMENTUM,
+                    "angular_momentum" => ANGULAR_MOMENTUM,
+                    _ => ENERGY,
+                })
+            }
+            ("reaction_force" | "contact_force", _) => Value::quantity(FORCE),
             ("reaction_torque", _) => Value::quantity(ENERGY),
+            ("density" | "pressure" | "temperature" | "speed_of_sound", [height]) => {
+                self.expect(height, &LENGTH, "m", Reason::Argument);
+                match text {
+                    "density" => Value::quantity(DENSITY),
+                    "pressure" => Value::quantity(PRESSURE),
+                    "speed_of_sound" => Value::quantity(SPEED),
+                    // There are no temperatures among the units.
+                    _ => Value::Unknown,
+                }
+            }
+            (
+                "angle_of_attack" | "sideslip" | "heading" | "elevation" | "bank" | "course" | "flight_path",
+                _,
+            ) => {
+                arguments.iter().filter(|a| a.name().is_none()).for_each(|a| drop(self.value(a)));
+                Value::quantity(PLAIN)
+            }
             (_, [a]) => self.elementary(text, a),
             _ => Value::Unknown,
         }
+    }
+
+    /// The value of a table, whose variables have the units of their axes wherever it is called.
+    fn lookup(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
+        let Some((value, variables)) = unknown.split_last() else { return Value::Unknown };
+        for (argument, variable) in arguments.iter().zip(variables) {
+            self.expect(argument, &Dimension::variable(*variable), "", Reason::Argument);
+        }
+        Value::Quantity { dimension: Dimension::variable(*value), named: true }
     }
 
     /// A function of a plain number.

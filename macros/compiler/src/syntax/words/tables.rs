@@ -6,7 +6,7 @@ pub type Words = &'static [(&'static str, &'static str)];
 
 const ONE_SIDED: &str =
     "what only pulls is a `Spring` given by its energy: `energy = k / 2 * pow(max(stretch, 0), 2)`";
-const END_STOP: &str = "an end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`; a bound that only controllers read is a `Limit`";
+const END_STOP: &str = "a rigid end stop is a `Limit` with `restitution`: `#[limit(on = joint, from = a, to = b, restitution = 0)]`; a soft one is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
 const LIMITED: &str = "a limit is a field of its own: `#[limit(on = NAME, from = a, to = b)] range: Limit`";
 const RATIO: &str =
     "a ratio of two coordinates is a constraint: `#[constraint(second + ratio * first = 0)] gear: Holonomic`";
@@ -15,7 +15,7 @@ const SHAPE: &str =
     "shapes are not drawn: a body has a mass and an inertia, as in `inertia = cuboid(m, a, b, c)`";
 const GROUND: &str = "`ground` is there already: a joint from it holds a body, as in `ground -> body`";
 const SEEN: &str = "what is computed for you is a `Scalar` or `Vector` with `#[output(…)]`";
-const TOUCH: &str = "surfaces that stay in touch are `Rolling` or `Slipping`";
+const TOUCH: &str = "surfaces that may part are a `Contact`: `#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`; those that stay in touch are `Rolling` or `Slipping`";
 const TIME: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
 const CONSTRAINT: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
@@ -236,6 +236,17 @@ pub const TORQUE: Words = &[
     ("max min limit limits saturation", SATURATION),
 ];
 
+/// Arguments of a contact.
+pub const CONTACT: Words = &[
+    ("mu muk mus coefficient frictioncoefficient coulomb", "friction"),
+    ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),
+    (
+        "stiffness damping k c compliance",
+        "a contact is rigid; one that yields is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch, 0), 2)`",
+    ),
+    ("on between surfaces bodies", "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`"),
+];
+
 /// Arguments of a limit.
 pub const LIMIT: Words = &[
     (ON, "on"),
@@ -244,8 +255,8 @@ pub const LIMIT: Words = &[
     ("velocity speed rate maxvelocity vmax maxrate", "max_speed"),
     ("effort force torque maxforce maxtorque fmax taumax", "max_effort"),
     (
-        "restitution stiffness damping",
-        "a limit exerts no force; an end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`",
+        "stiffness damping",
+        "a soft end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`",
     ),
 ];
 
@@ -275,6 +286,7 @@ pub const OPTIONS: Words = &[
     ("actuators motors", "inputs"),
     ("locked frozen", "lock"),
     ("constraints algorithm", "formulation"),
+    ("print printed latex", "equations"),
     ("trustinertia", "did you mean `inertia = trust`?"),
 ];
 
@@ -287,6 +299,8 @@ pub const REQUESTS: Words = &[
     ("simd lanes vectorize vectorise parallel", "batch"),
     ("sparse compressed", "packed"),
     ("momentum centroid", "centroidal"),
+    ("hamiltonian canonical phasespace", "hamilton"),
+    ("conservation integrals invariants cyclic", "conserved"),
     ("identification parameters basis", "regressor"),
     ("precompute cache prepared", "prepare"),
     ("nogravity weightless", "without `gravity` there is none: remove it"),
@@ -347,6 +361,7 @@ pub const FUNCTIONS: Words = &[
     ("angularvelocity angvel w ω", "omega"),
     ("angularacceleration angacc α", "alpha"),
     ("force reaction", "reaction_force"),
+    ("contactforce normalforce", "contact_force"),
     ("torque", "reaction_torque"),
     ("vec vec3 vector vector3 matrix", "a vector is written `[a, b, c]` or `a * x + b * y + c * z`"),
     (

@@ -37,7 +37,7 @@ fn latex_of(gravity: &str, item: &str) -> String {
 }
 
 /// What is wrong with LaTeX: braces, commands, `\left` without `\right`, indices outside of braces.
-fn faults(text: &str) -> Vec<String> {
+pub(super) fn faults(text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut open: Vec<&str> = Vec::new();
     let mut close = |open: &mut Vec<&str>, what: &str, at: usize| {

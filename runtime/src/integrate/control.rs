@@ -1,15 +1,15 @@
 //! How large an error is, and how long the first step may be.
 
-use super::stages::Trial;
+use super::stages::Rates;
+use super::{Dynamics, State, Step};
 use crate::Real;
-use crate::integrate::{Dynamics, State};
 use crate::private::constant;
 use nalgebra::SVector;
 
 /// The tolerances.
 pub(super) struct Scale<T> {
-    pub(super) relative: T,
-    pub(super) absolute: T,
+    pub relative: T,
+    pub absolute: T,
 }
 
 /// The size of every coordinate: its magnitude where configuration and tangent space have the same entries, else 1.
@@ -37,13 +37,18 @@ impl<T: Real> Scale<T> {
         (sum / constant((2 * N.max(1)) as f64)).sqrt()
     }
 
-    /// The estimated error of a trial step; acceptable up to one, NaN where the trial is.
-    pub(super) fn error<const NQ: usize, const NV: usize>(&self, trial: &Trial<T, NQ, NV>) -> T {
-        let (start, end) = (&trial.step.start, &trial.step.end);
-        let moved = trial.displacement.abs();
+    /// The estimated error of a step, `error` its change; acceptable up to one, NaN where the step is.
+    pub fn error<const NQ: usize, const NV: usize>(
+        &self,
+        step: &Step<T, NQ, NV>,
+        displacement: &SVector<T, NV>,
+        error: &Rates<T, NV>,
+    ) -> T {
+        let (start, end) = (&step.start, &step.end);
+        let moved = displacement.abs();
         let size = larger(&larger(&sizes(&start.q), &sizes(&end.q)), &moved);
         let speed = larger(&start.v.abs(), &end.v.abs());
-        self.norm([&trial.error.displacement, &trial.error.velocity], [&size, &speed])
+        self.norm([&error.displacement, &error.velocity], [&size, &speed])
     }
 }
 

@@ -1,0 +1,61 @@
+//! Distances of surfaces that may touch, and how fast they approach and slip.
+
+use super::facts::Need;
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{Q, V};
+use super::shape::Shape;
+
+const TOUCHING: &[Need] = &[Need::Contacts];
+
+/// Functions of mechanisms with contacts.
+pub const ROWS: &[Row] = &[
+    Row::derived(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Vector(f.contacts[0]),
+        docs: vec![
+            "Distance of the surfaces of each contact, m, or rad from a stop about an axis: zero where they touch, negative where they overlap. In the order of `CONTACTS`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.contacts[1]),
+        docs: vec![
+            "Rates at the contacts, m/s and rad/s: of each first the rate of its gap, then the slip of the first surface over the second one along one or two tangents, if it has friction. `CONTACT_ROWS` tells where those of a contact begin.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Matrix(f.contacts[1], f.nv),
+        docs: vec![
+            "Jacobian of the contacts: how their rates change with the velocities. A force `f` at a contact, N, with its rows `G`, contributes `Gᵀ f` to the generalized forces.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Vector(f.contacts[1]),
+        docs: vec![
+            "Bias `b(q, v)` of the contacts, m/s² and rad/s²: where surfaces touch, their rates change by `G v̇ + b`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
+        timeless: true,
+        shape: Shape::Array(2 * f.contacts[0]),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(
+        Id::ContactResponses,
+        "__contact_responses",
+        &[Need::Contacts, Need::Inertia, Need::FewContacts],
+        |f| Declaration {
+            arguments: vec![Q],
+            shape: Shape::Array(f.contacts[1] * (f.nv + f.contacts[1])),
+            ..Declaration::default()
+        },
+    )
+    .alone(),
+];

@@ -1,0 +1,144 @@
+//! What mechanisms with contacts that open and close have besides.
+
+use super::interface::Interface;
+use super::signature::Signature;
+use crate::catalogue::Need;
+use crate::mechanism::Model;
+use std::fmt::Write;
+
+/// A contact that opens and closes.
+#[derive(Clone, Debug)]
+pub struct Touching {
+    /// Its name.
+    name: String,
+    /// How many rates it has: that of its gap, and those of slip.
+    rates: usize,
+    /// Its gap is an angle.
+    turns: bool,
+    /// Coefficients of friction and restitution, if they are numbers.
+    laws: [Option<f64>; 2],
+}
+
+impl Touching {
+    /// Those of a model.
+    pub fn of(model: &Model<'_>) -> Vec<Touching> {
+        let touching = |c: &crate::mechanism::Contact<'_>| Touching {
+            name: c.name.clone(),
+            rates: c.rates.len(),
+            turns: c.turns,
+            laws: [c.friction.value(), c.restitution.value()],
+        };
+        model.contacts.iter().map(touching).collect()
+    }
+
+    /// One, where only the equations could tell how many there are.
+    pub fn unknown() -> Touching {
+        Touching { name: String::new(), rates: 1, turns: false, laws: [None; 2] }
+    }
+}
+
+/// Names, and where the rates of each begin.
+pub fn write_constants(out: &mut String, contacts: &[Touching]) {
+    if contacts.is_empty() {
+        return;
+    }
+    let names: Vec<&str> = contacts.iter().map(|c| c.name.as_str()).collect();
+    let mut first = 0;
+    let ranges = contacts.iter().map(|c| {
+        first += c.rates;
+        format!("::linkwork::contact::Rows {{ first: {}, count: {} }}", first - c.rates, c.rates)
+    });
+    let ranges: Vec<String> = ranges.collect();
+    let count = contacts.len();
+    let _ = writeln!(
+        out,
+        "/// Name of every contact.\npub const CONTACTS: [&'static str; {count}] = {names:?};
+        /// Which of the rates belong to each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
+        ranges.join(", ")
+    );
+}
+
+/// The runtime's trait of mechanisms with contacts.
+pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let [count, rows] = i.facts.contacts;
+    let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
+    let pass = if s.time { "t, " } else { "" };
+    let (gaps, rates) = (s.vector(count), s.vector(rows));
+    let laws: Vec<String> = (0..count)
+        .map(|k| {
+            format!(
+                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}] }}",
+                2 * k,
+                2 * k + 1
+            )
+        })
+        .collect();
+    let is_written = i.facts.meet(Need::Inertia) && i.facts.meet(Need::FewContacts);
+    let responses = if is_written {
+        format!(
+            "#[inline]\nfn contact_responses(&self, t: {scalar}, q: &{q}, _: &[bool; {count}]) -> ::linkwork::contact::Responses<{scalar}, {nv}, {rows}> {{ ::linkwork::contact::Responses::from_list(&self.__contact_responses({pass}q)) }}\n        "
+        )
+    } else {
+        String::new()
+    };
+    let _ = writeln!(
+        out,
+        "const CONTACTS: [&'static str; {count}] = Self::CONTACTS;
+        const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = Self::CONTACT_ROWS;
+        #[inline]\nfn contact_gaps(&self, t: {scalar}, q: &{q}) -> {gaps} {{ Self::contact_gaps(self, {pass}q) }}
+        #[inline]\nfn contact_rates(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_rates(self, {pass}q, v) }}
+        #[inline]\nfn contact_jacobian(&self, t: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {rows}, {nv}> {{ Self::contact_jacobian(self, {pass}q) }}
+        #[inline]\nfn contact_bias(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_bias(self, {pass}q, v) }}
+        {responses}#[inline]\nfn contact_laws(&self) -> [::linkwork::contact::Law<{scalar}>; {count}] {{
+            let laws = self.__contact_laws();
+            [{}]
+        }}",
+        laws.join(", ")
+    );
+}
+
+/// What the trait of mechanisms has because of contacts.
+pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    if i.contacts.is_empty() {
+        return;
+    }
+    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
+    let (t, any) = match s.time {
+        true => (format!("t: {scalar}, "), "t".to_string()),
+        false => (String::new(), format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
+    };
+    let _ = writeln!(
+        out,
+        "const CONTACTING: bool = true;
+        const LOCATABLE: bool = true;
+        #[inline]\nfn carry(&self, {t}dv: &{v}, v: &{v}) -> {v} {{ self.__carry(dv, v) }}
+        fn contact_step(&self, {t}start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
+            ::linkwork::contact::step(self, {any}, start, end, given, h)
+        }}
+        #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+            ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
+        }}",
+        s.nq, s.nv, s.nq, s.nv, s.nu
+    );
+}
+
+/// A table for the struct's documentation.
+pub fn write_docs(text: &mut String, contacts: &[Touching]) {
+    if contacts.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n# Contacts\n\nThey open and close: `linkwork::contact`. Without contact in the functions of the dynamics.\n\n| | contact | gap | rates of slip | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
+    );
+    for (k, contact) in contacts.iter().enumerate() {
+        let [friction, restitution] =
+            contact.laws.map(|law| law.map_or("by parameters".to_string(), |law| law.to_string()));
+        let unit = if contact.turns { "rad" } else { "m" };
+        let _ = writeln!(
+            text,
+            "| {k} | `{}` | {unit} | {} | {friction} | {restitution} |",
+            contact.name,
+            contact.rates - 1
+        );
+    }
+}

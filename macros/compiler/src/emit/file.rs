@@ -1,0 +1,151 @@
+//! Fields that hold figures of a file, and what gives them and takes them.
+
+use super::interface::{ALLOW, Head, Interface};
+use super::item::runtime;
+use super::scalar::ScalarSpelling;
+use crate::catalogue::Need;
+use crate::syntax::figures::{FileField, FileFieldKind};
+use proc_macro2::{Span, TokenStream};
+use quote::{ToTokens, format_ident, quote};
+use std::fmt::Write;
+use syn::Ident;
+
+/// The fields of the struct.
+pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
+    let runtime = runtime(i.shell);
+    let scalar = scalar(i);
+    let field = |field: &FileField| {
+        let (name, about) = (Ident::new(&field.ident, Span::call_site()), &field.about);
+        let kind = match field.kind {
+            FileFieldKind::Inertial => quote!(#runtime::Inertial<#scalar>),
+            FileFieldKind::Placement => quote!(#runtime::Placement<#scalar>),
+            FileFieldKind::Number => quote!(#scalar),
+        };
+        quote!(#[doc = #about] pub #name: #kind)
+    };
+    i.shell.file_fields.iter().map(field).collect()
+}
+
+fn scalar(i: &Interface<'_>) -> Ident {
+    let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
+    format_ident!("{}", name.one())
+}
+
+/// The file's own figures, and all links at once.
+pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
+    if !i.facts.meet(Need::FileParameters) {
+        return;
+    }
+    let own: Vec<String> =
+        i.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
+    let values: Vec<String> =
+        i.shell.file_fields.iter().map(|field| format!("{}: {}", field.ident, value(field, s))).collect();
+    let tables = i
+        .shell
+        .tables
+        .iter()
+        .map(|field| (field.ident.to_token_stream().to_string(), field.ty.to_token_stream()));
+    let tables: Vec<(String, String)> = tables.map(|(name, kind)| (name, kind.to_string())).collect();
+    let all = own
+        .iter()
+        .cloned()
+        .chain(tables.iter().map(|(name, _)| name.clone()))
+        .chain(values)
+        .collect::<Vec<_>>()
+        .join(", ");
+    let arguments = own.iter().map(|name| format!("{name}: {}", s.one()));
+    let arguments: Vec<String> =
+        arguments.chain(tables.iter().map(|(name, kind)| format!("{name}: {kind}"))).collect();
+    let (constant, before) = match s.is_generic() {
+        true => ("", "use ::linkwork::__private::constant;\n"),
+        false => ("const ", ""),
+    };
+    if own.is_empty() && tables.is_empty() && !s.is_generic() {
+        let _ = writeln!(
+            out,
+            "/// The mechanism as the file says it is.\npub const FILE: Self = Self {{ {all} }};"
+        );
+    }
+    let _ = writeln!(
+        out,
+        "/// The mechanism with the figures of the file, and the parameters that it does not have.
+        #[inline]\n#[must_use]\npub {constant}fn from_file({}) -> Self {{\n{before}Self {{ {all} }}\n}}",
+        arguments.join(", ")
+    );
+    if !i.facts.meet(Need::FileInertials) {
+        return;
+    }
+    let links = links(i);
+    let (n, names): (usize, Vec<&String>) = (links.len(), links.iter().map(|field| &field.of).collect());
+    let get: Vec<String> = links.iter().map(|field| format!("self.{}", field.ident)).collect();
+    let set: Vec<String> =
+        links.iter().enumerate().map(|(k, field)| format!("self.{} = links[{k}];", field.ident)).collect();
+    let kind = format!("[::linkwork::Inertial<{}>; {n}]", s.one());
+    let _ = writeln!(
+        out,
+        "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] = {names:?};
+        /// The mass properties of all links that have them as parameters, in the order of `LINKS`.
+        #[inline]\n#[must_use]\npub fn inertials(&self) -> {kind} {{ [{}] }}
+        /// Sets the mass properties of all links that have them as parameters, in the order of `LINKS`.
+        #[inline]\npub fn set_inertials(&mut self, links: &{kind}) {{ {} }}",
+        get.join(", "),
+        set.join("\n")
+    );
+    if i.facts.meet(Need::Regressor) && i.facts.meet(Need::Inertia) {
+        let _ = writeln!(
+            out,
+            "/// Puts identified base parameters back: gives all of `LINKS` the mass properties with these base parameters that
+            /// differ least from those that they have, and which bodies can have. See
+            /// [`put_back`](::linkwork::identification::put_back).
+            ///
+            /// # Errors
+            ///
+            /// If no bodies have these base parameters, or the links have mass properties to begin with that no body has. The
+            /// mechanism stays as it is then.
+            #[inline(never)]
+            pub fn set_base_parameters(&mut self, base: &::linkwork::nalgebra::SVector<{}, {}>) -> ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
+                ::linkwork::identification::put_back(self, base)
+            }}",
+            s.one(),
+            i.facts.base
+        );
+    }
+}
+
+/// What puts base parameters back.
+pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
+    if ![Need::FileInertials, Need::Regressor, Need::Inertia].iter().all(|need| i.facts.meet(*need)) {
+        return;
+    }
+    let Head { generics, arguments, bounds } = head;
+    let (n, base, one) = (links(i).len(), i.facts.base, s.one());
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::identification::Identifiable<{n}, {base}> for {}{arguments} {bounds} {{
+            type Scalar = {one};
+            fn inertials(&self) -> [::linkwork::Inertial<{one}>; {n}] {{ Self::inertials(self) }}
+            fn set_inertials(&mut self, links: &[::linkwork::Inertial<{one}>; {n}]) {{ Self::set_inertials(self, links) }}
+            fn own_base_parameters(&self) -> ::linkwork::nalgebra::SVector<{one}, {base}> {{ self.base_parameters(&self.standard_parameters()) }}
+        }}",
+        i.shell.ident
+    );
+}
+
+/// The fields that hold mass properties.
+fn links<'a>(i: &'a Interface<'_>) -> Vec<&'a FileField> {
+    i.shell.file_fields.iter().filter(|field| field.kind == FileFieldKind::Inertial).collect()
+}
+
+/// The file's figures, as a field holds them.
+fn value(field: &FileField, s: &ScalarSpelling) -> String {
+    let numbers: Vec<String> = field.values.iter().map(|x| s.constant(*x)).collect();
+    match (field.kind, numbers.as_slice()) {
+        (FileFieldKind::Inertial, [mass, x, y, z, xx, xy, xz, yy, yz, zz]) => format!(
+            "::linkwork::Inertial {{ mass: {mass}, com: [{x}, {y}, {z}], ixx: {xx}, ixy: {xy}, ixz: {xz}, iyy: {yy}, iyz: {yz}, izz: {zz} }}"
+        ),
+        (FileFieldKind::Placement, [x, y, z, roll, pitch, yaw]) => {
+            format!("::linkwork::Placement {{ xyz: [{x}, {y}, {z}], rpy: [{roll}, {pitch}, {yaw}] }}")
+        }
+        _ => numbers.join(", "),
+    }
+}

@@ -1,0 +1,117 @@
+//! The runtime's traits of mechanisms with states of first order.
+
+use super::interface::{ALLOW, Head, Interface};
+use super::signature::Signature;
+use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Shape};
+use crate::derive::Function;
+use crate::syntax::state::RATE;
+use std::fmt::Write;
+
+/// The name of the function for a state's rate.
+pub fn rate(state: &str) -> String {
+    format!("{state}{RATE}")
+}
+
+/// Implements them, if there are such states and dynamics.
+pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &Signature<'_>) {
+    let rates: Option<Vec<&Function>> =
+        i.states.iter().map(|(name, _)| functions.iter().find(|f| f.name == rate(name))).collect();
+    let Some(rates) = rates.filter(|rates| !rates.is_empty() && !i.facts.kinematic) else { return };
+    let (head, name, n) = (Head::new(i, s), i.shell.ident.to_string(), rates.len());
+    let begin = |out: &mut String, of: &str| {
+        let Head { generics, arguments, bounds } = &head;
+        let sizes = [s.nq, s.nv, s.nu, n, s.nv + n].map(|n| n.to_string()).join(", ");
+        let _ = writeln!(
+            out,
+            "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{"
+        );
+    };
+    begin(out, "FirstOrder");
+    write_values(out, &rates, i, s);
+    out.push_str("}\n");
+    // Of accelerations under constraints there are no derivatives by parameters.
+    if i.facts.requests.derivatives && i.facts.constraints.is_none() {
+        begin(out, "FirstOrderDerivatives");
+        write_derivatives(out, &rates, i, s);
+        out.push_str("}\n");
+    }
+}
+
+fn call(f: &Function, suffix: &str) -> String {
+    let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+    format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
+}
+
+const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U];
+
+fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+    let n = rates.len();
+    let (vector, parameters) = (s.vector(n), s.parameters(&TAKEN));
+    let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
+    let own: Vec<String> = i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter(*k))).collect();
+    // All fields by name: the struct need not be `Clone`.
+    let spelt = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
+    let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(spelt);
+    let of_file = i.shell.file_fields.iter().map(|field| field.ident.clone());
+    let fields = of_struct.chain(of_file).map(|field| {
+        let plain = field.trim_start_matches("r#");
+        match i.states.iter().position(|(name, _)| name == plain) {
+            Some(k) => format!("{field}: x.data.0[0][{k}]"),
+            None => format!("{field}: self.{field}"),
+        }
+    });
+    let fields: Vec<String> = fields.collect();
+    let values: Vec<String> = rates.iter().map(|f| call(f, "")).collect();
+    let _ = writeln!(
+        out,
+        "const STATES: [&'static str; {n}] = [{}];
+        #[inline]\nfn states(&self) -> {vector} {{ <{vector}>::from([{}]) }}
+        #[inline]\nfn with_states(&self, x: &{vector}) -> Self {{ Self {{ {} }} }}
+        #[inline]\nfn state_rates({parameters}) -> {vector} {{ <{vector}>::from([{}]) }}",
+        names.join(", "),
+        own.join(", "),
+        fields.join(", "),
+        values.join(", "),
+    );
+}
+
+fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+    let (n, scalar) = (rates.len(), s.scalar.name());
+    let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
+    let which = which.join(", ");
+    let record = format!("::linkwork::RateDerivatives<{scalar}, {}, {}, {n}>", s.nv, s.nu);
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn state_rate_derivatives({}) -> {record} {{\nlet mut all = <{record}>::zeros();",
+        s.parameters(&TAKEN)
+    );
+    for (k, f) in rates.iter().enumerate() {
+        let _ = writeln!(
+            out,
+            "let seen = {};
+            ::linkwork::__private::put_rows(&mut all.by_q, {k}, &seen.by_q);
+            ::linkwork::__private::put_rows(&mut all.by_v, {k}, &seen.by_v);
+            ::linkwork::__private::put_rows(&mut all.by_u, {k}, &seen.by_u);
+            ::linkwork::__private::put_rows(&mut all.by_x, {k}, &::linkwork::__private::columns(&{}, [{which}]));",
+            call(f, DERIVATIVES),
+            call(f, BY_PARAMETERS),
+        );
+    }
+    out.push_str("all\n}\n");
+    let by_states = s.shape(Shape::Matrix(s.nv, n));
+    let time = if s.time { "t, " } else { "" };
+    for (function, last) in [
+        ("inverse_dynamics", Argument::A),
+        ("forward_dynamics", Argument::Tau),
+        ("generalized_forces", Argument::U),
+    ] {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {function}_by_states({}) -> {by_states} {{
+                ::linkwork::__private::columns(&Self::{function}{BY_PARAMETERS}(self, {time}q, v, {}), [{which}])
+            }}",
+            s.parameters(&[Argument::T, Argument::Q, Argument::V, last]),
+            last.name(),
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! Numbers of the standard atmosphere, as the runtime computes them: ISO 2533:1975 and the *U.S. Standard Atmosphere 1976*.
+
+/// Acceleration of free fall over the gas constant of air, K/m.
+pub const FALL_OVER_GAS: f64 = 9.80665 / GAS;
+/// Gas constant of air, J/(kg·K).
+pub const GAS: f64 = 287.05287;
+/// Ratio of the heat capacities of air.
+pub const HEATS: f64 = 1.4;
+/// Radius of the Earth that geopotential heights are made with, m.
+pub const RADIUS: f64 = 6_356_766.0;
+
+/// Where the layers begin, m, and how their temperature changes with height, K/m.
+const LAYERS: [(f64, f64); 8] = [
+    (0.0, -6.5e-3),
+    (11_000.0, 0.0),
+    (20_000.0, 1.0e-3),
+    (32_000.0, 2.8e-3),
+    (47_000.0, 0.0),
+    (51_000.0, -2.8e-3),
+    (71_000.0, -2.0e-3),
+    (84_852.0, 0.0),
+];
+
+/// Temperature, K, pressure, Pa, and rate of the temperature, K/m, at a geopotential height, m.
+fn state(h: f64) -> [f64; 3] {
+    let (mut temperature, mut pressure) = (288.15, 101_325.0);
+    for (k, (base, lapse)) in LAYERS.iter().enumerate() {
+        let end = LAYERS.get(k + 1).map_or(f64::INFINITY, |(end, _)| *end);
+        let depth = h.min(end) - base;
+        let next = temperature + depth * lapse;
+        pressure *= match *lapse == 0.0 {
+            true => (-FALL_OVER_GAS * depth / temperature).exp(),
+            false => (next / temperature).powf(-FALL_OVER_GAS / lapse),
+        };
+        temperature = next;
+        if h < end {
+            return [temperature, pressure, *lapse];
+        }
+    }
+    [temperature, pressure, f64::NAN]
+}
+
+/// The temperature, K.
+pub fn temperature(h: f64) -> f64 {
+    state(h)[0]
+}
+
+/// The pressure, Pa.
+pub fn pressure(h: f64) -> f64 {
+    state(h)[1]
+}
+
+/// By how much the temperature changes with height, K/m.
+pub fn lapse_rate(h: f64) -> f64 {
+    state(h)[2]
+}

@@ -1,0 +1,228 @@
+//! `parameters = …`: figures of the file that become fields of the mechanism. Where a number stood, its field is named.
+
+use super::names::unused;
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::imported::Imported;
+use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
+use crate::syntax::{Body, Expr, ExprKind, Joint, JointKind, Name, UrdfOptions};
+
+/// Makes fields of all figures that are asked for. `standing` are the links that enter no equation.
+pub(super) fn make_fields(
+    imported: &mut Imported,
+    standing: &[String],
+    options: &UrdfOptions,
+    cx: &mut Cx<'_>,
+) {
+    let Imported { bodies, joints, fields, .. } = imported;
+    for figures in &options.parameters {
+        if figures.word.text == INERTIAL {
+            inertials(bodies, standing, figures, fields, cx);
+        } else {
+            of_joints(joints, figures, fields, cx);
+        }
+    }
+}
+
+fn inertials(
+    bodies: &mut [Body],
+    standing: &[String],
+    figures: &FileFigures,
+    fields: &mut Vec<FileField>,
+    cx: &mut Cx<'_>,
+) {
+    let stands = |body: &Body| standing.contains(&body.name.text);
+    let names: Vec<String> = bodies.iter().map(|body| body.name.text.clone()).collect();
+    let chosen = chosen(figures, &names, "link", cx);
+    let mut found = false;
+    for body in bodies {
+        let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
+        let missing = match () {
+            () if stands(body) => Some("stands on the ground: its mass properties enter no equation"),
+            () if body.mass.is_none() => Some("has no mass properties in the file"),
+            () => None,
+        };
+        if let Some(missing) = missing {
+            if figures.of.is_some() {
+                let message = format!("link {} {missing}", quote(&name.text));
+                cx.error(&name.place, message, |d| d.help("leave it out of `parameters`"));
+            }
+            continue;
+        }
+        found = true;
+        let values = properties(body);
+        let units = ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"].to_vec();
+        let about = format!("Mass properties of the link `{}`.", body.name.text);
+        let of = &body.name.text;
+        let e = add(FileFieldKind::Inertial, of, "", about, (values, units), &name.place, fields);
+        let [mass, x, y, z, xx, xy, xz, yy, yz, zz] = e.as_slice() else { continue };
+        let array = |items: [&Expr; 3]| Expr {
+            kind: ExprKind::Array(items.map(Clone::clone).to_vec()),
+            place: name.place.clone(),
+        };
+        body.mass = Some(mass.clone());
+        body.com = Some(array([x, y, z]));
+        body.inertia = Some(array([&array([xx, xy, xz]), &array([xy, yy, yz]), &array([xz, yz, zz])]));
+    }
+    if !found && figures.of.is_none() {
+        let message = "no link that moves has mass properties in the file";
+        cx.error(&figures.word.place, message, |d| d.help(format!("leave `{INERTIAL}` out of `parameters`")));
+    }
+}
+
+fn of_joints(joints: &mut [Joint], figures: &FileFigures, fields: &mut Vec<FileField>, cx: &mut Cx<'_>) {
+    let word = figures.word.text.as_str();
+    // The joint that holds the root stands in no file.
+    let of_file = |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
+    let fits = |joint: &Joint| match word {
+        PLACEMENT => of_file(joint),
+        _ => matches!(joint.kind, JointKind::Pin | JointKind::Sleeve),
+    };
+    let names: Vec<String> = joints.iter().map(|joint| joint.name.text.clone()).collect();
+    let chosen = chosen(figures, &names, "joint", cx);
+    for joint in joints {
+        let Some(name) = chosen.iter().find(|name| name.text == joint.name.text) else { continue };
+        if !fits(joint) {
+            if figures.of.is_some() {
+                let message = format!("joint {} has no {word}", quote(&name.text));
+                cx.error(&name.place, message, |d| match word {
+                    PLACEMENT => d.help("it holds the root of the file"),
+                    _ => d.help("a joint that moves along or about one axis has one, unless it is locked"),
+                });
+            }
+            continue;
+        }
+        let of = &joint.name.text;
+        let about = |what: &str| format!("{what} of the joint `{of}`.");
+        if word == PLACEMENT {
+            let values = placement(joint);
+            let units = vec!["m", "m", "m", "rad", "rad", "rad"];
+            let about = about("Place, on the parent link,");
+            let e = add(FileFieldKind::Placement, of, word, about, (values, units), &name.place, fields);
+            let place = |e| Expr { kind: e, place: name.place.clone() };
+            joint.parent.at = Some(place(ExprKind::Array(e[..3].to_vec())));
+            let turns = [("z", 5), ("y", 4), ("x", 3)];
+            joint.parent.rotated =
+                turns.map(|(axis, k)| Expr::call(axis, vec![e[k].clone()], &name.place)).to_vec();
+            continue;
+        }
+        let turns = joint.kind == JointKind::Pin;
+        let (slot, what, unit) = match (word, turns) {
+            (DAMPING, true) => (&mut joint.damping, "Viscous damping", "N·m·s/rad"),
+            (DAMPING, _) => (&mut joint.damping, "Viscous damping", "N·s/m"),
+            (_, true) => (&mut joint.friction, "Dry friction", "N·m"),
+            _ => (&mut joint.friction, "Dry friction", "N"),
+        };
+        debug_assert!([DAMPING, FRICTION].contains(&word));
+        let value = slot.as_ref().and_then(Expr::literal).unwrap_or(0.0);
+        let e =
+            add(FileFieldKind::Number, of, word, about(what), (vec![value], vec![unit]), &name.place, fields);
+        *slot = e.into_iter().next();
+    }
+}
+
+/// The links or joints that are meant; reports names that there are not.
+fn chosen(figures: &FileFigures, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
+    let Some(of) = &figures.of else {
+        let name = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
+        return known.iter().map(name).collect();
+    };
+    for (k, name) in of.iter().enumerate() {
+        if !known.contains(&name.text) {
+            let message = format!("unknown {what} {} in `parameters`", quote(&name.text));
+            let known = known.iter().map(String::as_str);
+            cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+        } else if of[..k].iter().any(|other| other.text == name.text) {
+            let message = format!("{what} {} stands here twice", quote(&name.text));
+            cx.error(&name.place, message, |d| d.help("remove one of the two"));
+        }
+    }
+    of.clone()
+}
+
+/// Adds a field, and returns an expression for each of its figures.
+fn add(
+    kind: FileFieldKind,
+    of: &str,
+    word: &str,
+    about: String,
+    (values, units): (Vec<f64>, Vec<&'static str>),
+    place: &Place,
+    fields: &mut Vec<FileField>,
+) -> Vec<Expr> {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let mut name: String = of.chars().map(plain).collect();
+    if !word.is_empty() {
+        name = format!("{name}_{word}");
+    }
+    if name.starts_with(|c: char| c.is_ascii_digit()) || name.trim_matches('_').is_empty() {
+        name = format!("link_{name}");
+    }
+    if syn::parse_str::<syn::Ident>(&name).is_err() {
+        name = format!("{name}_link");
+    }
+    let ident = unused(&name, |name| fields.iter().any(|field| field.ident == name));
+    let field = FileField { ident, kind, of: of.to_string(), about, values, units };
+    let name = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
+    let expressions = field.members().into_iter().map(name).collect();
+    fields.push(field);
+    expressions
+}
+
+/// Mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
+fn properties(body: &Body) -> Vec<f64> {
+    let mass = body.mass.as_ref().and_then(Expr::literal).unwrap_or(0.0);
+    let com = body.com.as_ref().map_or([0.0; 3], numbers);
+    let inertia = body.inertia.as_ref().map_or([[0.0; 3]; 3], matrix);
+    let entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, j)| inertia[i][j]);
+    [mass].into_iter().chain(com).chain(entries).collect()
+}
+
+fn numbers(e: &Expr) -> [f64; 3] {
+    let ExprKind::Array(items) = &e.kind else { return [0.0; 3] };
+    std::array::from_fn(|k| items.get(k).and_then(Expr::literal).unwrap_or(0.0))
+}
+
+/// The inertia as it was read: a matrix, perhaps turned about carried axes.
+fn matrix(e: &Expr) -> [[f64; 3]; 3] {
+    match &e.kind {
+        ExprKind::Array(rows) => std::array::from_fn(|i| rows.get(i).map_or([0.0; 3], numbers)),
+        ExprKind::Method(inner, _, turns) => {
+            let product = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]| -> [[f64; 3]; 3] {
+                std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+            };
+            let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            let turn = turns.iter().fold(identity, |whole, turn| product(&whole, &rotation(turn)));
+            let back = std::array::from_fn(|i| std::array::from_fn(|j| turn[j][i]));
+            product(&product(&turn, &matrix(inner)), &back)
+        }
+        _ => [[0.0; 3]; 3],
+    }
+}
+
+/// The axis and the angle of a turn about a coordinate axis.
+fn turn(e: &Expr) -> (usize, f64) {
+    let ExprKind::Call(axis, arguments) = &e.kind else { return (0, 0.0) };
+    let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text).unwrap_or(0);
+    (axis, arguments.first().and_then(Expr::literal).unwrap_or(0.0))
+}
+
+fn rotation(e: &Expr) -> [[f64; 3]; 3] {
+    let (axis, angle) = turn(e);
+    let (s, c) = angle.sin_cos();
+    let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut m = [[0.0; 3]; 3];
+    (m[axis][axis], m[p][p], m[q][q], m[p][q], m[q][p]) = (1.0, c, c, -s, s);
+    m
+}
+
+/// Position, then roll, pitch and yaw.
+fn placement(joint: &Joint) -> Vec<f64> {
+    let mut rpy = [0.0; 3];
+    for e in &joint.parent.rotated {
+        let (axis, angle) = turn(e);
+        rpy[axis] = angle;
+    }
+    let xyz = joint.parent.at.as_ref().map_or([0.0; 3], numbers);
+    xyz.into_iter().chain(rpy).collect()
+}

@@ -1,0 +1,270 @@
+//! Quantities that keep their values in every motion without inputs: energy, Jacobi's integral, momenta. Candidates are
+//! tried in numbers: in random states that fulfil the constraints, with random parameters, the rate of what is
+//! conserved is zero. What only special parameters conserve is not seen.
+
+use super::{added_mass, constraints, crba, energy, lagrange, momentum, rnea, velocities};
+use crate::diag::Diagnostics;
+use crate::expr::eval::Tape;
+use crate::expr::sample::sample;
+use crate::expr::{Expr, Symbol, Vec3};
+use crate::kinematics::redundancy::Basis;
+use crate::kinematics::{Joint, Rows, mobility, random_configuration};
+use crate::mechanism::{Model, Quantity};
+
+/// Random states that are tried.
+const STATES: u64 = 5;
+/// What is left of a rate that is zero, beside what makes it up: the differences have so many digits.
+const LEFT: f64 = 1e-9;
+/// The same beside the quantity itself.
+const ROUNDING: f64 = 1e-11;
+/// Step of the differences, s.
+const STEP: f64 = 1e-3;
+/// A gradient counts as a combination of others if so little of it is left.
+const DEPENDENT: f64 = 1e-6;
+
+/// A quantity that keeps its value.
+#[derive(Clone)]
+pub struct Conserved<'g> {
+    /// What it is.
+    pub name: String,
+    /// Its value in a state.
+    pub value: Expr<'g>,
+}
+
+/// What a mechanism conserves, independent of each other, the simplest first. Contacts that slip, or that open and
+/// close, conserve nothing that is looked for, nor is anything claimed where no configuration is known that fulfils the constraints.
+pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+    let rubs = model.constraints.iter().any(|c| !c.friction.is_empty()) || !model.contacts.is_empty();
+    if model.nv() == 0 || rubs {
+        return Vec::new();
+    }
+    let candidates = candidates(model, joints);
+    let values: Vec<Expr<'g>> = candidates.iter().map(|c| c.value).collect();
+    let (tape, motion) = (Tape::of(&values), Motion::of(model, joints));
+    let mut kept = vec![true; values.len()];
+    let mut gradients: Vec<Vec<Vec<f64>>> = Vec::new();
+    let places = places(model);
+    for (k, (q, seed)) in places.iter().enumerate() {
+        let state = State::random(model, &motion, q, *seed, k as u64);
+        let Some(rates) = state.and_then(|state| {
+            gradients.push(state.gradients(&tape));
+            state.are_constant(&motion, &tape)
+        }) else {
+            return Vec::new();
+        };
+        kept.iter_mut().zip(rates).for_each(|(kept, constant)| *kept &= constant);
+    }
+    if places.is_empty() {
+        return Vec::new();
+    }
+    let mut bases: Vec<Basis> = gradients.iter().map(|_| Basis::default()).collect();
+    let mut adds = |k: usize| {
+        let mut any = false;
+        for (basis, gradients) in bases.iter_mut().zip(&gradients) {
+            let before = basis.rank();
+            basis.add(&gradients[k], DEPENDENT);
+            any |= basis.rank() > before;
+        }
+        any
+    };
+    candidates.into_iter().enumerate().filter(|(k, _)| kept[*k] && adds(*k)).map(|(_, c)| c).collect()
+}
+
+/// Everything that may be conserved.
+fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+    let v = velocities(model);
+    let p = momentum::generalized_momentum(model, joints, &v);
+    let kinetic = energy::kinetic_energy(model, joints, &v);
+    let potential = energy::potential_energy(model, joints);
+    let mut all = vec![Conserved { name: "energy".to_string(), value: kinetic + potential }];
+    if model.time {
+        let power = p.iter().zip(&v).fold(model.graph.zero(), |sum, (p, v)| sum + *p * *v);
+        all.push(Conserved { name: "Jacobi's integral".to_string(), value: power - kinetic + potential });
+    }
+    for (p, (name, _)) in p.iter().zip(&model.velocities) {
+        all.push(Conserved { name: format!("momentum of {name}"), value: *p });
+    }
+    let whole = momentum::centroidal_momentum(model, joints, &v);
+    let center = energy::center_of_mass(model, joints);
+    let mut add = |what: &str, vector: Vec3<'g>, about: &str| {
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(vector.0) {
+            all.push(Conserved { name: format!("{what} momentum along {axis}{about}"), value });
+        }
+    };
+    add("linear", whole.linear, "");
+    add("angular", whole.angular, ", about the centre of mass");
+    add("angular", whole.angular + center.cross(whole.linear), ", about the ground's origin");
+    all
+}
+
+/// Configurations that fulfil the constraints, with the seed of the parameters.
+fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
+    if model.constraints.is_empty() {
+        return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
+    }
+    let found = mobility::witnesses(model, &Rows::of(model), &mut Diagnostics::new());
+    found.into_iter().cycle().take(STATES as usize).collect()
+}
+
+/// What accelerations follow from.
+struct Motion<'g> {
+    nv: usize,
+    nc: usize,
+    /// Mass matrix, bias forces, Jacobian by rows, rates and biases of the constraints.
+    equations: Tape<'g>,
+    /// Rates of the configuration.
+    rates: Tape<'g>,
+}
+
+impl<'g> Motion<'g> {
+    fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Motion<'g> {
+        let mut all = added_mass::effective(model, &crba::mass_matrix(model, joints)).concat();
+        all.extend(rnea::inverse_dynamics(model, joints, &velocities(model), None));
+        all.extend(constraints::jacobian(model).concat());
+        all.extend(constraints::rates(model));
+        all.extend(constraints::biases(model));
+        let (equations, rates) = (Tape::of(&all), Tape::of(&lagrange::configuration_rates(model)));
+        Motion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
+    }
+}
+
+/// A state in numbers.
+#[derive(Clone)]
+struct State {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    seed: u64,
+}
+
+impl State {
+    /// A random velocity that fulfils the constraints, in a configuration that does.
+    fn random(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
+        let random = |k: usize| 4.0 * sample(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
+        let t = sample(Quantity::Time.symbol(), seed);
+        let mut state = State { t, q: q.to_vec(), v: (0..model.nv()).map(random).collect(), seed };
+        if motion.nc > 0 {
+            let values = motion.equations.values(&|s| state.value(s));
+            let (nv, nc) = (motion.nv, motion.nc);
+            let jacobian: Vec<&[f64]> = values[nv * nv + nv..][..nc * nv].chunks(nv).collect();
+            let gap = &values[nv * nv + nv + nc * nv..][..nc];
+            // Of least change: x = Jᵀ y.
+            let product = |i: usize, j: usize| jacobian[i].iter().zip(jacobian[j]).map(|(a, b)| a * b).sum();
+            let normal = (0..nc).map(|i| (0..nc).map(|j| product(i, j)).collect()).collect();
+            let y = solved(normal, gap.to_vec());
+            for (row, y) in jacobian.iter().zip(y) {
+                state.v.iter_mut().zip(*row).for_each(|(v, entry)| *v -= entry * y);
+            }
+        }
+        state.q.iter().chain(&state.v).all(|x| x.is_finite()).then_some(state)
+    }
+
+    fn value(&self, s: Symbol) -> f64 {
+        match Quantity::of(s) {
+            Quantity::Configuration(k) => self.q[k],
+            Quantity::Velocity(k) => self.v[k],
+            Quantity::Time => self.t,
+            Quantity::Input(_) => 0.0,
+            _ => sample(s, self.seed),
+        }
+    }
+
+    fn values(&self, tape: &Tape<'_>) -> Vec<f64> {
+        tape.values(&|s| self.value(s))
+    }
+
+    /// Velocities of the configuration, and accelerations, without inputs.
+    fn motion(&self, motion: &Motion<'_>) -> (Vec<f64>, Vec<f64>) {
+        let (nv, nc) = (motion.nv, motion.nc);
+        let values = self.values(&motion.equations);
+        let (mass, rest) = values.split_at(nv * nv);
+        let (bias, rest) = rest.split_at(nv);
+        let (jacobian, rest) = rest.split_at(nc * nv);
+        let entry = |i: usize, j: usize| match (i < nv, j < nv) {
+            (true, true) => mass[i * nv + j],
+            (true, false) => jacobian[(j - nv) * nv + i],
+            (false, true) => jacobian[(i - nv) * nv + j],
+            (false, false) => 0.0,
+        };
+        let system = (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry(i, j)).collect()).collect();
+        let right = bias.iter().chain(&rest[nc..]).map(|x| -x).collect();
+        let mut a = solved(system, right);
+        a.truncate(nv);
+        (self.values(&motion.rates), a)
+    }
+
+    /// The state after some time along constant rates.
+    fn after(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
+        let moved = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
+        State { t: self.t + h * t, q: moved(&self.q, q), v: moved(&self.v, v), seed: self.seed }
+    }
+
+    /// Rates of values along rates of time, configuration and velocity: differences of fourth order.
+    fn along(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let at = |h: f64| self.after(h * STEP, t, q, v).values(tape);
+        let all = [at(-2.0), at(-1.0), at(1.0), at(2.0)];
+        let rate = |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
+        (0..all[0].len()).map(rate).collect()
+    }
+
+    /// By value, whether it does not change. `None` where the motion is not finite.
+    fn are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
+        let (q, v) = self.motion(motion);
+        let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
+        let whole = self.along(tape, 1.0, &q, &v);
+        let parts = [
+            self.along(tape, 1.0, &no_q, &no_v),
+            self.along(tape, 0.0, &q, &no_v),
+            self.along(tape, 0.0, &no_q, &v),
+        ];
+        let now = self.values(tape);
+        let constant = |k: usize| {
+            let size: f64 = parts.iter().map(|part| part[k].abs()).sum();
+            whole[k].abs() <= LEFT * size + ROUNDING * now[k].abs()
+        };
+        v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(constant).collect())
+    }
+
+    /// By value, the derivatives by all entries of configuration and velocity, and by time.
+    fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
+        let (nq, nv) = (self.q.len(), self.v.len());
+        let unit = |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+        let by = |k: usize| self.along(tape, 0.0, &unit(nq, k), &unit(nv, k.wrapping_sub(nq)));
+        let columns: Vec<Vec<f64>> = (0..nq + nv).map(by).collect();
+        let count = columns.first().map_or(0, Vec::len);
+        (0..count).map(|value| columns.iter().map(|column| column[value]).collect()).collect()
+    }
+}
+
+/// `x` of `m x = r` by elimination with complete pivoting; what rows leave open is zero.
+fn solved(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
+    /// Pivots below this part of the first count as zero.
+    const SMALL: f64 = 1e-11;
+    let n = r.len();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
+    let mut first = 0.0;
+    while !rows.is_empty() {
+        let all = rows.iter().flat_map(|i| columns.iter().map(move |j| (*i, *j)));
+        let Some((row, column)) = all.max_by(|a, b| m[a.0][a.1].abs().total_cmp(&m[b.0][b.1].abs())) else {
+            break;
+        };
+        rows.retain(|i| *i != row);
+        columns.retain(|j| *j != column);
+        let pivot = m[row][column];
+        first = f64::max(first, pivot.abs());
+        if pivot.abs() <= SMALL * first {
+            break;
+        }
+        pivots.push((row, column));
+        let (own, right) = (m[row].clone(), r[row]);
+        for i in (0..n).filter(|i| *i != row) {
+            let factor = m[i][column] / pivot;
+            m[i].iter_mut().zip(&own).for_each(|(x, own)| *x -= factor * own);
+            r[i] -= factor * right;
+        }
+    }
+    let mut x = vec![0.0; n];
+    pivots.iter().for_each(|(row, column)| x[*column] = r[*row] / m[*row][*column]);
+    x
+}

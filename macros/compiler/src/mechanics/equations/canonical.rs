@@ -1,0 +1,128 @@
+//! Hamilton's form, printed: the Hamiltonian, and the rates of coordinates and momenta.
+
+use super::{Limits, Short, quaternions, rank};
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Polynomial, Ring};
+use crate::expr::replace::replace_all;
+use crate::expr::sample::always;
+use crate::expr::{Expr, Symbol};
+use crate::kinematics::{Joint, symbols_in};
+use crate::mechanics::crba::Matrix;
+use crate::mechanics::{energy, forces, momentum};
+use crate::mechanism::{Model, Quantity};
+
+/// The canonical equations as polynomials of one ring; momenta are given numbers.
+pub struct Canonical {
+    /// The atoms.
+    pub ring: Ring,
+    /// `H`.
+    pub hamiltonian: Polynomial,
+    /// Velocities.
+    pub velocity: Vec<Polynomial>,
+    /// Rates of the momenta, inputs included.
+    pub momentum_rate: Vec<Polynomial>,
+    /// Determinants of the inertia of coupled coordinates, and inertias that are sums, which have symbols of their own.
+    pub determinants: Vec<Polynomial>,
+}
+
+/// The symbol of a determinant.
+pub fn determinant(k: usize) -> Quantity {
+    Quantity::Prepared(k)
+}
+
+/// Most momenta that are coupled with each other: the inverse of their inertia is written by cofactors.
+const COUPLED: usize = 3;
+
+/// The canonical equations of a mechanism without constraints; `None` where they would be too long.
+pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Canonical> {
+    let g = model.graph;
+    let zero = vec![g.zero(); model.nv()];
+    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
+    let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
+    let relative: Vec<Expr<'g>> = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
+    let mut normal = Normal::new(g, rank);
+    normal.ring.allow_more();
+    let (velocity, determinants) = velocities_of(mass, &relative, &mut normal)?;
+    let potential = energy::potential_energy(model, joints);
+    let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
+    let hamiltonian = if !model.time {
+        power * 0.5 + potential
+    } else {
+        power - with_velocities(&[energy::kinetic_energy(model, joints, &velocity)], &velocity)[0] + potential
+    };
+    let rate = momentum::momentum_rate(model, joints, &velocity);
+    let inputs = forces::generalized_forces(model, joints);
+    let rate: Vec<Expr<'g>> = rate.into_iter().zip(inputs).map(|(rate, input)| rate + input).collect();
+    let rate = with_velocities(&rate, &velocity);
+    let all: Vec<Expr<'g>> =
+        [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
+    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?;
+    let determinants = all.split_off(1 + 2 * model.nv());
+    let momentum_rate = all.split_off(1 + model.nv());
+    let velocity = all.split_off(1);
+    Some(Canonical { ring: short.ring, hamiltonian: all.pop()?, velocity, momentum_rate, determinants })
+}
+
+fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    replace_all(e, &|s| match Quantity::of(s) {
+        Quantity::Velocity(k) => Some(v[k]),
+        _ => None,
+    })
+}
+
+/// `M⁻¹ p`, group by group of coordinates that are coupled, and the determinants of the groups.
+fn velocities_of<'g>(
+    mass: &Matrix<'g>,
+    p: &[Expr<'g>],
+    normal: &mut Normal<'g>,
+) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+    let (mut out, mut determinants) = (p.to_vec(), Vec::new());
+    let mut left: Vec<usize> = (0..p.len()).collect();
+    while let Some(first) = left.first().copied() {
+        let mut group = vec![first];
+        let mut k = 0;
+        while k < group.len() {
+            let row = &mass[group[k]];
+            // Some entries are zero after sines and cosines have met.
+            let more: Vec<usize> =
+                (0..p.len()).filter(|j| !always(row[*j], 0.0) && !group.contains(j)).collect();
+            group.extend(more);
+            k += 1;
+        }
+        left.retain(|k| !group.contains(k));
+        group.sort_unstable();
+        if group.len() > COUPLED {
+            return None;
+        }
+        let own: Matrix<'g> = group.iter().map(|i| group.iter().map(|j| mass[*i][*j]).collect()).collect();
+        let n = group.len();
+        let cofactors: Matrix<'g> = (0..n).map(|i| (0..n).map(|j| cofactor(&own, i, j)).collect()).collect();
+        let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
+        // A sum of waves would not be shortened in a denominator.
+        let moves = |s: &Symbol| matches!(Quantity::of(*s), Quantity::Configuration(_));
+        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.of(divisor)?.terms.len() > 1) {
+            determinants.push(divisor);
+            divisor = determinant(determinants.len() - 1).expr(divisor.graph());
+        }
+        for (i, k) in group.iter().enumerate() {
+            let sum = (0..n).map(|j| cofactors[i][j] * p[group[j]]).reduce(|a, b| a + b)?;
+            out[*k] = sum / divisor;
+        }
+    }
+    Some((out, determinants))
+}
+
+/// The cofactor of an entry of a matrix of at most three rows.
+fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
+    let n = m.len();
+    // Cyclic indices have the sign already.
+    let at = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
+    match n {
+        1 => m[0][0].num(1.0),
+        2 if i == j => at(1, 1),
+        2 => -at(1, 1),
+        _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
+    }
+}

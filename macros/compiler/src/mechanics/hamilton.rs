@@ -1,0 +1,49 @@
+//! Hamilton's form: the energy and the canonical equations as functions of configuration and momentum (Goldstein, Poole and
+//! Safko, *Classical Mechanics*, 2002, ch. 8). For ball and free joints the momenta are body components, and the equations
+//! those of Lie and Poisson.
+
+use super::crba::Matrix;
+use super::{energy, ldl, momentum};
+use crate::expr::Expr;
+use crate::expr::replace::replace_all;
+use crate::kinematics::Joint;
+use crate::mechanism::{Model, Quantity};
+
+/// Functions of `q` and the momenta, which are given numbers.
+pub struct Hamilton<'g> {
+    /// `H = p·v − T + U`.
+    pub hamiltonian: Expr<'g>,
+    /// `v`.
+    pub velocity: Vec<Expr<'g>>,
+    /// `ṗ`, with the forces `τ`.
+    pub momentum_rate: Vec<Expr<'g>>,
+}
+
+/// Solves `p = M v + p₀` for the velocities and puts them into energy and rates; `p₀` is what driven motion contributes.
+pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Hamilton<'g> {
+    let g = model.graph;
+    let zero = vec![g.zero(); model.nv()];
+    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
+    let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
+    let relative = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
+    let velocity = ldl::solve(mass.clone(), relative, joints);
+    let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
+    let potential = energy::potential_energy(model, joints);
+    let hamiltonian = if !model.time {
+        power * 0.5 + potential
+    } else {
+        power - energy::kinetic_energy(model, joints, &velocity) + potential
+    };
+    let mut rate = momentum::momentum_rate(model, joints, &velocity);
+    rate.iter_mut().enumerate().for_each(|(k, rate)| *rate += Quantity::Force(k).expr(g));
+    let hamiltonian = with_velocities(&[hamiltonian], &velocity)[0];
+    Hamilton { hamiltonian, momentum_rate: with_velocities(&rate, &velocity), velocity }
+}
+
+/// Expressions with other velocities: what elements store and dissipate is written in those of the mechanism.
+fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    replace_all(e, &|s| match Quantity::of(s) {
+        Quantity::Velocity(k) => Some(v[k]),
+        _ => None,
+    })
+}

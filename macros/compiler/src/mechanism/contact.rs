@@ -1,0 +1,22 @@
+//! Contacts that open and close.
+
+use crate::expr::Expr;
+
+/// Two surfaces, or a coordinate and its stop, that may part, strike, slide and stick.
+#[derive(Clone, Debug)]
+pub struct Contact<'g> {
+    /// Its name; of several points of one pair with the number of the point.
+    pub name: String,
+    /// The distance, an expression of configuration and time: negative where the surfaces overlap.
+    pub gap: Expr<'g>,
+    /// The gap is an angle.
+    pub turns: bool,
+    /// The rate of the gap, then those of the slip along one or two tangents if there is friction; linear in the velocities.
+    pub rates: Vec<Expr<'g>>,
+    /// Their derivatives at zero accelerations.
+    pub biases: Vec<Expr<'g>>,
+    /// Coefficient of friction.
+    pub friction: Expr<'g>,
+    /// Coefficient of restitution.
+    pub restitution: Expr<'g>,
+}

@@ -1,0 +1,139 @@
+//! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear in them.
+
+use super::builder::Builder;
+use super::scope::{Allowed, Scope};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::diff::Derivative;
+use crate::expr::replace::replace;
+use crate::expr::{Expr, Vec3};
+use crate::kinematics::{symbols_in, time_derivative, velocity_gradient};
+use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
+use crate::syntax::{self, ExprKind, Name};
+
+impl<'g> Scope<'_, 'g> {
+    /// The rate of an expression along the motion; `None` also where a coordinate was meant, which is not told yet.
+    pub fn rate_of_value(
+        &self,
+        function: &Name,
+        argument: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Expr<'g>> {
+        let value = self.scalar(argument, cx)?;
+        let of: Vec<Quantity> = symbols_in(&[value]).into_iter().map(Quantity::of).collect();
+        let has = |what: fn(&Quantity) -> bool| of.iter().any(what);
+        let is_state = |k: &usize| {
+            self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
+        };
+        let state = of.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
+        if let Some(state) = state {
+            cx.error(argument.place.clone(), format!("this depends on the state `{}`", state.text)).help(
+                "a rate is known of what depends on coordinates, velocities and time: write the state's own rate",
+            );
+            return None;
+        }
+        if has(|q| matches!(q, Quantity::Input(_))) {
+            cx.error(argument.place.clone(), "this depends on inputs, whose rates are not known")
+                .help("a `State` that follows an input late has a rate");
+            return None;
+        }
+        if has(|q| matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_)))
+        {
+            cx.error(
+                argument.place.clone(),
+                "this depends on accelerations or forces, whose rates are not known",
+            )
+            .help("a rate is known of what depends on coordinates, velocities and time");
+            return None;
+        }
+        let gradient = velocity_gradient(value);
+        let needed = if gradient.is_empty() { Allowed::Motion } else { Allowed::Acceleration };
+        let what = match needed {
+            Allowed::Motion => "a rate",
+            _ => "the rate of what depends on velocities",
+        };
+        if !self.check_allowed(needed, what, &function.place, cx) {
+            return None;
+        }
+        let kinematics = self.kinematics.borrow();
+        let at_rest = time_derivative(Space { graph: self.graph, charts: &kinematics.charts }, value);
+        let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
+        Some(terms.fold(at_rest, |sum, term| sum + term))
+    }
+
+    /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that moves.
+    pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
+        match &argument.kind {
+            ExprKind::Name(name) => self.definitions.iter().any(|definition| definition.name.text == *name),
+            ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => true,
+            _ => false,
+        }
+    }
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// A force on a rate, with what of it is linear in the accelerations apart.
+    pub fn add_value_load(&mut self, rate: Expr<'g>, force: Expr<'g>, place: &Place, cx: &mut Diagnostics) {
+        let graph = self.scope.graph;
+        let acceleration = |s| match Quantity::of(s) {
+            Quantity::Acceleration(k) => Some((s, k)),
+            _ => None,
+        };
+        let named: Vec<_> = symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
+        if named.is_empty() {
+            self.model.loads.push(Load { rate, force, dissipative: false });
+            return;
+        }
+        let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).of(force));
+        let factors: Vec<(usize, Expr<'g>)> =
+            named.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
+        let all: Vec<Expr<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
+        let of: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
+        if of.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
+            cx.error(place.clone(), "a force can depend on accelerations linearly alone")
+                .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one of them each");
+            return;
+        }
+        if of.iter().any(|q| matches!(q, Quantity::Input(_))) {
+            cx.error(place.clone(), "what multiplies an acceleration cannot depend on inputs")
+                .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
+            return;
+        }
+        let rest = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
+        if !rest.is_zero() {
+            self.model.loads.push(Load { rate, force: rest, dissipative: false });
+        }
+        if !factors.is_empty() {
+            self.model.acceleration_forces.push(AccelerationForce { rate, factors, place: place.clone() });
+        }
+    }
+
+    /// A force with a value, at a point: a load for each component.
+    pub fn add_load(&mut self, rate: Vec3<'g>, force: Vec3<'g>, place: &Place, cx: &mut Diagnostics) {
+        for k in 0..3 {
+            let before = cx.len();
+            if !force[k].is_zero() {
+                self.add_value_load(rate[k], force[k], place, cx);
+            }
+            if cx.len() > before {
+                return;
+            }
+        }
+    }
+
+    /// Reports forces linear in accelerations where the forces of constraints and contacts follow from a symmetric mass matrix.
+    pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {
+        let Some(force) = self.model.acceleration_forces.first() else { return };
+        let found = match (self.model.constraints.is_empty(), self.model.contacts.is_empty()) {
+            (true, true) => return,
+            (false, _) => "constraints, such as joints that close loops",
+            (true, false) => "contacts that open and close",
+        };
+        if self.releasing.is_none() {
+            cx.error(
+                force.place.clone(),
+                format!("a force cannot depend on accelerations in a mechanism with {found}"),
+            )
+            .help("hold the bodies by joints that form a tree, or leave these terms out");
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Contacts that open and close: surfaces of bodies, and coordinates at their bounds.
+
+use super::surface::{Form, Surface};
+use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Extreme, Vec3};
+use crate::kinematics::{time_derivative, velocity_gradient};
+use crate::mechanism::{Contact, Quantity, Rule};
+use crate::resolve::builder::Builder;
+use crate::resolve::motion::Moving;
+use crate::resolve::scope::{Allowed, Context};
+use crate::syntax::contact::EXAMPLE;
+use crate::syntax::{self, ExprKind, GROUND};
+
+/// Most points of all contacts of a mechanism: what is generated grows as their number.
+const MOST: usize = 128;
+
+/// Square of the sine of an angle between lines that are parallel.
+const PARALLEL: f64 = 1e-12;
+
+/// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
+const FLAT: f64 = 1e-24;
+
+const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules and cuboids on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids";
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds all contacts to the model: declared ones in their order, then the stops of limits.
+    pub fn add_contacts(&mut self, _: Moving, cx: &mut Diagnostics) {
+        let description = self.description;
+        for contact in &description.contacts {
+            self.add_contact(contact, cx);
+        }
+        for limit in description.limits.iter().filter(|limit| limit.restitution.is_some()) {
+            self.add_stops(limit, cx);
+        }
+        let count = self.model.contacts.len();
+        if count > MOST {
+            let place = description.contacts.first().map_or(&description.name.place, |c| &c.name.place);
+            cx.error(place.clone(), format!("{count} points of contact, more than {MOST}"))
+                .help("each has code of its own: let fewer points touch, or divide the mechanism");
+        }
+    }
+
+    fn add_contact(&mut self, contact: &syntax::Contact, cx: &mut Diagnostics) {
+        let laws = self.laws(contact.friction.as_ref(), contact.restitution.as_ref(), &contact.name.text, cx);
+        let first = self.touching(&contact.first, cx);
+        // Two bodies in the place of two surfaces are one mistake.
+        let second = match first {
+            None if !matches!(contact.second.kind, ExprKind::Method(..)) => None,
+            _ => self.touching(&contact.second, cx),
+        };
+        let (Some(first), Some(second), Some((friction, restitution))) = (first, second, laws) else {
+            return;
+        };
+        let first_home = first.home.link;
+        let Some(pair) = self.two(first, second, Form::touches, &contact.second, cx) else { return };
+        let touches = self.touches(&pair);
+        if touches.is_empty() {
+            let place = contact.first.place.to(&contact.second.place);
+            cx.error(place, "where these surfaces touch is not known").help(PAIRS);
+            return;
+        }
+        let several = touches.len() > 1;
+        let side = self.scope.graph.num(if pair.a.home.link == first_home { 1.0 } else { -1.0 });
+        let mut forces = Vec::new();
+        for (k, touch) in touches.into_iter().enumerate() {
+            let slip = self.slip(&pair, touch.point);
+            let mut rates: Vec<(Vec3<'g>, Expr<'g>)> =
+                touch.axes.iter().map(|(_, e)| (*e * side, e.dot(slip))).collect();
+            if velocity_gradient(rates[0].1).is_empty() {
+                let place = contact.first.place.to(&contact.second.place);
+                cx.error(place, "nothing moves these surfaces apart, or together")
+                    .help("surfaces touch that belong to bodies which move relative to each other");
+                return;
+            }
+            rates.truncate(if friction.is_zero() { 1 } else { rates.len() });
+            let mut place = 0;
+            rates.retain(|(_, rate)| {
+                place += 1;
+                place == 1 || !velocity_gradient(*rate).is_empty()
+            });
+            let number = self.model.contact_rates().len();
+            for (k, (direction, _)) in rates.iter().enumerate() {
+                let force = Quantity::ContactForce(number + k).expr(self.scope.graph);
+                forces.push((pair.on_a.ancestor, *direction * force));
+            }
+            let rates = rates.into_iter().map(|(_, rate)| rate).collect();
+            let name = &contact.name.text;
+            let name = if several { format!("{name}.{k}") } else { name.clone() };
+            self.push_contact(name, touch.gap, false, rates, (friction, restitution));
+        }
+        self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), forces);
+    }
+
+    /// Adds the stops at the bounds of a limit.
+    fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
+        let laws = self.laws(None, limit.restitution.as_ref(), &limit.name.text, cx);
+        let (Some((friction, restitution)), Some((c, angle))) = (laws, self.coordinate(&limit.on, cx)) else {
+            return;
+        };
+        let g = self.scope.graph;
+        let turns = angle == Some(true);
+        let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
+            // Mistakes are told where the limit is read.
+            true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
+            false => self.scope.scalar(e, &mut Diagnostics::unread()),
+        };
+        let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
+        let bounds = bounds.map(|(word, e, side)| Some((word, value(e.as_ref()?)?, side)));
+        let (q, v) = (Quantity::Configuration(c.q).expr(g), Quantity::Velocity(c.v).expr(g));
+        for (word, bound, side) in bounds.into_iter().flatten() {
+            let (own, rate) = (q * g.num(c.ratio) + g.num(c.offset), v * g.num(c.ratio));
+            let gap = (own - bound) * g.num(side);
+            let name = format!("{}.{word}", limit.name.text);
+            self.push_contact(name, gap, turns, vec![rate * g.num(side)], (friction, restitution));
+        }
+    }
+
+    fn push_contact(
+        &mut self,
+        name: String,
+        gap: Expr<'g>,
+        turns: bool,
+        rates: Vec<Expr<'g>>,
+        (friction, restitution): (Expr<'g>, Expr<'g>),
+    ) {
+        let biases = rates.iter().map(|rate| time_derivative(self.model.space(), *rate)).collect();
+        self.model.contacts.push(Contact { name, gap, turns, rates, biases, friction, restitution });
+    }
+
+    /// Coefficients of friction and restitution; `None` after a mistake.
+    fn laws(
+        &self,
+        friction: Option<&syntax::Expr>,
+        restitution: Option<&syntax::Expr>,
+        name: &str,
+        cx: &mut Diagnostics,
+    ) -> Option<(Expr<'g>, Expr<'g>)> {
+        let g = self.scope.graph;
+        let mut read = |e: Option<&syntax::Expr>, what: &str, rule: Rule| {
+            let Some(e) = e else { return Some(g.zero()) };
+            let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+            let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
+            if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
+                let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
+                cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"));
+                return None;
+            }
+            self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);
+            Some(value)
+        };
+        let friction = read(friction, "friction", Rule::NotNegative);
+        let restitution = read(restitution, "restitution", Rule::Fraction);
+        Some((friction?, restitution?))
+    }
+
+    /// A surface of a contact: those that roll, or a point.
+    fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Surface<'g>> {
+        let is_place = match &e.kind {
+            ExprKind::Method(_, word, _) => word.text == "at",
+            ExprKind::Name(name) => name != GROUND,
+            _ => false,
+        };
+        if is_place {
+            return Some(Surface { home: self.scope.place(e, cx)?, form: Form::Point });
+        }
+        self.surface(e, &format!("write `{EXAMPLE}`"), cx)
+    }
+
+    /// Where a pair touches, at one point or several.
+    fn touches(&self, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+        let g = self.scope.graph;
+        let turned_a = |v| self.of_first(pair, v).value;
+        let turned_b = |v| self.of_second(pair, v).value;
+        let c = pair.center.value - pair.base.value;
+        let Form::Plane(n) = &pair.b.form else {
+            return self.round(pair, c, &turned_b).into_iter().collect();
+        };
+        let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
+        let normal = turned_b(*n);
+        let touch = |point: Vec3<'g>| Touch {
+            gap: normal.dot(c + point),
+            point,
+            axes: [("normal", normal), (first, e1), (second, e2)],
+            conditions: Vec::new(),
+        };
+        let half = g.num(0.5);
+        match &pair.a.form {
+            Form::Point => vec![touch(Vec3::zero(g))],
+            Form::Cuboid(lengths) => (0..8)
+                .map(|k| {
+                    let side = |axis: usize| if k >> axis & 1 == 0 { -half } else { half };
+                    let corner = Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)));
+                    touch(turned_a(corner))
+                })
+                .collect(),
+            Form::Capsule(radius, length, axis) => {
+                [-half, half].map(|side| touch(turned_a(*axis * (*length * side)) - normal * *radius)).into()
+            }
+            Form::Cone(..) => Vec::new(),
+            form => farthest(form, normal, FLAT, &turned_a).map(|far| touch(-far)).into_iter().collect(),
+        }
+    }
+
+    /// Where a sphere, a point or a capsule touches what is no plane.
+    fn round(
+        &self,
+        pair: &Pair<'g>,
+        c: Vec3<'g>,
+        turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> Option<Touch<'g>> {
+        let g = self.scope.graph;
+        let half = g.num(0.5);
+        let (radius, own) = match &pair.a.form {
+            Form::Point => (g.zero(), None),
+            Form::Sphere(radius) => (*radius, None),
+            Form::Capsule(radius, length, axis) => {
+                (*radius, Some((self.of_first(pair, *axis).value, *length * half)))
+            }
+            _ => return None,
+        };
+        match &pair.b.form {
+            Form::Capsule(other, length, axis) => {
+                let (axis, reach) = (turned_b(*axis), *length * half);
+                let sphere = Form::Sphere(*other);
+                let Some((own, own_reach)) = own else {
+                    let along = within(axis.dot(c), reach);
+                    return sphere_contact(radius, &sphere, c - axis * along, turned_b);
+                };
+                let (near, far) = nearest(c, (own, own_reach), (axis, reach));
+                let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, turned_b)?;
+                Some(Touch { point: touch.point + own * near, ..touch })
+            }
+            Form::Cuboid(lengths) => {
+                let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned_b(Vec3::axis(g, k)));
+                let inner = (0..3)
+                    .fold(Vec3::zero(g), |sum, k| sum + axes[k] * within(axes[k].dot(c), lengths[k] * half));
+                sphere_contact(radius, &Form::Sphere(g.zero()), c - inner, turned_b)
+            }
+            form => sphere_contact(radius, form, c, turned_b),
+        }
+    }
+}
+
+/// What is nearest to a number between `-most` and `most`.
+fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
+    x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
+}
+
+/// Where two straight lines of given half lengths are nearest to each other, from their middles along their axes; `c` leads from
+/// the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). Where they are parallel it is one place
+/// of many.
+fn nearest<'g>(
+    c: Vec3<'g>,
+    (own, own_reach): (Vec3<'g>, Expr<'g>),
+    (axis, reach): (Vec3<'g>, Expr<'g>),
+) -> (Expr<'g>, Expr<'g>) {
+    let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
+    let one = cosine.num(1.0);
+    let across = (one - cosine * cosine).extreme(Extreme::Max, cosine.num(PARALLEL));
+    let guess = within((cosine * second - first) / across, own_reach);
+    let far = within(second + cosine * guess, reach);
+    (within(cosine * far - first, own_reach), far)
+}
+
+impl<'g> Form<'g> {
+    /// True for pairs whose contact is known.
+    fn touches(&self, b: &Form<'g>) -> bool {
+        match b {
+            Form::Plane(_) => !matches!(
+                self,
+                Form::Plane(_)
+                    | Form::Cone(..)
+                    | Form::Sheet(_)
+                    | Form::Bowl(_)
+                    | Form::Cylinder(..)
+                    | Form::Tube(..)
+                    | Form::Funnel(..)
+            ),
+            Form::Capsule(..) => matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..)),
+            Form::Cuboid(_) => matches!(self, Form::Sphere(_)),
+            Form::Sphere(_)
+            | Form::Bowl(_)
+            | Form::Cylinder(..)
+            | Form::Tube(..)
+            | Form::Cone(..)
+            | Form::Funnel(..) => matches!(self, Form::Sphere(_) | Form::Point),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Conditions on figures that follow from parameters: what is a mistake in a number is told at run time of a parameter.
+
+use super::builder::Builder;
+use super::scope::Scope;
+use crate::expr::Expr;
+use crate::kinematics::symbols_in;
+use crate::mechanism::{Quantity, Requirement, Rule};
+
+impl<'g> Scope<'_, 'g> {
+    /// Notes a condition on figures, if they follow from parameters, and from nothing that moves.
+    pub fn require(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
+        let parameter = |symbol| match Quantity::of(symbol) {
+            Quantity::Parameter(k) => Some(k),
+            _ => None,
+        };
+        let parameters: Option<Vec<usize>> = symbols_in(values).into_iter().map(parameter).collect();
+        let Some(parameters) = parameters.filter(|all| !all.is_empty()) else { return };
+        let mut all = self.requirements.borrow_mut();
+        // A definition may stand at many places.
+        if !all.iter().any(|known| known.rule.includes(rule) && known.values == values) {
+            all.push(Requirement { rule, figure: figure(), parameters, values: values.to_vec() });
+        }
+    }
+}
+
+impl Builder<'_, '_> {
+    /// Puts all conditions into the model: those of figures, those of bounds, and that parameters are finite of which there is
+    /// no other. One that is kept for the user's own use may be what it likes.
+    pub fn gather_requirements(&mut self) {
+        for limit in &self.model.limits {
+            let name = self.model.velocities.get(limit.v).map_or("", |(name, _)| name.as_str());
+            if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
+                self.scope.require(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
+            }
+            for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
+                let most = || format!("the largest {what} of `{name}`");
+                bound.iter().for_each(|bound| self.scope.require(Rule::NotNegative, most, &[*bound]));
+            }
+        }
+        for (k, parameter) in self.description.parameters.iter().enumerate() {
+            let value = Quantity::Parameter(k).expr(self.scope.graph);
+            if !parameter.text.starts_with('_') {
+                self.scope.require(Rule::Finite, || format!("the parameter `{}`", parameter.text), &[value]);
+            }
+        }
+        self.model.requirements = self.scope.requirements.take();
+    }
+}

@@ -1,0 +1,132 @@
+//! `parameters = inertial("trunk")`: which figures of a file are parameters of the mechanism, and the fields that hold them.
+
+use super::Name;
+use super::expression::parse_name;
+use crate::diag::{Diagnostics, one_of, syn_error};
+use syn::parse::ParseStream;
+use syn::punctuated::Punctuated;
+use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
+
+/// Figures of one kind, as they are asked for.
+#[derive(Clone, Debug)]
+pub struct FileFigures {
+    /// Their kind, as it is written.
+    pub word: Name,
+    /// Links or joints by name; all of them if absent.
+    pub of: Option<Vec<Name>>,
+}
+
+/// The kinds of figures.
+pub const INERTIAL: &str = "inertial";
+/// Places of joints.
+pub const PLACEMENT: &str = "placement";
+/// Viscous friction of joints.
+pub const DAMPING: &str = "damping";
+/// Dry friction of joints.
+pub const FRICTION: &str = "friction";
+
+const WORDS: [&str; 4] = [INERTIAL, PLACEMENT, DAMPING, FRICTION];
+
+/// What a field is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileFieldKind {
+    /// The runtime's `Inertial`: a link's mass properties.
+    Inertial,
+    /// The runtime's `Placement`: where a joint stands on its parent.
+    Placement,
+    /// A number.
+    Number,
+}
+
+/// A field that holds figures of a file.
+#[derive(Clone, Debug)]
+pub struct FileField {
+    /// Its name in Rust.
+    pub ident: String,
+    /// What it is.
+    pub kind: FileFieldKind,
+    /// The link or joint that it belongs to.
+    pub of: String,
+    /// Its documentation.
+    pub about: String,
+    /// The file's figures, in the order of [`members`](Self::members).
+    pub values: Vec<f64>,
+    /// Their units.
+    pub units: Vec<&'static str>,
+}
+
+impl FileField {
+    /// How each figure is written behind a mechanism: `trunk.mass`.
+    pub fn members(&self) -> Vec<String> {
+        let members: &[&str] = match self.kind {
+            FileFieldKind::Inertial => {
+                &["mass", "com[0]", "com[1]", "com[2]", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"]
+            }
+            FileFieldKind::Placement => &["xyz[0]", "xyz[1]", "xyz[2]", "rpy[0]", "rpy[1]", "rpy[2]"],
+            FileFieldKind::Number => return vec![self.ident.clone()],
+        };
+        members.iter().map(|member| format!("{}.{member}", self.ident)).collect()
+    }
+}
+
+/// Parses one kind or a list of them.
+pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileFigures>> {
+    if !input.peek(token::Bracket) {
+        return Ok(vec![parse_one(input)?]);
+    }
+    let list;
+    bracketed!(list in input);
+    Ok(Punctuated::<FileFigures, Token![,]>::parse_terminated_with(&list, parse_one)?.into_iter().collect())
+}
+
+fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
+    if input.peek(LitStr) {
+        let text: LitStr = input.parse()?;
+        let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());
+        return Err(syn_error(text.span(), "expected a kind of figures, found a text", &help));
+    }
+    if !input.peek(Ident) {
+        let help = format!("write `parameters = {INERTIAL}(\"link\")`");
+        return Err(syn_error(input.span(), "expected a kind of figures", &help));
+    }
+    let word = parse_name(input)?;
+    if !input.peek(token::Paren) {
+        return Ok(FileFigures { word, of: None });
+    }
+    let list;
+    parenthesized!(list in input);
+    if list.is_empty() {
+        let help = format!("write `{}` alone for all of them", word.text);
+        return Err(syn_error(word.place.span, "no name stands in these parentheses", &help));
+    }
+    let name = |input: ParseStream<'_>| -> syn::Result<Name> {
+        if !input.peek(LitStr) {
+            let help = "names of the file are texts: `inertial(\"trunk\")`";
+            return Err(syn_error(input.span(), "expected a name in quotation marks", help));
+        }
+        let text: LitStr = input.parse()?;
+        Ok(Name { text: text.value(), place: text.span().into() })
+    };
+    let names = Punctuated::<Name, Token![,]>::parse_terminated_with(&list, name)?;
+    Ok(FileFigures { word, of: Some(names.into_iter().collect()) })
+}
+
+/// Those kinds that there are, each once; reports the others.
+pub fn check(asked: Vec<FileFigures>, cx: &mut Diagnostics) -> Vec<FileFigures> {
+    let mut good: Vec<FileFigures> = Vec::new();
+    for figures in asked {
+        let word = &figures.word;
+        if !WORDS.contains(&word.text.as_str()) {
+            let words = WORDS.map(|word| format!("`{word}`"));
+            let error = cx.error(word.place.clone(), format!("unknown figures `{}`", word.text));
+            error.suggest(&word.text, WORDS);
+            error.help(format!("parameters of a file are {}", one_of(&words)));
+        } else if good.iter().any(|known| known.word.text == word.text) {
+            cx.error(word.place.clone(), format!("`{}` stands here twice", word.text))
+                .help(format!("name all in one: `{}(\"…\", \"…\")`", word.text));
+        } else {
+            good.push(figures);
+        }
+    }
+    good
+}

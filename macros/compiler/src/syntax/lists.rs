@@ -1,0 +1,267 @@
+//! Lists of elements: `leg: [Body; 2]` stands for two fields, `leg_0` and `leg_1`. In the attributes of a list `i` counts its
+//! elements, and everywhere `leg[1]` and `leg[i + 1]` name one of them. What comes after sees plain fields only.
+
+use super::element::{ATTRIBUTES, is_one_of};
+use crate::diag::Diagnostics;
+use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::ext::IdentExt;
+use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
+
+/// What counts the elements of a list.
+const INDEX: &str = "i";
+/// Most elements of all lists together.
+const MOST: usize = 4096;
+/// Most tokens that lists may be written out to.
+const MOST_TOKENS: usize = 1_000_000;
+/// Most tokens in brackets behind the name of a list.
+const LONGEST: usize = 64;
+
+/// The lists of a struct: name and number of elements.
+pub struct Lists {
+    lists: Vec<(String, usize)>,
+    tokens: usize,
+}
+
+impl Lists {
+    /// Writes the lists among the fields out, and says which there were.
+    pub fn write_out(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
+        let mut lists = Lists { lists: Vec::new(), tokens: 0 };
+        let Fields::Named(named) = fields else { return lists };
+        let counts: Vec<Option<usize>> = named.named.iter().map(|field| lists.read(field, cx)).collect();
+        if lists.lists.is_empty() {
+            return lists;
+        }
+        cx.count_alike(lists.lists.iter().map(|(name, _)| name.clone()).collect());
+        lists.check_names(named.named.iter(), cx);
+        let taken = std::mem::take(&mut named.named);
+        for (mut field, count) in taken.into_iter().zip(counts) {
+            let Some(count) = count else {
+                lists.rewrite_attributes(&mut field, None, cx);
+                named.named.push(field);
+                continue;
+            };
+            for k in 0..count {
+                named.named.push(lists.element(&field, k, cx));
+            }
+        }
+        lists
+    }
+
+    /// The number of elements of a field that is a list; 0 of one that cannot be written out.
+    fn read(&mut self, field: &Field, cx: &mut Diagnostics) -> Option<usize> {
+        let (Type::Array(array), Some(ident)) = (&field.ty, &field.ident) else { return None };
+        if matches!(&*array.elem, Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("f32"))
+        {
+            return None;
+        }
+        let left = MOST - self.lists.iter().map(|(_, count)| count).sum::<usize>();
+        let count = match &array.len {
+            Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse::<usize>().unwrap_or(usize::MAX),
+            other => {
+                cx.error(span(other), "the length of a list is a number").help(
+                    "write `[Body; 2]`: the value of a Rust constant is not known yet when mechanisms are compiled",
+                );
+                0
+            }
+        };
+        let found = cx.len();
+        if count > left {
+            cx.error(span(&array.len), format!("the lists of a mechanism have {MOST} elements at most"));
+        } else if count == 0 && matches!(&array.len, Expr::Lit(_)) {
+            cx.error(span(&array.len), "a list has one element at least")
+                .help("write its length, as in `[Body; 2]`");
+        }
+        let count = if cx.len() > found { 0 } else { count };
+        self.lists.push((ident.unraw().to_string(), count));
+        Some(count)
+    }
+
+    /// No other field can have the name of what counts.
+    fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
+        let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
+        if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
+            cx.error(ident.span(), format!("`{INDEX}` counts the elements of lists"))
+                .help("give the field another name");
+        }
+    }
+
+    /// One element of a list as a field of its own.
+    fn element(&mut self, list: &Field, k: usize, cx: &mut Diagnostics) -> Field {
+        let mut field = list.clone();
+        if let Type::Array(array) = &list.ty {
+            field.ty = (*array.elem).clone();
+        }
+        field.ident =
+            list.ident.as_ref().map(|ident| element_name(&ident.unraw().to_string(), k, ident.span()));
+        self.rewrite_attributes(&mut field, Some(k), cx);
+        field
+    }
+
+    fn rewrite_attributes(&mut self, field: &mut Field, index: Option<usize>, cx: &mut Diagnostics) {
+        for attribute in field.attrs.iter_mut().filter(|attribute| is_one_of(attribute, &ATTRIBUTES)) {
+            if let Meta::List(list) = &mut attribute.meta {
+                list.tokens = self.rewrite(std::mem::take(&mut list.tokens), index, cx);
+            }
+        }
+    }
+
+    /// Tokens with names in place of `leg[1]`, and numbers in place of what counts.
+    pub fn rewrite(
+        &mut self,
+        tokens: TokenStream,
+        index: Option<usize>,
+        cx: &mut Diagnostics,
+    ) -> TokenStream {
+        if self.lists.is_empty() {
+            return tokens;
+        }
+        let mut tokens = tokens.into_iter().peekable();
+        let mut written = Vec::new();
+        let mut member = false;
+        while let Some(token) = tokens.next() {
+            self.tokens += 1;
+            if self.tokens > MOST_TOKENS {
+                if self.tokens == MOST_TOKENS + 1 {
+                    cx.error(token.span(), format!("lists are written out to {MOST_TOKENS} tokens at most"));
+                }
+                break;
+            }
+            let behind_a_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
+            match token {
+                TokenTree::Ident(word) if !behind_a_dot => {
+                    let index_of = match tokens.peek() {
+                        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Bracket => {
+                            Some(group.clone())
+                        }
+                        _ => None,
+                    };
+                    let ends = tokens.peek().is_none_or(|next| !is_punct(next, '='));
+                    let (token, used) = self.word(&word, index_of.as_ref(), ends, index, cx);
+                    written.push(token);
+                    if used {
+                        tokens.next();
+                    }
+                }
+                TokenTree::Group(group) => {
+                    let inner = self.rewrite(group.stream(), index, cx);
+                    let mut rewritten = Group::new(group.delimiter(), inner);
+                    rewritten.set_span(group.span());
+                    written.push(rewritten.into());
+                }
+                token => written.push(token),
+            }
+        }
+        written.into_iter().collect()
+    }
+
+    /// What a word becomes, with what stands in brackets behind it, if that belongs to it.
+    fn word(
+        &self,
+        word: &Ident,
+        brackets: Option<&Group>,
+        ends: bool,
+        index: Option<usize>,
+        cx: &mut Diagnostics,
+    ) -> (TokenTree, bool) {
+        let text = word.unraw().to_string();
+        if text == INDEX
+            && let Some(k) = index
+        {
+            let mut number = Literal::usize_unsuffixed(k);
+            number.set_span(word.span());
+            return (number.into(), false);
+        }
+        let Some((_, count)) = self.lists.iter().find(|(name, _)| *name == text) else {
+            return (word.clone().into(), false);
+        };
+        let Some(group) = brackets else {
+            // A list that could not be read, or the name of an argument.
+            if *count > 0 && ends {
+                let error = cx.error(word.span(), format!("`{text}` is a list of {count}"));
+                match index {
+                    Some(_) => error.help(format!("write `{text}[{INDEX}]`, or `{text}[0]`")),
+                    None => error.help(format!("write which one, as in `{text}[0]`")),
+                };
+            }
+            return (word.clone().into(), false);
+        };
+        let k = self.number(&text, *count, group, index, cx).unwrap_or(0);
+        (element_name(&text, k, word.span()).into(), true)
+    }
+
+    /// The value of what stands in brackets behind the name of a list.
+    fn number(
+        &self,
+        list: &str,
+        count: usize,
+        group: &Group,
+        index: Option<usize>,
+        cx: &mut Diagnostics,
+    ) -> Option<usize> {
+        let short = group.stream().into_iter().count() <= LONGEST;
+        let written: Option<Expr> = short.then(|| syn::parse2(group.stream()).ok()).flatten();
+        let value = written.as_ref().and_then(|e| value(e, index));
+        let Some(value) = value else {
+            let error = cx.error(group.span(), format!("expected the place of an element of `{list}`"));
+            match index {
+                Some(_) => error.help(format!(
+                    "write a whole number, or one that follows from `{INDEX}`, as in `{list}[{INDEX} + 1]`"
+                )),
+                None => error.help(format!(
+                    "write a whole number, as in `{list}[0]`; `{INDEX}` counts in the attributes of lists alone"
+                )),
+            };
+            return None;
+        };
+        let place = usize::try_from(value).ok().filter(|k| *k < count);
+        if place.is_none() && count > 0 {
+            let error = cx.error(
+                group.span(),
+                format!("`{list}[{value}]` is not there: `{list}` is a list of {count}"),
+            );
+            error.help(format!("its elements are `{list}[0]` to `{list}[{}]`", count - 1));
+            if let Some(k) = index {
+                error.note(format!("`{INDEX}` is {k} here"));
+            }
+        }
+        place
+    }
+}
+
+/// The name of an element: `leg_1` of `leg`.
+fn element_name(list: &str, k: usize, span: Span) -> Ident {
+    Ident::new(&format!("{list}_{k}"), span)
+}
+
+fn is_punct(token: &TokenTree, sign: char) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
+}
+
+/// Where an expression of Rust begins.
+fn span(e: &Expr) -> Span {
+    e.to_token_stream().into_iter().next().map_or_else(Span::call_site, |token| token.span())
+}
+
+/// The whole number that an expression is; none beyond what a machine counts to, or divided without a rest.
+fn value(e: &Expr, index: Option<usize>) -> Option<i64> {
+    match e {
+        Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse().ok(),
+        Expr::Path(path) if path.path.is_ident(INDEX) => index.and_then(|k| i64::try_from(k).ok()),
+        Expr::Paren(inner) => value(&inner.expr, index),
+        Expr::Group(inner) => value(&inner.expr, index),
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => value(&unary.expr, index)?.checked_neg(),
+        Expr::Binary(both) => {
+            let (a, b) = (value(&both.left, index)?, value(&both.right, index)?);
+            match both.op {
+                BinOp::Add(_) => a.checked_add(b),
+                BinOp::Sub(_) => a.checked_sub(b),
+                BinOp::Mul(_) => a.checked_mul(b),
+                BinOp::Div(_) => a.checked_div(b),
+                BinOp::Rem(_) => a.checked_rem(b),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}

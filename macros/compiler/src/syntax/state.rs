@@ -1,0 +1,66 @@
+//! Fields that are states of first order: parameters that change.
+
+use super::attribute::span_of;
+use super::mechanism::Shell;
+use super::{Definition, Description, Name, ScalarType, element};
+use crate::diag::Diagnostics;
+use proc_macro2::Span;
+use syn::{Field, Ident};
+
+/// What stands after a state's name in that of the function for its rate.
+pub const RATE: &str = "_rate";
+
+/// A state: a parameter for all functions, and a hidden output for its rate.
+pub fn read_state(
+    field: Field,
+    kind: Ident,
+    name: &Name,
+    description: &mut Description,
+    shell: &mut Shell,
+    cx: &mut Diagnostics,
+) {
+    if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional(a)) {
+        cx.error(span_of_path(conditional), "a state cannot be conditional").help(element::CONDITIONS);
+        return;
+    }
+    let rate = element::read_rate(name, &kind, &field.attrs, cx);
+    let ident = field.ident.clone();
+    if let Some(ident) =
+        ident.filter(|ident| !shell.parameters.iter().any(|p| p.ident.as_ref() == Some(ident)))
+    {
+        shell.elements.push((ident, kind));
+        let attrs =
+            field.attrs.iter().filter(|a| !element::is_one_of(a, &element::ATTRIBUTES)).cloned().collect();
+        shell.parameters.push(Field { attrs, ..field });
+    }
+    description.states.push((name.clone(), description.parameters.len()));
+    description.parameters.push(name.clone());
+    if let Some(value) = rate {
+        let text = format!("{}{RATE}", name.text);
+        let name = Name { text, place: name.place.clone() };
+        description.outputs.push(Definition { name, vector: false, value, resolved_in: None });
+    }
+}
+
+fn span_of_path(attribute: &syn::Attribute) -> Span {
+    attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span())
+}
+
+/// Gives the fields of states the mechanism's type of numbers.
+pub fn give_type(description: &Description, shell: &mut Shell) {
+    for field in &mut shell.parameters {
+        let Some(ident) = &field.ident else { continue };
+        let text = ident.to_string();
+        let is_state = description.states.iter().any(|(name, _)| name.text == text.trim_start_matches("r#"));
+        if is_state {
+            let place = span_of(&field.ty).span;
+            let scalar = match &description.scalar {
+                ScalarType::F64 => "f64",
+                ScalarType::F32 => "f32",
+                ScalarType::Generic(name) => name,
+            };
+            let scalar = Ident::new(scalar, place);
+            field.ty = syn::parse_quote!(#scalar);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Fields that are tables: functions that are parameters.
+
+use super::attribute::{check_parameter_attributes, span_of};
+use super::mechanism::Shell;
+use super::{Description, Name, Table, element};
+use crate::diag::Diagnostics;
+use syn::spanned::Spanned;
+use syn::{ExprLit, Field, GenericArgument, Lit, PathArguments, Type};
+
+/// Most tables of a mechanism.
+const MOST: usize = 256;
+
+/// How many variables a table has, as it is written: nothing else stands between the angle brackets of its type. `None` for
+/// a type that is no table.
+pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
+    let path = match ty {
+        Type::Path(path) => path,
+        // What a macro has put in the place of a fragment.
+        Type::Group(group) => return table_variables(&group.elem),
+        Type::Paren(group) => return table_variables(&group.elem),
+        _ => return None,
+    };
+    let last = path.path.segments.last().filter(|last| last.ident == "Table")?;
+    let PathArguments::AngleBracketed(list) = &last.arguments else { return Some(None) };
+    Some(match list.args.first() {
+        Some(GenericArgument::Const(syn::Expr::Lit(ExprLit { lit: Lit::Int(n), .. })))
+            if list.args.len() == 1 =>
+        {
+            n.base10_parse().ok()
+        }
+        _ => None,
+    })
+}
+
+/// A function that is a parameter.
+pub fn read_table(
+    mut field: Field,
+    name: &Name,
+    variables: Option<usize>,
+    description: &mut Description,
+    shell: &mut Shell,
+    cx: &mut Diagnostics,
+) {
+    check_parameter_attributes(name, &field.attrs, cx);
+    for unit in field.attrs.iter().filter(|a| element::is_one_of(a, &["unit"])) {
+        cx.error(unit.path().span(), "a table has no `#[unit]`")
+            .help("the units of its values and axes follow from where it is called");
+    }
+    field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
+    match variables {
+        Some(variables @ 1..=3) if description.tables.len() < MOST => {
+            description.tables.push(Table { name: name.clone(), variables });
+        }
+        Some(1..=3) => {
+            let most = MOST;
+            cx.error(span_of(&field.ty), format!("a mechanism has {most} tables at most"))
+                .help("remove some");
+        }
+        Some(other) => {
+            cx.error(span_of(&field.ty), format!("a table has one to three variables, found {other}"))
+                .help("write `Table<1>`, `Table<2>` or `Table<3>`");
+        }
+        None => {
+            cx.error(span_of(&field.ty), "a table says of how many variables it is")
+                .help("write `Table<1>`, `Table<2>` or `Table<3>`");
+        }
+    }
+    if !shell.tables.iter().any(|known| known.ident == field.ident) {
+        shell.tables.push(field);
+    }
+}

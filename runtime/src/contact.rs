@@ -1,0 +1,462 @@
+//! Contacts that open and close: gaps, impacts, friction that holds ([guide](crate::guide::contact)).
+//!
+//! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares one. The functions
+//! of the dynamics (`forward_dynamics` and all else) know nothing of contacts; [`TimeStepping`](crate::integrate::TimeStepping)
+//! simulates them, and [`impact`] and [`solve`] are what it is made of; [`EventDriven`](crate::integrate::EventDriven) locates every
+//! event. Other methods of integration do not compile for a mechanism
+//! with contacts, so that none is passed through in silence; [`apart`] leaves contacts out where that is meant.
+//!
+//! # The law
+//!
+//! Of each contact the gap `g` is zero or more, and so is the normal impulse `Λ`, and where surfaces part there is none. After an
+//! impact the rate of the gap is `−e` times that before it, at least (Newton's law of restitution). Friction is Coulomb's: where
+//! surfaces stick the impulse along the tangents is at most `μ Λ`, and where they slip it is that, against the slip. All contacts,
+//! and all constraints of the mechanism, act at once: with the rates `u = G v`,
+//!
+//! ```text
+//! M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   J v⁺ = 0,   0 ≤ u⁺ₙ + e u⁻ₙ  ⊥  Λₙ ≥ 0,   |Λₜ| ≤ μ Λₙ,  Λₜ = −μ Λₙ u⁺ₜ / |u⁺ₜ| where it slips
+//! ```
+//!
+//! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato, *Numerical Methods for
+//! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding, by Newton's method for their natural map (Alart and
+//! Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) between sweeps of projected Gauss–Seidel (Jean, *The non-smooth contact
+//! dynamics method*, 1999), at most 600 of these. Impulses that are shared by more contacts than the motion can tell apart (a table
+//! on four legs) are those of least norm where all of them hold. Newton's law of restitution together with friction can give more
+//! energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of restitution are lowered together
+//! until it does not.
+
+use crate::constraint::ConstraintError;
+use crate::integrate::{Error, State, Steered, System, guided, positive, settled};
+use crate::private::{constant, epsilon, to_f64};
+use crate::{Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+mod apart;
+mod held;
+mod phase;
+mod problem;
+mod response;
+
+pub use apart::{Apart, apart};
+pub use held::{Held, forward_dynamics};
+pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
+use problem::Problem;
+
+/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// Index of the rate of the gap.
+    pub first: usize,
+    /// How many there are: one without friction, up to three with it.
+    pub count: usize,
+}
+
+/// What a contact is taken to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// No force acts.
+    Open,
+    /// Surfaces stay together, and do not slip if there is friction.
+    Sticks,
+    /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has no direction, and does
+    /// not act.
+    Slips,
+}
+
+/// Coefficients of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law<T> {
+    /// Of friction, `μ`: zero or more.
+    pub friction: T,
+    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they met.
+    pub restitution: T,
+}
+
+/// What mechanisms with contacts offer, for generic code: `NK` contacts with `NR` rates.
+///
+/// `#[mechanism]` implements the trait where a [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with
+/// `restitution` is declared. Time `t` is in seconds; mechanisms that do not contain it take any.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no contacts that open and close",
+    label = "expected a mechanism with contacts",
+    note = "`#[contact(ball.sphere(radius), ground.plane(z))] bounce: Contact` declares one"
+)]
+pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>:
+    Rheonomic<NQ, NV, NU>
+{
+    /// Name of every contact.
+    const CONTACTS: [&'static str; NK];
+    /// Which rates belong to each contact.
+    const CONTACT_ROWS: [Rows; NK];
+
+    /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they overlap.
+    fn contact_gaps(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NK>;
+
+    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents.
+    fn contact_rates(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NR>;
+
+    /// `G(t, q)`: how the rates change with the velocities.
+    fn contact_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> SMatrix<Self::Scalar, NR, NV>;
+
+    /// `b(t, q, v)`, m/s² and rad/s²: where surfaces touch, their rates change by `G v̇ + b`.
+    fn contact_bias(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NR>;
+
+    /// What impulses at the contacts do to velocities and rates, through the constraints of the mechanism. Only those contacts
+    /// matter that are `closed`; entries of others may be zero.
+    fn contact_responses(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        closed: &[bool; NK],
+    ) -> Responses<Self::Scalar, NV, NR>
+    where
+        Self: Sized,
+    {
+        response::responses(self, t, q, closed)
+    }
+
+    /// The coefficients of every contact.
+    fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
+}
+
+/// What is done with a mechanism whose contacts are of any number, by [`Rheonomic::visit_contacts`]: generic code that knows nothing of
+/// these numbers comes to [`Contacts`] through it.
+pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn visit<M, const NK: usize, const NR: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>;
+}
+
+/// What impulses at contacts do at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Responses<T, const NV: usize, const NR: usize> {
+    /// `M⁻¹ Gᵀ`, with what constraints add: by how much each impulse changes the velocities.
+    pub velocities: SMatrix<T, NV, NR>,
+    /// `G M⁻¹ Gᵀ`, likewise: by how much each impulse, 1 N·s or 1 N·m·s, changes the rates.
+    pub rates: SMatrix<T, NR, NR>,
+}
+
+impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
+    /// From all entries, column by column. As generated code calls it.
+    #[doc(hidden)]
+    pub fn from_list<const N: usize>(list: &[T; N]) -> Self {
+        let mut velocities = SMatrix::<T, NV, NR>::zeros();
+        let mut rates = SMatrix::<T, NR, NR>::zeros();
+        let entries = velocities.iter_mut().chain(rates.iter_mut());
+        entries.zip(list).for_each(|(entry, value)| *entry = *value);
+        Self { velocities, rates }
+    }
+}
+
+/// What contacts make of the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touched<T, const NQ: usize, const NV: usize> {
+    /// The configuration.
+    pub q: SVector<T, NQ>,
+    /// The velocity.
+    pub v: SVector<T, NV>,
+}
+
+/// Velocity and impulses after contacts have acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solved<T, const NV: usize, const NR: usize> {
+    /// The velocity.
+    pub v: SVector<T, NV>,
+    /// The impulses of the contacts, N·s, and N·m·s of stops about an axis: of each the normal one, then those along its
+    /// tangents.
+    pub impulses: SVector<T, NR>,
+}
+
+/// Surfaces nearer than this touch, m: what rounding does to places of some metres, and well below what matters.
+fn near<T: Real>() -> T {
+    epsilon::<T>().sqrt() * constant(0.67)
+}
+
+/// What contacts do to a velocity at once: an impact where surfaces approach each other. Where none do, nothing happens.
+///
+/// ```
+/// use linkwork::contact;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z)]
+/// struct Ball {
+///     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
+///     ball: Body,
+///     #[joint(ground -> ball)]
+///     pose: Free,
+///     #[contact(ball.sphere(0.1), ground.plane(z), friction = 0.3, restitution = 0.8)]
+///     bounce: Contact,
+/// }
+///
+/// # fn main() -> Result<(), ConstraintError> {
+/// let mut q = Ball {}.neutral();
+/// q[2] = 0.1;
+/// let falling = [1.0, 0.0, -2.0, 0.0, 0.0, 0.0].into();
+/// let after = contact::impact(&Ball {}, 0.0, &q, &falling)?;
+/// // It leaves with 0.8 of its speed, and rolls: the impulse of friction is less than 0.3 · 0.5 · 3.6 N·s.
+/// assert!((after.v[2] - 1.6).abs() < 1e-12);
+/// assert!((after.v[0] - 5.0 / 7.0).abs() < 1e-12 && (after.v[4] * 0.1 - after.v[0]).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`ConstraintError::Contact`] where no impulses are found: where constraints, or what is driven in time, hold surfaces that
+/// approach each other.
+pub fn impact<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+) -> Result<Solved<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    solve(mechanism, t, q, v, &mechanism.contact_rates(t, q, v))
+}
+
+/// What contacts make of the velocity `free`, m/s and rad/s, that a motion would have without them after a short time, in the
+/// configuration `q` where it would be then. `before` are the [`contact_rates`](Contacts::contact_rates) when that time began, which
+/// restitution answers to. The impulses are those of the whole time: divided by it they are the mean forces.
+///
+/// All contacts take part whose gap is zero or less.
+///
+/// # Errors
+///
+/// Those of [`impact`].
+pub fn solve<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    free: &SVector<T, NV>,
+    before: &SVector<T, NR>,
+) -> Result<Solved<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    act(mechanism, t, q, free, before, &SVector::zeros()).map(|(solved, _)| solved)
+}
+
+/// The mean forces of the contacts over `h` seconds under inputs `u` that are held, N, and N·m of stops about an axis: of each contact
+/// the normal one, which presses where it is positive, then those along its tangents. With the step of a simulation by
+/// [`TimeStepping`](crate::integrate::TimeStepping) they are the ones that act there; an impact counts with its impulse.
+///
+/// # Errors
+///
+/// [`Error::InvalidStep`] for a time that is zero, negative or not finite; [`Error::Constraint`] with those of [`impact`].
+pub fn forces<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+    h: T,
+) -> Result<SVector<T, NR>, Error>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    positive("the time", h)?;
+    let reported = |reason| Error::Constraint { t: to_f64(t), reason };
+    let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+    let mut system = System::new(mechanism, held);
+    let start = State { t, q: *q, v: *v };
+    let (free, given) = guided(&mut system, &start, h, t + h).map_err(reported)?;
+    let free = settled(&system, free, t)?;
+    let before = mechanism.contact_rates(t, q, v);
+    let held = given * (h * constant(0.5));
+    let acted = act(mechanism, t + h, &free.q, &(free.v - given), &before, &held);
+    Ok(acted.map_err(reported)?.0.impulses / h)
+}
+
+/// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact the normal one, which
+/// presses where it is positive, then those along its tangents. Where surfaces slip they are those of friction against the slip,
+/// where none do they are what keeps it so, or what is there when motion begins. Surfaces that are about to strike each other are
+/// taken to rest: an impact has no force but an [`impact`]'s impulse.
+///
+/// Outputs read them as `contact_force(name)`. They fulfil [`forces`] of a short time, so that slip which friction stops within
+/// `1.5e-8` s (`3.5e-4` s with `f32`) is none.
+///
+/// # Errors
+///
+/// Those of [`impact`], and of the accelerations of a mechanism with constraints.
+pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<SVector<T, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let gaps = mechanism.contact_gaps(t, q);
+    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    if closed.iter().all(|is_closed| !is_closed) {
+        return Ok(SVector::zeros());
+    }
+    let tau = mechanism.generalized_forces(t, q, v, u);
+    let a = mechanism.try_forward_dynamics(t, q, v, &tau)?;
+    let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
+    let h = epsilon::<T>().sqrt();
+    let mut free = mechanism.contact_rates(t, q, v);
+    for Rows { first, .. } in M::CONTACT_ROWS {
+        if let Some(rate) = free.get_mut(first) {
+            *rate = rate.max(T::zero());
+        }
+    }
+    free += (moved + mechanism.contact_bias(t, q, v)) * h;
+    if free.iter().any(|rate| !rate.is_finite()) {
+        return Err(ConstraintError::NotFinite);
+    }
+    let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+    problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
+    let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
+        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
+    })?;
+    Ok(problem.spread(&impulses) / h)
+}
+
+/// What has acted: the contacts that are closed, with their impulses and what these do to velocities.
+struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
+    problem: Problem<T, NK, NR>,
+    impulses: [T; NR],
+    responses: SMatrix<T, NV, NR>,
+}
+
+/// [`solve`], and what has acted, if anything has. Gaps are those without the displacement `held`.
+#[allow(clippy::type_complexity, reason = "sizes of arrays")]
+fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    free: &SVector<T, NV>,
+    before: &SVector<T, NR>,
+    held: &SVector<T, NV>,
+) -> Result<(Solved<T, NV, NR>, Option<Acted<T, NV, NK, NR>>), ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let mut solved = Solved { v: *free, impulses: SVector::zeros() };
+    let mut gaps = mechanism.contact_gaps(t, q);
+    let still = SVector::<T, NV>::zeros();
+    if *held != still {
+        // What is driven moves by itself.
+        let apart = mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still);
+        for (gap, Rows { first, .. }) in gaps.iter_mut().zip(M::CONTACT_ROWS) {
+            *gap -= apart.get(first).copied().unwrap_or(T::zero());
+        }
+    }
+    if gaps.iter().any(|gap| !gap.is_finite()) || free.iter().any(|x| !x.is_finite()) {
+        return Err(ConstraintError::NotFinite);
+    }
+    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    if closed.iter().all(|is_closed| !is_closed) {
+        return Ok((solved, None));
+    }
+    let after = mechanism.contact_rates(t, q, free);
+    let laws = mechanism.contact_laws();
+    let mut problem = Problem::new(M::CONTACT_ROWS, &laws, |k| closed[k], &after);
+    if !problem.is_loaded(before) {
+        return Ok((solved, None));
+    }
+    let responses = mechanism.contact_responses(t, q, &closed);
+    problem.weigh(&responses.rates);
+    problem.aim(&laws, before, T::one());
+    let failed = |contact: usize| ConstraintError::Contact {
+        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
+    };
+    // What is driven may give energy, and without restitution nothing does.
+    let may_gain = problem.rebounds() && {
+        let driven = mechanism.contact_rates(t, q, &still);
+        driven.iter().all(|rate| *rate == T::zero())
+    };
+    let impulses = match problem.solve() {
+        Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
+        Err(contact) if !problem.rebounds() => return Err(failed(contact)),
+        _ => tempered(&mut problem, &laws, before, may_gain).map_err(failed)?,
+    };
+    solved.impulses = problem.spread(&impulses);
+    solved.v += responses.velocities * solved.impulses;
+    Ok((solved, Some(Acted { problem, impulses, responses: responses.velocities })))
+}
+
+/// Impulses with the largest part of all restitutions that they can fulfil, and that gives no energy where nothing is driven.
+fn tempered<T: Real, const NK: usize, const NR: usize>(
+    problem: &mut Problem<T, NK, NR>,
+    laws: &[Law<T>; NK],
+    before: &SVector<T, NR>,
+    may_gain: bool,
+) -> Result<[T; NR], usize> {
+    // A bit of the part each.
+    const HALVINGS: usize = 12;
+    let (mut least, mut step) = (T::zero(), T::one());
+    for _ in 0..HALVINGS {
+        step *= constant(0.5);
+        problem.aim(laws, before, least + step);
+        if problem.solve().is_ok_and(|impulses| !(may_gain && problem.gains(&impulses))) {
+            least += step;
+        }
+    }
+    problem.aim(laws, before, least);
+    problem.solve()
+}
+
+/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts, a velocity; on the way
+/// they have been taken to add `given` to the velocity. As methods of integration call it; with `h = 0` nothing moves.
+///
+/// # Errors
+///
+/// Those of [`impact`].
+#[doc(hidden)]
+pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+    given: &SVector<T, NV>,
+    h: T,
+) -> Result<Touched<T, NQ, NV>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let before = mechanism.contact_rates(t, start, v);
+    let half = h * constant(0.5);
+    let (Solved { v, .. }, acted) = act(mechanism, t, q, free, &before, &(given * half))?;
+    if h == T::zero() {
+        return Ok(Touched { q: *q, v });
+    }
+    // What impulses do to the velocity they do in the mean of the step.
+    let moved = (v - free - given) * half;
+    let (q, v) = (mechanism.integrate(q, &moved), mechanism.carry(t, &moved, &v));
+    let Some(Acted { problem, impulses, responses }) = acted else { return Ok(Touched { q, v }) };
+    let Some(pushes) = problem.close(&impulses, &mechanism.contact_gaps(t, &q), near()) else {
+        return Ok(Touched { q, v });
+    };
+    let push = responses * pushes;
+    Ok(Touched { q: mechanism.integrate(&q, &push), v: mechanism.carry(t, &push, &v) })
+}

@@ -1,0 +1,123 @@
+//! Motion while given contacts stay closed, whatever that takes.
+
+use super::problem::Problem;
+use super::{Contacts, Responses, Touch};
+use crate::Real;
+use crate::constraint::ConstraintError;
+use nalgebra::SVector;
+
+/// Accelerations and forces of contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held<T, const NV: usize, const NR: usize> {
+    /// The accelerations.
+    pub a: SVector<T, NV>,
+    /// The forces of the contacts, N, and N·m of stops about an axis: of each contact the normal one, which presses where it is
+    /// positive, then those along its tangents.
+    pub forces: SVector<T, NR>,
+}
+
+/// Forward dynamics with given contacts closed: the accelerations under the generalized forces `tau`, and the forces of the contacts,
+///
+/// ```text
+/// M v̇ + h = τ + Gᵀ f + Jᵀ λ,   G v̇ + b = 0 where surfaces stick, and along the normals where they slip with fₜ = −μ fₙ uₜ / |uₜ|
+/// ```
+///
+/// as controllers of legged robots and estimators that know their contacts need it (Featherstone, *Rigid Body Dynamics Algorithms*,
+/// 2008, ch. 11). Gaps are not looked at; forces may pull, and leave the cone of friction: who chooses contacts checks what it
+/// takes to hold them. [`acting`](super::acting) finds out itself which of them hold. Forces that are shared by more contacts than
+/// the motion can tell apart are those of least norm where no surfaces slip.
+///
+/// ```
+/// use linkwork::contact::{self, Touch};
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z)]
+/// struct Block {
+///     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.3, 0.3))]
+///     block: Body,
+///     #[joint(ground -> block)]
+///     pose: Free,
+///     #[contact(block, ground.plane(z), friction = 0.5)]
+///     foot: Contact,
+/// }
+///
+/// # fn main() -> Result<(), ConstraintError> {
+/// // Pushed with 3 N along x through its foot, which here is its centre.
+/// let (q, v) = (Block {}.neutral(), [1.0, 0.0, 0.0, 0.0, 0.0, 0.0].into());
+/// let tau = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0].into();
+/// let sticks = contact::forward_dynamics(&Block {}, 0.0, &q, &v, &tau, &[Touch::Sticks])?;
+/// assert!(sticks.a.amax() < 1e-12 && (sticks.forces[0] - 2.0 * 9.81).abs() < 1e-12);
+/// let slips = contact::forward_dynamics(&Block {}, 0.0, &q, &v, &tau, &[Touch::Slips])?;
+/// assert!((slips.a[0] - (3.0 - 0.5 * 2.0 * 9.81) / 2.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts forbid it; those of the
+/// accelerations of a mechanism with constraints.
+pub fn forward_dynamics<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    tau: &SVector<T, NV>,
+    touches: &[Touch; NK],
+) -> Result<Held<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    held(mechanism, t, (q, v), tau, touches, &mechanism.contact_rates(t, q, v)).map(|(held, _)| held)
+}
+
+/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is closed.
+#[allow(clippy::type_complexity, reason = "sizes of arrays")]
+pub(super) fn held<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    tau: &SVector<T, NV>,
+    touches: &[Touch; NK],
+    along: &SVector<T, NR>,
+) -> Result<(Held<T, NV, NR>, Option<Responses<T, NV, NR>>), ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let a = mechanism.try_forward_dynamics(t, q, v, tau)?;
+    let closed = touches.map(|touch| touch != Touch::Open);
+    if closed.iter().all(|is_closed| !is_closed) {
+        return Ok((Held { a, forces: SVector::zeros() }, None));
+    }
+    let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
+    let free = moved + mechanism.contact_bias(t, q, v);
+    if free.iter().any(|rate| !rate.is_finite()) {
+        return Err(ConstraintError::NotFinite);
+    }
+    let responses = mechanism.contact_responses(t, q, &closed);
+    let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+    problem.weigh(&responses.rates);
+    let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
+        constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
+    })?;
+    let forces = problem.spread(&forces);
+    Ok((Held { a: a + responses.velocities * forces, forces }, Some(responses)))
+}

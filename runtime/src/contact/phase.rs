@@ -1,0 +1,393 @@
+//! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the next event is.
+
+use super::held::held;
+use super::problem::Problem;
+use super::{Contacts, Law, Rows, Touch, impact, near};
+use crate::constraint::ConstraintError;
+use crate::forward::each_function;
+use crate::private::{constant, epsilon};
+use crate::{Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// Of a mechanism with `NK` contacts and `NR` rates, what each does until the next event.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phase<T, const NK: usize, const NR: usize> {
+    touches: [Touch; NK],
+    /// Of contacts that slip the way, as a unit vector at the places of their rates.
+    along: SVector<T, NR>,
+    /// The motion cannot tell the forces of contacts apart, so that those that hold are not the only ones.
+    redundant: bool,
+    /// Of contacts that are open the flight, where it is so low that gaps cannot show its end.
+    flights: [Option<Flight<T>>; NK],
+}
+
+/// A flight which begins with a gap `gap`, its rate and the rate of that.
+#[derive(Clone, Copy, Debug)]
+struct Flight<T> {
+    gap: T,
+    rate: T,
+    acceleration: T,
+}
+
+impl<T: Real> Flight<T> {
+    /// When it ends, if it goes on as it has begun.
+    fn duration(&self) -> Option<T> {
+        let two = constant::<T>(2.0);
+        let square = self.rate * self.rate - self.acceleration * self.gap * two;
+        let time = if self.acceleration < T::zero() {
+            (self.rate + square.sqrt()) / -self.acceleration
+        } else {
+            self.gap * two / (square.sqrt() - self.rate)
+        };
+        (time.is_finite() && time > T::zero()).then_some(time)
+    }
+
+    /// The gap after `s` seconds, by its rates at both ends and theirs.
+    fn gap(&self, s: T, rate: T, acceleration: T) -> T {
+        let mean = (self.rate + rate) * constant(0.5);
+        self.gap + s * (mean + s * (self.acceleration - acceleration) * constant(1.0 / 12.0))
+    }
+}
+
+/// Rates that rounding leaves of none, m/s: those of surfaces that rest on each other.
+fn still<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
+    let most = rates.iter().fold(T::one(), |most, rate| most.max(rate.abs()));
+    most * epsilon::<T>() * constant(512.0)
+}
+
+/// Gaps of surfaces that rest on each other, m: what rounding and a step may leave of none.
+fn resting<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+    let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
+    size * epsilon::<T>().powf(constant(0.75))
+}
+
+/// Gaps that rounding leaves of none, m.
+fn touching<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+    let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
+    size * epsilon::<T>() * constant(16.0)
+}
+
+/// The velocity after what strikes has struck.
+pub(crate) fn separated<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+) -> Result<SVector<T, NV>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
+    let (touching, still) = (touching(q), still(&rates));
+    let strikes = gaps.iter().zip(M::CONTACT_ROWS).any(|(gap, Rows { first, .. })| {
+        *gap <= touching && rates.get(first).is_some_and(|rate| *rate < -still)
+    });
+    if strikes { impact(mechanism, t, q, v).map(|solved| solved.v) } else { Ok(*v) }
+}
+
+impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
+    /// What contacts do in a state under the generalized forces `tau`, and the accelerations. None strikes.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Contact`] where no forces fulfil the laws of contacts.
+    pub(crate) fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Result<(Self, SVector<T, NV>), ConstraintError>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
+        let (still, resting) = (still(&rates), resting(q));
+        let mut closed = [false; NK];
+        for ((closed, gap), Rows { first, .. }) in closed.iter_mut().zip(&gaps).zip(M::CONTACT_ROWS) {
+            *closed = *gap <= resting && rates.get(first).is_some_and(|rate| rate.abs() <= still);
+        }
+        let mut a = mechanism.try_forward_dynamics(t, q, v, tau)?;
+        let driven = mechanism.contact_rates(t, q, &SVector::zeros());
+        let bias = mechanism.contact_bias(t, q, v);
+        let mut free = mechanism.contact_rates(t, q, &a) - driven + bias;
+        let open = Self {
+            touches: [Touch::Open; NK],
+            along: SVector::zeros(),
+            redundant: false,
+            flights: [None; NK],
+        };
+        let mut phase = open;
+        if closed.contains(&true) {
+            Self::aim(&mut free, &rates, still * constant(2.0), M::CONTACT_ROWS);
+            if free.iter().any(|rate| !rate.is_finite()) {
+                return Err(ConstraintError::NotFinite);
+            }
+            let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+            let responses = mechanism.contact_responses(t, q, &closed);
+            problem.weigh(&responses.rates);
+            let forces = problem.solve().map_err(|k| ConstraintError::Contact {
+                constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
+            })?;
+            let (touches, along) = problem.touches(&forces);
+            phase = Self { touches, along, redundant: problem.is_redundant(&touches), ..open };
+            a += responses.velocities * problem.spread(&forces);
+        }
+        let bent = mechanism.contact_rates(t, q, &a) - driven + bias;
+        let touching = touching(q);
+        for (k, Rows { first, .. }) in M::CONTACT_ROWS.into_iter().enumerate() {
+            let (gap, rate, acceleration) = (gaps[k], rates[first], bent[first]);
+            if closed[k] || gap > near() {
+                continue;
+            }
+            let gap = if gap > touching { gap } else { T::zero() };
+            let rise =
+                if rate > T::zero() { -rate * rate / (acceleration * constant(2.0)) } else { T::zero() };
+            let falls = rate < T::zero() || acceleration < T::zero();
+            if falls && gap + rise <= near() {
+                phase.flights[k] = Some(Flight { gap, rate, acceleration });
+            }
+        }
+        Ok((phase, a))
+    }
+
+    /// Makes accelerations of what the rates become after so short a time that slip does not stop, divided by it.
+    fn aim(free: &mut SVector<T, NR>, rates: &SVector<T, NR>, still: T, rows: [Rows; NK]) {
+        let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
+        for Rows { first, count } in rows {
+            let slip = (1..count).fold(T::zero(), |sum, i| sum + rates[first + i] * rates[first + i]).sqrt();
+            if slip > still {
+                let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
+                (1..count).for_each(|i| free[first + i] += rates[first + i] / slip * size);
+            }
+        }
+    }
+
+    /// The rates along which slip is braked: those that there are, or where a contact is only about to slip or has slipped too far
+    /// the way it slips.
+    fn braked(&self, rates: &SVector<T, NR>, rows: [Rows; NK]) -> SVector<T, NR> {
+        let mut braked = *rates;
+        for (_, Rows { first, count }) in
+            self.touches.iter().zip(rows).filter(|(touch, _)| **touch == Touch::Slips)
+        {
+            if self.slip(rates, first, count) <= T::zero() {
+                (1..count).for_each(|i| braked[first + i] = self.along[first + i]);
+            }
+        }
+        braked
+    }
+
+    /// The slip of a contact the way it slips.
+    fn slip(&self, rates: &SVector<T, NR>, first: usize, count: usize) -> T {
+        (1..count).fold(T::zero(), |sum, i| sum + self.along[first + i] * rates[first + i])
+    }
+
+    /// Whether contacts slip whose forces the motion does not tell apart.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.redundant && self.touches.contains(&Touch::Slips)
+    }
+
+    /// When the first of the low flights ends, if it goes on as it has begun.
+    pub(crate) fn landing(&self) -> Option<T> {
+        let landings = self.flights.iter().flatten().filter_map(Flight::duration);
+        landings.fold(None, |first, time| Some(first.map_or(time, |first: T| first.min(time))))
+    }
+}
+
+/// A mechanism that moves as its contacts do in a phase.
+pub(crate) struct Phased<'m, M, T, const NK: usize, const NR: usize> {
+    /// The mechanism.
+    pub(crate) mechanism: &'m M,
+    /// What its contacts do.
+    pub(crate) phase: Phase<T, NK, NR>,
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
+    Rheonomic<NQ, NV, NU> for Phased<'_, M, T, NK, NR>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    type Scalar = T;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = false;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+
+    each_function!(space, plain Rheonomic, self => self.mechanism);
+    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
+    each_function!(methods, pass Rheonomic, self => self.mechanism);
+
+    fn forward_dynamics(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.try_forward_dynamics(t, q, v, tau).unwrap_or_else(|_| SVector::repeat(constant(f64::NAN)))
+    }
+
+    fn try_forward_dynamics(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Result<SVector<T, NV>, ConstraintError> {
+        let Self { mechanism, phase } = self;
+        let along = phase.braked(&mechanism.contact_rates(t, q, v), M::CONTACT_ROWS);
+        held(*mechanism, t, (q, v), tau, &phase.touches, &along).map(|(held, _)| held.a)
+    }
+
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: super::Visitor<T, NQ, NV, NU>,
+    {
+        None
+    }
+}
+
+/// Where a step of a phase has led, `s` seconds after its start.
+pub(crate) struct Watch<'a, T, const NQ: usize, const NV: usize> {
+    pub(crate) s: T,
+    pub(crate) t: T,
+    pub(crate) q: &'a SVector<T, NQ>,
+    pub(crate) v: &'a SVector<T, NV>,
+    pub(crate) tau: &'a SVector<T, NV>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
+    /// What is left until the first event of the phase: of gaps that close, forces that press, friction that holds, and slip; negative
+    /// where one is past.
+    pub(crate) fn left<M, const NU: usize, const NK: usize, const NR: usize>(
+        &self,
+        phased: &Phased<'_, M, T, NK, NR>,
+    ) -> T
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let Self { s, t, q, v, tau } = *self;
+        let Phased { mechanism, phase } = phased;
+        let rates = mechanism.contact_rates(t, q, v);
+        let along = phase.braked(&rates, M::CONTACT_ROWS);
+        let past = -T::one();
+        let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, &along) else { return past };
+        let bent = || {
+            let driven = mechanism.contact_rates(t, q, &SVector::zeros());
+            mechanism.contact_rates(t, q, &held.a) - driven + mechanism.contact_bias(t, q, v)
+        };
+        let bent = if phase.flights.iter().any(Option::is_some) { bent() } else { SVector::zeros() };
+        let (gaps, still) = (mechanism.contact_gaps(t, q), still(&rates));
+        let rounding = held.forces.iter().fold(T::zero(), |most, f| most.max(f.abs()));
+        let rounding = rounding * epsilon::<T>() * constant(64.0);
+        let friction = mechanism.contact_laws().map(|Law { friction, .. }| friction);
+        let mut moving = constant::<T>(1.0);
+        let mut forces = moving;
+        for (k, Rows { first, count }) in M::CONTACT_ROWS.into_iter().enumerate() {
+            let (rate, normal) = (rates[first], held.forces[first]);
+            let least = match phase.touches[k] {
+                Touch::Open => {
+                    let gap = phase.flights[k].map_or(gaps[k], |flight| flight.gap(s, rate, bent[first]));
+                    if gap < T::zero() && rate >= -still { T::one() } else { gap }
+                }
+                Touch::Slips => self::still(&rates) + phase.slip(&rates, first, count),
+                Touch::Sticks => T::one(),
+            };
+            moving = moving.min(least);
+            if phase.touches[k] != Touch::Open {
+                forces = forces.min(normal + rounding);
+            }
+            if phase.touches[k] == Touch::Sticks && count > 1 && friction[k] > T::zero() {
+                let size = (1..count)
+                    .fold(T::zero(), |sum, i| sum + held.forces[first + i] * held.forces[first + i]);
+                forces = forces.min(friction[k] * normal - size.sqrt() + rounding);
+            }
+        }
+        let numbers = moving.is_finite() && forces.is_finite();
+        if !numbers {
+            return past;
+        }
+        if forces < T::zero() && phase.redundant && self.is_shared(*mechanism, &held.a) {
+            forces = T::one();
+        }
+        moving.min(forces)
+    }
+
+    /// Whether contacts give these accelerations by other forces that fulfil their laws.
+    fn is_shared<M, const NU: usize, const NK: usize, const NR: usize>(
+        &self,
+        mechanism: &M,
+        a: &SVector<T, NV>,
+    ) -> bool
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let Ok((_, found)) = Phase::of(mechanism, self.t, self.q, self.v, self.tau) else { return false };
+        let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+        size(&(found - a)) <= (size(a) + T::one()) * epsilon::<T>().powf(constant(0.625))
+    }
+}
+
+/// A configuration and velocity brought back to where the contacts of a phase hold them.
+pub(crate) fn settled<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    phased: &Phased<'_, M, T, NK, NR>,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+) -> (SVector<T, NQ>, SVector<T, NV>)
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let Phased { mechanism, phase } = phased;
+    let closed = phase.touches.map(|touch| touch != Touch::Open);
+    if !closed.contains(&true) {
+        return (*q, *v);
+    }
+    let rates = mechanism.contact_rates(t, q, v);
+    let stops = still(&rates) * constant(2.0);
+    let mut laws = mechanism.contact_laws();
+    for ((law, touch), Rows { first, count }) in laws.iter_mut().zip(phase.touches).zip(M::CONTACT_ROWS) {
+        if touch == Touch::Slips && phase.slip(&rates, first, count) > stops {
+            law.friction = T::zero();
+        }
+    }
+    let responses = mechanism.contact_responses(t, q, &closed);
+    let undone = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
+        let mut problem = Problem::new(M::CONTACT_ROWS, laws, |k| closed[k], left);
+        problem.weigh(&responses.rates);
+        responses.velocities * problem.spread(&problem.together(|_| true))
+    };
+    let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
+    for (gap, Rows { first, .. }) in gaps.iter().zip(M::CONTACT_ROWS) {
+        left[first] = *gap;
+    }
+    let push = undone(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
+    let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, &push, v));
+    let v = v + undone(&mechanism.contact_rates(t, &q, &v), &laws);
+    (q, v)
+}

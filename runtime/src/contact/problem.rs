@@ -1,0 +1,322 @@
+//! The impulses of all contacts that are closed: a complementarity problem with friction cones.
+
+use super::{Law, Rows, Touch};
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+mod linear;
+mod newton;
+mod search;
+
+/// A number for each rate.
+type List<T, const NR: usize> = [T; NR];
+/// A row of numbers for each rate.
+type Square<T, const NR: usize> = [[T; NR]; NR];
+
+/// Roundings of the rates that are left of the equations.
+const ROUNDINGS: f64 = 64.0;
+
+/// Contacts that are closed, with `u = u₀ + W Λ`: what impulses `Λ` make of the rates.
+///
+/// Contacts and rates are numbered among those that are closed, so that the first `count` and `size` entries of lists are used.
+#[derive(Clone, Debug)]
+pub(super) struct Problem<T, const NK: usize, const NR: usize> {
+    /// Which contacts of the mechanism they are, and which rates these have there.
+    contacts: [(usize, Rows); NK],
+    count: usize,
+    /// Of each contact the first of its rates and how many there are.
+    rows: [Rows; NK],
+    size: usize,
+    /// `u₀`.
+    free: List<T, NR>,
+    /// `W`.
+    weights: Square<T, NR>,
+    /// What the normal rate is at least.
+    least: [T; NK],
+    friction: [T; NK],
+    /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where impulses move nothing.
+    step: [T; NK],
+}
+
+/// What the natural map makes of a contact.
+#[derive(Clone, Copy)]
+enum Mode<T> {
+    /// No impulse.
+    Open,
+    /// No slip.
+    Stick,
+    /// Impulses along the tangents of this size, in this direction, before they were brought onto the cone.
+    Slip { size: T, direction: [T; 2] },
+}
+
+impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+    /// The contacts that are closed, with rates `free` without impulses.
+    pub(super) fn new(
+        rows: [Rows; NK],
+        laws: &[Law<T>; NK],
+        is_closed: impl Fn(usize) -> bool,
+        free: &SVector<T, NR>,
+    ) -> Self {
+        let none = Rows { first: 0, count: 0 };
+        let mut problem = Self {
+            contacts: [(0, none); NK],
+            count: 0,
+            rows: [none; NK],
+            size: 0,
+            free: [T::zero(); NR],
+            weights: [[T::zero(); NR]; NR],
+            least: [T::zero(); NK],
+            friction: [T::zero(); NK],
+            step: [T::zero(); NK],
+        };
+        for k in (0..NK).filter(|k| is_closed(*k)) {
+            let (c, first, of) = (problem.count, problem.size, rows[k]);
+            problem.contacts[c] = (k, of);
+            problem.rows[c] = Rows { first, count: of.count };
+            problem.friction[c] = laws[k].friction;
+            for i in 0..of.count {
+                problem.free[first + i] = free.data.0[0][of.first + i];
+            }
+            problem.count += 1;
+            problem.size += of.count;
+        }
+        problem
+    }
+
+    /// The rows of a contact: that of its gap, and those of its slip.
+    fn of(&self, k: usize) -> (usize, core::ops::Range<usize>) {
+        let Rows { first, count } = self.rows[k];
+        (first, first + 1..first + count)
+    }
+
+    /// Of each rate its number among those of the mechanism; the first `size` are used.
+    fn places(&self) -> [usize; NR] {
+        let mut places = [0; NR];
+        for ((_, of), rows) in self.contacts.iter().zip(self.rows).take(self.count) {
+            for i in 0..rows.count {
+                places[rows.first + i] = of.first + i;
+            }
+        }
+        places
+    }
+
+    /// Impulses by their rates in the mechanism.
+    pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
+        let mut all = SVector::<T, NR>::zeros();
+        for (place, impulse) in self.places().iter().zip(impulses).take(self.size) {
+            all.data.0[0][*place] = *impulse;
+        }
+        all
+    }
+
+    /// Whether surfaces approach each other, without impulses or before.
+    pub(super) fn is_loaded(&self, before: &SVector<T, NR>) -> bool {
+        (0..self.count).any(|k| {
+            self.free[self.rows[k].first] < T::zero()
+                || before.data.0[0][self.contacts[k].1.first] < T::zero()
+        })
+    }
+
+    /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
+    pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
+        let places = self.places();
+        let places = &places[..self.size];
+        let mut reach = T::zero();
+        for (row, i) in self.weights.iter_mut().zip(places) {
+            for (entry, j) in row.iter_mut().zip(places) {
+                *entry = weights.data.0[*j][*i];
+            }
+            reach = reach.max(weights.data.0[*i][*i]);
+        }
+        for k in 0..self.count {
+            let Rows { first, count } = self.rows[k];
+            let trace = (first..first + count).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
+            // What constraints hold moves by rounding alone.
+            let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
+            self.step[k] = if moves { T::one() / trace } else { T::zero() };
+        }
+    }
+
+    /// The normal rates after the impact: at least this `part` of the restitution, and no less than zero.
+    pub(super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
+        for k in 0..self.count {
+            let (contact, Rows { first, .. }) = self.contacts[k];
+            self.least[k] = (-(laws[contact].restitution * part * before.data.0[0][first])).max(T::zero());
+        }
+    }
+
+    /// The rates with impulses.
+    fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
+        let mut rates = self.free;
+        for (rate, row) in rates.iter_mut().zip(&self.weights).take(self.size) {
+            for (weight, impulse) in row.iter().zip(impulses).take(self.size) {
+                *rate += *weight * *impulse;
+            }
+        }
+        rates
+    }
+
+    /// Whether restitution is asked for.
+    pub(super) fn rebounds(&self) -> bool {
+        self.least.iter().take(self.count).any(|least| *least > T::zero())
+    }
+
+    /// Whether impulses give energy: their work is that of the mean rates.
+    pub(super) fn gains(&self, impulses: &List<T, NR>) -> bool {
+        if !self.rebounds() {
+            return false;
+        }
+        let rates = self.rates(impulses);
+        let (mut work, mut size) = (T::zero(), T::zero());
+        for i in 0..self.size {
+            work += impulses[i] * (rates[i] + self.free[i]);
+            size += (impulses[i] * (rates[i].abs() + self.free[i].abs())).abs();
+        }
+        work > size * epsilon::<T>() * constant(ROUNDINGS)
+    }
+
+    /// What the natural map makes of a contact: the impulse of its gap before it is made zero or more, and what follows.
+    fn mode(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
+        let (n, tangents) = self.of(k);
+        let normal = impulses[n] - self.step[k] * (rates[n] - self.least[k]);
+        if normal <= T::zero() || self.step[k] == T::zero() {
+            return (normal, Mode::Open);
+        }
+        let mut direction = [T::zero(); 2];
+        for (d, i) in direction.iter_mut().zip(tangents) {
+            *d = impulses[i] - self.step[k] * rates[i];
+        }
+        let [x, y] = direction;
+        let size = (x * x + y * y).sqrt();
+        if size <= self.friction[k] * normal {
+            return (normal, Mode::Stick);
+        }
+        (normal, Mode::Slip { size, direction: [x / size, y / size] })
+    }
+
+    /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit vectors at the places of their
+    /// rates.
+    pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
+        let (mut touches, mut along) = ([Touch::Open; NK], SVector::<T, NR>::zeros());
+        let rates = self.rates(impulses);
+        for k in 0..self.count {
+            let (contact, rows) = self.contacts[k];
+            touches[contact] = match self.mode(k, impulses, &rates).1 {
+                Mode::Open => Touch::Open,
+                Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
+                    for (c, component) in direction.iter().enumerate().take(rows.count - 1) {
+                        along.data.0[0][rows.first + 1 + c] = -*component;
+                    }
+                    Touch::Slips
+                }
+                _ => Touch::Sticks,
+            };
+        }
+        (touches, along)
+    }
+
+    /// The natural map of a contact: its impulses without what they are by their law.
+    fn map(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> [T; 3] {
+        let (n, tangents) = self.of(k);
+        let (normal, mode) = self.mode(k, impulses, rates);
+        let mut map = [impulses[n] - normal.max(T::zero()), T::zero(), T::zero()];
+        for (c, i) in tangents.enumerate() {
+            map[c + 1] = match mode {
+                Mode::Open => impulses[i],
+                Mode::Stick => self.step[k] * rates[i],
+                Mode::Slip { direction, .. } => impulses[i] - direction[c] * self.friction[k] * normal,
+            };
+        }
+        map
+    }
+
+    /// What is left of the equations, as a rate, and of which contact.
+    fn residual(&self, impulses: &List<T, NR>) -> (T, usize) {
+        let rates = self.rates(impulses);
+        let mut worst = (T::zero(), 0);
+        for k in 0..self.count {
+            let step = self.step[k];
+            let left = if step == T::zero() {
+                // Nothing that impulses could do.
+                (self.least[k] - rates[self.rows[k].first]).max(T::zero())
+            } else {
+                let [normal, x, y] = self.map(k, impulses, &rates);
+                normal.abs().max((x * x + y * y).sqrt()) / step
+            };
+            // What is not a number is worst of all.
+            let less = left <= worst.0;
+            if !less {
+                worst = (left, k);
+            }
+        }
+        worst
+    }
+
+    /// What rounding leaves of the rates.
+    fn rounding(&self, impulses: &List<T, NR>) -> T {
+        let mut most = T::zero();
+        for (free, row) in self.free.iter().zip(&self.weights).take(self.size) {
+            let terms = row.iter().zip(impulses).take(self.size);
+            most =
+                most.max(terms.fold(free.abs(), |sum, (weight, impulse)| sum + (*weight * *impulse).abs()));
+        }
+        (0..self.count).fold(most, |most, k| most.max(self.least[k])) * epsilon() * constant(ROUNDINGS)
+    }
+
+    /// The largest rate without impulses, or that is wanted.
+    fn speed(&self) -> T {
+        let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
+        (0..self.count).fold(most, |most, k| most.max(self.least[k]))
+    }
+
+    /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve nothing.
+    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
+        let most = self.speed() * epsilon::<T>().sqrt();
+        self.residual(impulses).0 <= self.rounding(impulses).min(most)
+    }
+
+    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together: those that overlap
+    /// are pushed apart, and where none do those that are apart are brought together. `None` if distances are no more than a
+    /// quarter of what is near.
+    pub(super) fn close(
+        &self,
+        impulses: &List<T, NR>,
+        gaps: &SVector<T, NK>,
+        near: T,
+    ) -> Option<SVector<T, NR>> {
+        let rates = self.rates(impulses);
+        let rest = self.rounding(impulses);
+        let mut kept = self.clone();
+        kept.count = 0;
+        let (mut overlap, mut distance) = (T::zero(), T::zero());
+        for k in 0..self.count {
+            let n = self.rows[k].first;
+            if impulses[n] > T::zero() && rates[n] <= rest {
+                let (c, (contact, Rows { first, .. })) = (kept.count, self.contacts[k]);
+                let gap = gaps.data.0[0][contact];
+                (overlap, distance) = (overlap.max(-gap), distance.max(gap));
+                kept.contacts[c] = (contact, Rows { first, count: 1 });
+                kept.rows[c] = Rows { first: n, count: 1 };
+                kept.free[c] = gap;
+                (kept.least[c], kept.step[c]) = (T::zero(), self.step[k]);
+                kept.count += 1;
+            }
+        }
+        let enough = near * constant(0.25);
+        if overlap <= enough && distance <= enough {
+            return None;
+        }
+        kept.size = kept.count;
+        for c in 0..kept.count {
+            for d in 0..kept.count {
+                kept.weights[c][d] = self.weights[kept.rows[c].first][kept.rows[d].first];
+            }
+        }
+        for c in 0..kept.count {
+            kept.rows[c].first = c;
+        }
+        let pushes = if overlap > enough { kept.solve().ok()? } else { kept.together(|_| true) };
+        Some(kept.spread(&pushes))
+    }
+}

@@ -1,0 +1,98 @@
+//! Newton's method for the natural map.
+
+use super::linear::identity;
+use super::{List, Mode, Problem, Square};
+use crate::Real;
+use crate::private::constant;
+
+/// Steps of Newton's method in a round.
+const NEWTON: usize = 12;
+/// The shortest part of such a step.
+const SHORTEST: f64 = 1e-3;
+
+impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+    /// Newton's method on the natural map, from given impulses: the best that it finds. Steps are halved until less is left of
+    /// the map.
+    pub(super) fn newton(&self, start: List<T, NR>) -> List<T, NR> {
+        let mut impulses = start;
+        let mut left = self.size_of_map(&impulses);
+        for _ in 0..NEWTON {
+            let (mut system, mut right) = self.linearised(&impulses);
+            self.eliminate(&mut system, &mut right);
+            let mut part = T::one();
+            let next = loop {
+                let next: List<T, NR> = core::array::from_fn(|i| impulses[i] + right[i] * part);
+                let size = self.size_of_map(&next);
+                if size < left {
+                    left = size;
+                    break Some(next);
+                }
+                part *= constant(0.5);
+                if part < constant(SHORTEST) {
+                    break None;
+                }
+            };
+            let Some(next) = next else { break };
+            impulses = next;
+            if self.is_solved(&impulses) {
+                break;
+            }
+        }
+        impulses
+    }
+
+    /// The square of what is left of the natural map, as rates.
+    fn size_of_map(&self, impulses: &List<T, NR>) -> T {
+        let rates = self.rates(impulses);
+        (0..self.count).filter(|k| self.step[*k] > T::zero()).fold(T::zero(), |sum, k| {
+            let [n, x, y] = self.map(k, impulses, &rates);
+            sum + (n * n + x * x + y * y) / (self.step[k] * self.step[k])
+        })
+    }
+
+    /// The natural map's derivative, and what takes its value away.
+    fn linearised(&self, impulses: &List<T, NR>) -> (Square<T, NR>, List<T, NR>) {
+        let rates = self.rates(impulses);
+        let (mut system, mut right) = (identity(), [T::zero(); NR]);
+        for k in 0..self.count {
+            let (step, friction) = (self.step[k], self.friction[k]);
+            let (n, tangents) = self.of(k);
+            let (normal, mode) = self.mode(k, impulses, &rates);
+            if let Mode::Open = mode {
+                for i in core::iter::once(n).chain(tangents) {
+                    right[i] = -impulses[i];
+                }
+                continue;
+            }
+            right[n] = -(step * (rates[n] - self.least[k]));
+            for j in 0..self.size {
+                system[n][j] = step * self.weights[n][j];
+            }
+            system[n][n] += self.lift();
+            for (c, i) in tangents.clone().enumerate() {
+                let Mode::Slip { size, direction } = mode else {
+                    right[i] = -(step * rates[i]);
+                    for j in 0..self.size {
+                        system[i][j] = step * self.weights[i][j];
+                    }
+                    system[i][i] += self.lift();
+                    continue;
+                };
+                let radius = friction * normal;
+                right[i] = -(impulses[i] - radius * direction[c]);
+                let turn = radius / size;
+                let unit = |a: usize, b: usize| if a == b { T::one() } else { T::zero() };
+                for j in 0..self.size {
+                    let of_normal = unit(n, j) - step * self.weights[n][j];
+                    let mut entry = unit(i, j) - friction * direction[c] * of_normal;
+                    for (d, other) in tangents.clone().enumerate() {
+                        let across = unit(c, d) - direction[c] * direction[d];
+                        entry -= turn * across * (unit(other, j) - step * self.weights[other][j]);
+                    }
+                    system[i][j] = entry;
+                }
+            }
+        }
+        (system, right)
+    }
+}

@@ -1,0 +1,343 @@
+//! Identified base parameters put back into a mechanism: mass properties that bodies can have, and that have them.
+//!
+//! From motions and forces no more can be learnt than the base parameters, which are fewer than the mass properties of the links:
+//! infinitely many mass properties have the same. [`put_back`] takes those that differ least from the ones that are known before,
+//! by the distance in which bodies are compared that does not depend on units or frames (Lee, Wensing and Park, *Geometric robot
+//! dynamic identification: a convex programming approach*, 2020); bodies can have them by construction.
+
+use crate::private::{constant, epsilon, to_f64};
+use crate::{Inertial, Real};
+use core::fmt;
+use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, SVector, Vector3};
+
+/// A mechanism whose links' mass properties are parameters, and whose base parameters are known: `parameters = inertial` and the
+/// word `regressor`. It has `N` such links and `B` base parameters.
+#[diagnostic::on_unimplemented(
+    message = "nothing can be put back into `{Self}`",
+    label = "expected a mechanism whose links' mass properties are parameters",
+    note = "write `#[mechanism(urdf = \"…\", parameters = inertial, regressor)]`"
+)]
+pub trait Identifiable<const N: usize, const B: usize> {
+    /// The scalar type.
+    type Scalar: Real;
+
+    /// The mass properties of the links, in the order of `LINKS`.
+    fn inertials(&self) -> [Inertial<Self::Scalar>; N];
+
+    /// Sets the mass properties of the links.
+    fn set_inertials(&mut self, links: &[Inertial<Self::Scalar>; N]);
+
+    /// The base parameters that the mechanism has with them, in the order of `BASE_PARAMETERS`.
+    fn own_base_parameters(&self) -> SVector<Self::Scalar, B>;
+}
+
+/// Why base parameters cannot be put back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PutBackError {
+    /// A link has no mass properties of a body to begin with: a mass that is not positive, or an inertia that no body has.
+    Prior {
+        /// Which, in the order of `LINKS`.
+        link: usize,
+    },
+    /// No bodies have these base parameters, or hardly any.
+    NotPhysical {
+        /// The largest difference that was left between a base parameter and what it should be, in units of the parameter.
+        residual: f64,
+    },
+    /// A base parameter is infinite or NaN.
+    NotFinite,
+}
+
+impl fmt::Display for PutBackError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Prior { link } => write!(f, "link {link} has no mass properties of a body to begin with"),
+            Self::NotPhysical { residual } => {
+                write!(f, "no bodies have these base parameters: {residual} is left")
+            }
+            Self::NotFinite => f.write_str("a base parameter is not a finite number"),
+        }
+    }
+}
+
+impl core::error::Error for PutBackError {}
+
+/// Most iterations of Newton's method.
+const MOST_ITERATIONS: usize = 200;
+
+/// Gives the links the mass properties with the base parameters `base` that differ least from those that they have; all of
+/// them are those of bodies, whatever the noise in `base`. Where some of the links are parameters and others are not, `base` can
+/// hold only as far as those reach; it is approached there.
+///
+/// With the pseudo-inertia `P = [Σ, h; hᵀ, m]` of each link (`Σ` the second moments of its mass, `h` the first) it minimises
+/// `Σ tr(P₀⁻¹ P) − log det P` subject to the base parameters, which are linear in `P`: a convex problem, by Newton's method with
+/// damped steps, 200 at most. It takes a few dozen on robots, each with some `B² N` products and a factorisation of `B × B`.
+/// Nothing is allocated; matrices of `11 N B + 2 B²` numbers are on the stack.
+///
+/// # Errors
+///
+/// [`PutBackError::NotPhysical`] where no bodies have these base parameters, which happens with motions that excite some of them too
+/// little: give the regression the prior for those. The mechanism stays as it is then.
+pub fn put_back<M, const N: usize, const B: usize>(
+    mechanism: &mut M,
+    base: &SVector<M::Scalar, B>,
+) -> Result<(), PutBackError>
+where
+    M: Identifiable<N, B>,
+{
+    put(mechanism, base, None)
+}
+
+/// [`put_back`] for base parameters that no bodies have, as noise may leave them: they hold as well as bodies allow. `softness`,
+/// more than zero, is what a base parameter may be off, squared, compared with what the links' mass properties may change: with
+/// 1e-6, changing all of them by their own size is as good as being off by a thousandth of it.
+///
+/// # Errors
+///
+/// Those of [`put_back`] but [`PutBackError::NotPhysical`], which is left for a softness that is not positive, or so small that
+/// 200 iterations do not suffice.
+pub fn approach<M, const N: usize, const B: usize>(
+    mechanism: &mut M,
+    base: &SVector<M::Scalar, B>,
+    softness: M::Scalar,
+) -> Result<(), PutBackError>
+where
+    M: Identifiable<N, B>,
+{
+    put(mechanism, base, Some(softness))
+}
+
+fn put<M, const N: usize, const B: usize>(
+    mechanism: &mut M,
+    base: &SVector<M::Scalar, B>,
+    softness: Option<M::Scalar>,
+) -> Result<(), PutBackError>
+where
+    M: Identifiable<N, B>,
+{
+    if base.iter().any(|x| *x * nalgebra::zero() != nalgebra::zero()) {
+        return Err(PutBackError::NotFinite);
+    }
+    let before = mechanism.inertials();
+    let mut prior = [Matrix4::zeros(); N];
+    for (k, (link, prior)) in before.iter().zip(&mut prior).enumerate() {
+        *prior = pseudo_inertia(link).ok_or(PutBackError::Prior { link: k })?;
+    }
+    let map = linear_map(mechanism);
+    mechanism.set_inertials(&before);
+    let found = least_change(&map, &prior, base, softness)?;
+    mechanism.set_inertials(&found.map(|p| of_pseudo_inertia(&p)));
+    Ok(())
+}
+
+/// By base parameter and link.
+type Blocks<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
+
+/// Base parameters as a linear function of the links' pseudo-inertias: a matrix for each of both, and what does not depend on them.
+struct Map<T, const N: usize, const B: usize> {
+    factors: Blocks<T, N, B>,
+    rest: SVector<T, B>,
+}
+
+/// The function, from its values where one entry is one.
+fn linear_map<M, const N: usize, const B: usize>(mechanism: &mut M) -> Map<M::Scalar, N, B>
+where
+    M: Identifiable<N, B>,
+{
+    let (o, one): (M::Scalar, M::Scalar) = (nalgebra::zero(), nalgebra::one());
+    let nothing = [Inertial::point(o, [o; 3]); N];
+    mechanism.set_inertials(&nothing);
+    let rest = mechanism.own_base_parameters();
+    let noise = rest.abs() * (epsilon::<M::Scalar>() * constant(64.0));
+    let mut factors = [[Matrix4::zeros(); N]; B];
+    for k in 0..N {
+        for i in 0..4 {
+            for j in i..4 {
+                let mut p = Matrix4::zeros();
+                (p[(i, j)], p[(j, i)]) = (one, one);
+                // First moments need a mass to be those of a body; what that gives by itself is taken away.
+                let (massive, alone) = if i < 3 && j == 3 { (one, true) } else { (o, false) };
+                if alone {
+                    p[(3, 3)] = massive;
+                }
+                let mut links = nothing;
+                links[k] = of_pseudo_inertia(&p);
+                mechanism.set_inertials(&links);
+                let mut value = mechanism.own_base_parameters() - rest;
+                if alone {
+                    links[k] = Inertial::point(one, [o; 3]);
+                    mechanism.set_inertials(&links);
+                    value -= mechanism.own_base_parameters() - rest;
+                }
+                let share = if i == j { one } else { constant(0.5) };
+                let size = value.abs();
+                for (r, row) in factors.iter_mut().enumerate() {
+                    // What is left of others when they are subtracted is nothing.
+                    let value = if size[r] > noise[r] { value[r] * share } else { o };
+                    (row[k][(i, j)], row[k][(j, i)]) = (value, value);
+                }
+            }
+        }
+    }
+    Map { factors, rest }
+}
+
+impl<T: Real, const N: usize, const B: usize> Map<T, N, B> {
+    fn value(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
+        SVector::from_fn(|i, _| inner(&self.factors[i], of))
+    }
+}
+
+/// The sum of the products of all entries.
+fn inner<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + a.dot(b))
+}
+
+/// Newton's method with steps that stay among the pseudo-inertias of bodies: in the norm of the Hessian, those of a length below
+/// one do (Boyd and Vandenberghe, *Convex Optimization*, 2004, ch. 9.6).
+fn least_change<T: Real, const N: usize, const B: usize>(
+    map: &Map<T, N, B>,
+    prior: &[Matrix4<T>; N],
+    base: &SVector<T, B>,
+    softness: Option<T>,
+) -> Result<[Matrix4<T>; N], PutBackError> {
+    let prior_inverse = prior.map(|p| inverse(&p));
+    let mut p = *prior;
+    let failed = |p: &[Matrix4<T>; N]| {
+        let residual = (map.value(p) + map.rest - base).amax();
+        Err(PutBackError::NotPhysical { residual: to_f64(residual) })
+    };
+    let enough = epsilon::<T>().cbrt() * constant(4.0);
+    let mut diagonal: Option<SVector<T, B>> = None;
+    let mut multipliers = SVector::zeros();
+    // What is asked for is approached from what is easy.
+    let least = softness.unwrap_or(T::one());
+    let mut share = T::one().max(least);
+    if least * T::zero() != T::zero() || least <= T::zero() {
+        return failed(&p);
+    }
+    for _ in 0..MOST_ITERATIONS {
+        // Step: P − P P₀⁻¹ P − Σ νᵢ P Aᵢ P.
+        let free: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] - p[k] * prior_inverse[k] * p[k]);
+        let mut moved = [[Matrix4::zeros(); N]; B];
+        for (moved, factors) in moved.iter_mut().zip(&map.factors) {
+            for ((moved, a), p) in moved.iter_mut().zip(factors).zip(&p) {
+                *moved = p * a * p;
+            }
+        }
+        let mut s =
+            SMatrix::<T, B, B>::from_fn(
+                |i, j| if j <= i { inner(&map.factors[i], &moved[j]) } else { T::zero() },
+            );
+        // Base parameters that these links do not reach, or some combination of them, hold as well as they can.
+        let unit = *diagonal.get_or_insert_with(|| softness_of(&s, softness.map(|_| T::one())));
+        let soft = unit * share;
+        for (i, soft) in soft.iter().enumerate() {
+            s[(i, i)] += *soft;
+        }
+        let Some(factor) = Cholesky::new(s) else { return failed(&p) };
+        let ahead: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] + free[k]);
+        let mut nu = map.value(&ahead) + map.rest - base;
+        if softness.is_none() {
+            // What holds them softly gives way: by and by those that can hold do.
+            nu += soft.component_mul(&multipliers);
+        }
+        factor.solve_mut(&mut nu);
+        multipliers = nu;
+        let mut step = free;
+        for (moved, nu) in moved.iter().zip(&nu) {
+            for (step, moved) in step.iter_mut().zip(moved) {
+                *step -= moved * *nu;
+            }
+        }
+        let mut length = T::zero();
+        for (p, step) in p.iter().zip(&step) {
+            let relative = inverse(p) * step;
+            length += (relative * relative).trace();
+        }
+        let length = length.max(T::zero()).sqrt();
+        if length * T::zero() != T::zero() {
+            return failed(&p);
+        }
+        let part = if length < constant(0.25) { T::one() } else { (T::one() + length).recip() };
+        for (p, step) in p.iter_mut().zip(&step) {
+            *p += step * part;
+            *p = (*p + p.transpose()) * constant::<T>(0.5);
+        }
+        if share > least {
+            if length < T::one() {
+                share = least.max(share * constant(0.25));
+            }
+        } else if length < enough {
+            let holds = (map.value(&p) + map.rest - base).amax() <= base.amax() * enough;
+            let exact = soft.iter().all(|x| *x == T::zero());
+            return if holds || !exact { Ok(p) } else { failed(&p) };
+        }
+    }
+    failed(&p)
+}
+
+/// What is added to the diagonal of the matrix of the multipliers, in units of what the links reach: what is asked for; else nothing
+/// if the matrix has full rank, so that base parameters hold exactly, and the root of the rounding if not.
+fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) -> SVector<T, B> {
+    let regular = asked.is_none()
+        && Cholesky::new(*s).is_some_and(|factor| {
+            let l = factor.l_dirty();
+            (0..B).all(|i| l[(i, i)] * l[(i, i)] > s[(i, i)] * epsilon::<T>() * constant(1e2))
+        });
+    if regular {
+        return SVector::zeros();
+    }
+    let share = asked.unwrap_or(epsilon::<T>().sqrt());
+    s.diagonal().map(|own| if own == T::zero() { T::one() } else { own * share })
+}
+
+/// The inverse of a positive definite matrix, from its factorisation.
+fn inverse<T: Real>(p: &Matrix4<T>) -> Matrix4<T> {
+    Cholesky::new(*p).map_or(Matrix4::repeat(constant(f64::NAN)), |factor| factor.inverse())
+}
+
+/// The pseudo-inertia of a link about its origin (Wensing, Kim and Slotine 2018); of one at the bound of what there is (a rod, a
+/// plate, a point) that of a body as good as equal. Nothing if no body is meant.
+fn pseudo_inertia<T: Real>(link: &Inertial<T>) -> Option<Matrix4<T>> {
+    let Inertial { mass: m, com: [x, y, z], ixx, ixy, ixz, iyy, iyz, izz } = *link;
+    let half = (ixx + iyy + izz) * constant(0.5);
+    // A hundredth of the second moments, and those of a millimetre.
+    let least = half.max(T::zero()) * constant(0.01) + m * constant(1e-6);
+    let mut central = Matrix3::new(half - ixx, -ixy, -ixz, -ixy, half - iyy, -iyz, -ixz, -iyz, half - izz);
+    // Neither is a mass that is not a number.
+    if m.partial_cmp(&T::zero()) != Some(core::cmp::Ordering::Greater) {
+        return None;
+    }
+    if Cholesky::new(central - Matrix3::identity() * (least * constant(0.01))).is_none() {
+        central += Matrix3::identity() * least;
+    }
+    Cholesky::new(central)?;
+    let c = Vector3::new(x, y, z);
+    let second = central + c * c.transpose() * m;
+    let mut p = Matrix4::zeros();
+    p.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
+    for k in 0..3 {
+        (p[(k, 3)], p[(3, k)]) = (m * c[k], m * c[k]);
+    }
+    p[(3, 3)] = m;
+    Some(p)
+}
+
+/// The mass properties with a pseudo-inertia.
+fn of_pseudo_inertia<T: Real>(p: &Matrix4<T>) -> Inertial<T> {
+    let (xx, yy, zz) = (p[(0, 0)], p[(1, 1)], p[(2, 2)]);
+    Inertial::from_standard([
+        p[(3, 3)],
+        p[(0, 3)],
+        p[(1, 3)],
+        p[(2, 3)],
+        yy + zz,
+        -p[(0, 1)],
+        xx + zz,
+        -p[(0, 2)],
+        -p[(1, 2)],
+        xx + yy,
+    ])
+}

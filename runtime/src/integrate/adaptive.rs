@@ -1,0 +1,218 @@
+//! Steps of the size that tolerances ask for, whatever the method that makes them.
+
+use super::control::{Scale, first_step};
+use super::{Dynamics, Error, State, Step, is_finite, positive, settled};
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::SVector;
+
+/// What users set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Settings<T> {
+    pub relative: T,
+    pub absolute: T,
+    pub first: Option<T>,
+    pub least: Option<T>,
+    pub longest: Option<T>,
+    pub most_steps: u64,
+}
+
+/// How steps follow from errors: a step times `error` to the minus `exponent`, and the error of the step before to `beta`; it
+/// becomes no longer than by the first of `factors` and no shorter than by the second.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Control {
+    pub exponent: f64,
+    pub beta: f64,
+    pub factors: [f64; 2],
+}
+
+/// What one adaptive step hands to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveMemory<T, const NV: usize> {
+    /// Acceleration at the start of the step: it does not depend on the chart, so the last stage can be reused.
+    pub(super) acceleration: Option<SVector<T, NV>>,
+    step: Option<T>,
+    error: T,
+    trials: u64,
+}
+
+impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
+    pub(super) fn new(first: Option<T>) -> Self {
+        Self { acceleration: None, step: first, error: constant(1e-4), trials: 0 }
+    }
+
+    /// Counts a trial.
+    pub(super) fn tried(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
+        self.trials += 1;
+        if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
+    }
+}
+
+/// A step that its error has still to accept.
+pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
+    pub step: Step<T, NQ, NV>,
+    /// Acceleration at the end, where it is known.
+    pub acceleration: Option<SVector<T, NV>>,
+    /// The estimated error; acceptable up to one, NaN where the trial is.
+    pub error: T,
+}
+
+/// From where to when a step is tried.
+pub(super) struct Attempt<'a, T, const NQ: usize, const NV: usize> {
+    pub start: &'a State<T, NQ, NV>,
+    pub acceleration: &'a SVector<T, NV>,
+    pub scale: &'a Scale<T>,
+    pub h: T,
+    pub t: T,
+}
+
+impl<T: Real> Settings<T> {
+    pub fn new() -> Self {
+        let tolerance = constant::<T>(1e-9).max(constant::<T>(64.0) * epsilon());
+        Self {
+            relative: tolerance,
+            absolute: tolerance,
+            first: None,
+            least: None,
+            longest: None,
+            most_steps: 10_000_000,
+        }
+    }
+
+    pub fn check(&self) -> Result<(), Error> {
+        positive("the relative tolerance", self.relative)?;
+        positive("the absolute tolerance", self.absolute)?;
+        self.first.map_or(Ok(()), |h| positive("the initial step", h))?;
+        self.least.map_or(Ok(()), |h| positive("the shortest step", h))?;
+        self.longest.map_or(Ok(()), |h| positive("the longest step", h))
+    }
+
+    /// The step to try: at most `h`, ending on `until` without leaving a sliver.
+    fn fit(&self, h: T, t: T, until: Option<T>) -> (T, T) {
+        let Some(until) = until else { return (h, t + h) };
+        let remaining = until - t;
+        let h = if h >= remaining * constant(0.99) {
+            return (remaining, until);
+        } else if h > remaining * constant(0.5) {
+            remaining * constant(0.5)
+        } else {
+            h
+        };
+        (h, t + h)
+    }
+
+    fn limited(&self, h: T) -> T {
+        self.longest.map_or(h, |longest| h.min(longest))
+    }
+
+    /// Step sizes after an error estimate: the controller of DOPRI5 and its kin. The first for an accepted step, the second
+    /// for a rejected one.
+    fn next_steps(control: &Control, h: T, error: T, last: T) -> (T, T) {
+        let ([longer, shorter], safety) = (control.factors, constant::<T>(0.9));
+        let raw = error.powf(constant(control.exponent));
+        let smooth = raw / last.powf(constant(control.beta)) / safety;
+        let accepted = h / smooth.max(constant(1.0 / longer)).min(constant(shorter));
+        (accepted, h / (raw / safety).min(constant(shorter)))
+    }
+
+    /// Whether the step `h` from `t` to `end` can be taken; `wanted` is what it was cut from. If the trial before was
+    /// not finite, that is the reason for a small step.
+    fn check_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool, now: T) -> Result<(), Error> {
+        // Steps count time from their start: only double precision's rounding of the whole run sets a limit.
+        let least = self.least.unwrap_or(T::zero()).max(constant::<T>(f64::EPSILON) * now.abs());
+        let (t, possible) = (to_f64(t), end > t && h > T::zero() && wanted > least);
+        match (possible, finite) {
+            (true, _) => Ok(()),
+            (false, true) => Err(Error::StepTooSmall { t, h: to_f64(wanted) }),
+            (false, false) => Err(Error::NotFinite { t }),
+        }
+    }
+
+    /// One accepted step, of those that `attempt` makes.
+    pub fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        control: &Control,
+        memory: &mut AdaptiveMemory<T, NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        mut attempt: impl FnMut(&mut D, &Attempt<'_, T, NQ, NV>) -> Result<Trial<T, NQ, NV>, Error>,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        let known = memory.acceleration.take();
+        let acceleration = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
+        if !is_finite(&acceleration) {
+            return Err(Error::NotFinite { t: to_f64(start.t) });
+        }
+        let scale = Scale { relative: self.relative, absolute: self.absolute };
+        let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
+        let mut wanted = self.limited(chosen);
+        let (mut rejected, mut finite) = (false, true);
+        loop {
+            let (h, t) = self.fit(wanted, start.t, until);
+            self.check_size([start.t, t], h, wanted, finite, system.time(start.t))?;
+            memory.tried(self, start.t)?;
+            let trial =
+                attempt(system, &Attempt { start, acceleration: &acceleration, scale: &scale, h, t })?;
+            let error = trial.error;
+            finite = error.is_finite() && is_finite(&trial.step.end.q);
+            let (larger, smaller) = Self::next_steps(control, h, error, memory.error);
+            if !finite || error > T::one() {
+                wanted = if finite { smaller } else { h * constant(0.1) };
+                rejected = true;
+                continue;
+            }
+            // A step that was cut short to end on time says little about longer ones.
+            let longer = if h < wanted { larger.max(wanted) } else { larger };
+            memory.step = Some(self.limited(if rejected { larger.min(h) } else { longer }));
+            memory.error = error.max(constant(1e-4));
+            let end = settled(system, trial.step.end, start.t)?;
+            memory.acceleration = trial.acceleration.filter(|_| !system.is_constrained());
+            return Ok(Step { end, ..trial.step });
+        }
+    }
+}
+
+/// The functions by which users set an adaptive method, its defaults, and what all adaptive methods have in common.
+macro_rules! adaptive {
+    ($name:ident) => {
+        impl<T: Real> $name<T> {
+            /// Relative and absolute tolerance 1e-9 (or 64 roundings of a less precise `T`), at most ten million steps.
+            pub fn new() -> Self {
+                Self { settings: Settings::new() }
+            }
+
+            /// Error allowed per step: relative to the size of each coordinate and velocity, and absolute in SI units.
+            pub fn tolerance(self, relative: T, absolute: T) -> Self {
+                Self { settings: Settings { relative, absolute, ..self.settings } }
+            }
+
+            /// First step tried, s; chosen by itself if not given.
+            pub fn initial_step(self, step: T) -> Self {
+                Self { settings: Settings { first: Some(step), ..self.settings } }
+            }
+
+            /// Longest step, s; no limit if not given. Set it below the shortest thing that must not be stepped over.
+            pub fn max_step(self, step: T) -> Self {
+                Self { settings: Settings { longest: Some(step), ..self.settings } }
+            }
+
+            /// Shortest step, s: if the tolerance asks for less, the run ends with [`Error::StepTooSmall`].
+            pub fn min_step(self, step: T) -> Self {
+                Self { settings: Settings { least: Some(step), ..self.settings } }
+            }
+
+            /// Most steps tried in one run, accepted and rejected.
+            pub fn max_steps(self, steps: u64) -> Self {
+                Self { settings: Settings { most_steps: steps, ..self.settings } }
+            }
+        }
+
+        impl<T: Real> Default for $name<T> {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+    };
+}
+
+pub(super) use adaptive;

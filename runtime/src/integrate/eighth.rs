@@ -1,0 +1,117 @@
+//! The method of Dormand and Prince of order 8 with adaptive steps.
+
+use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
+use super::stages::{Rates, stage, weighted};
+use super::{Dynamics, Error, Jump, Method, State, Step};
+use crate::Real;
+use crate::private::constant;
+use nalgebra::SVector;
+
+mod coefficients;
+
+use coefficients::{FIFTH, STAGES, TERMS, THIRD, TIMES};
+
+/// DOP853's.
+pub(super) const CONTROL: Control = Control { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
+
+/// Index of the stage at the end of the step.
+const END: usize = 12;
+
+/// The Dormand–Prince method of order 8 with error estimates of orders 5 and 3: for tight tolerances, where its steps are many
+/// times longer than those of [`DormandPrince`](super::DormandPrince), and for references. Interpolation of order 7.
+///
+/// Twelve evaluations of the dynamics per step, three more where samples or events are within it. Errors are measured as
+/// [`DormandPrince`](super::DormandPrince) says.
+///
+/// ```
+/// # use linkwork::integrate::DormandPrince8;
+/// let method = DormandPrince8::new().tolerance(1e-13, 1e-13);
+/// # let _: DormandPrince8<f64> = method;
+/// ```
+///
+/// Sources: Prince and Dormand, *High order embedded Runge–Kutta formulae*, J. Comp. Appl. Math. 7 (1981); Hairer, Nørsett and
+/// Wanner, *Solving Ordinary Differential Equations I* (1993), II.5, II.6, II.10 and the program DOP853.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DormandPrince8<T> {
+    settings: Settings<T>,
+}
+
+adaptive!(DormandPrince8);
+
+impl<T: Real> Method<T> for DormandPrince8<T> {
+    type Memory<const NV: usize> = AdaptiveMemory<T, NV>;
+
+    const FIXED: bool = false;
+
+    fn check(&self) -> Result<(), Error> {
+        self.settings.check()
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        AdaptiveMemory::new(self.settings.first)
+    }
+
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+        memory.acceleration = None;
+    }
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        memory: &mut Self::Memory<NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        self.settings.advance(&CONTROL, memory, system, start, until, |system, attempt| {
+            Ok(trial(system, attempt, dense))
+        })
+    }
+}
+
+/// A step, with its interpolating polynomial if that is wanted.
+pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    attempt: &Attempt<'_, T, NQ, NV>,
+    dense: bool,
+) -> Trial<T, NQ, NV> {
+    let Attempt { start, acceleration, scale, h, t } = *attempt;
+    let mut k = [Rates { displacement: start.v, velocity: *acceleration }; 16];
+    let mut reach = |k: &mut [Rates<T, NV>; 16], stages: core::ops::Range<usize>| {
+        let mut end = *start;
+        let weights = STAGES.iter().skip(stages.start - 1);
+        for ((index, weights), part) in stages.clone().zip(weights).zip(TIMES.iter().skip(stages.start)) {
+            let time = if *part == 1.0 { t } else { start.t + h * constant(*part) };
+            let (rates, state) = stage(system, start, time, &weighted(h, weights, k));
+            if let Some(place) = k.get_mut(index) {
+                *place = rates;
+            }
+            end = state;
+        }
+        end
+    };
+    reach(&mut k, 1..END);
+    let change = weighted(h, STAGES[END - 1], &k);
+    let end = reach(&mut k, END..END + 1);
+    let displacement = change.displacement;
+    let mut step = Step::linear(*start, end, displacement);
+    let fifth = scale.error(&step, &displacement, &weighted(h, FIFTH, &k));
+    let third = scale.error(&step, &displacement, &weighted(h, THIRD, &k));
+    let both = fifth * fifth + third * third * constant(0.01);
+    let error = if both == T::zero() { both } else { fifth * fifth / both.sqrt() };
+    let after = k[END];
+    if dense && error <= T::one() {
+        reach(&mut k, END + 1..16);
+        let [a, b, c, d] = TERMS.map(|weights| weighted(h, weights, &k));
+        let bend = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
+            (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
+        };
+        let (square, cube) = bend(&start.v, &displacement, &after.displacement);
+        let terms = [square, cube, a.displacement, b.displacement, c.displacement, d.displacement];
+        step.displacement = step.displacement.with_terms(terms);
+        let (square, cube) = bend(acceleration, &(end.v - start.v), &after.velocity);
+        step.velocity =
+            step.velocity.with_terms([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
+    }
+    Trial { step, acceleration: Some(after.velocity), error }
+}

@@ -1,0 +1,348 @@
+//! Motion with contacts whose every event is located.
+
+use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
+use super::control::Scale;
+use super::eighth::{CONTROL, trial};
+use super::local::Local;
+use super::{Dynamics, Error, Inputs, Jump, Method, State, Steered, Step, System, TimeStepping, settled};
+use crate::Real;
+use crate::contact::{Contacts, Phase, Phased, Visitor, Watch, kept, separated};
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::SVector;
+
+/// Steps of [`DormandPrince8`](super::DormandPrince8) between events at [contacts](crate::contact), which are located to rounding:
+/// impacts, release, the end of slip and of stiction.
+///
+/// What contacts do between events follows from the complementarity of gaps and forces and from Coulomb's law
+/// ([`contact::acting`](crate::contact::acting)), and the mechanism moves under the forces that keep it so
+/// ([`contact::forward_dynamics`](crate::contact::forward_dynamics)). Impacts that follow each other ever faster end where rounding
+/// leaves nothing of them: a ball comes to rest after finitely many bounces, and stays. Where forces cannot tell what comes next
+/// (Painlevé's paradox, slip that ends and starts in the same instant) a short step of [`TimeStepping`] does.
+///
+/// For few contacts and tight tolerances: each event costs some ten steps. Steps are searched at their quarters, so a contact that
+/// opens and closes within a quarter may be missed where nothing else keeps steps short: see [`max_step`](Self::max_step). For
+/// mechanisms with dozens of contacts, for lanes, and for states of first order there is [`TimeStepping`]. Mechanisms without
+/// contacts move as by [`DormandPrince8`](super::DormandPrince8).
+///
+/// ```
+/// use linkwork::integrate::EventDriven;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z)]
+/// struct Ball {
+///     #[particle(mass = 0.1)]
+///     ball: Particle,
+///     #[joint(ground -> ball, along = z)]
+///     height: Sleeve,
+///     #[contact(ball, ground.plane(z), restitution = 0.5)]
+///     bounce: Contact,
+/// }
+///
+/// # fn main() -> Result<(), Error> {
+/// let run = simulate(&Ball {}).from([1.0], [0.0]).method(EventDriven::new());
+/// // It falls for √(2 h / g), bounces for twice as long, and rests.
+/// let fall = (2.0 / 9.81_f64).sqrt();
+/// let bouncing = run.clone().duration(2.0 * fall).finish()?;
+/// // The second apex is that of half the speed and half the time.
+/// let s = bouncing.t - fall;
+/// assert!((bouncing.q[0] - s * (0.5 * 9.81 * fall - 0.5 * 9.81 * s)).abs() < 1e-12);
+/// let resting = run.duration(4.0 * fall).finish()?;
+/// assert!(resting.q[0].abs() < 1e-12 && resting.v[0].abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// Source: Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical Systems* (2008), ch. 8.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EventDriven<T> {
+    settings: Settings<T>,
+}
+
+adaptive!(EventDriven);
+
+/// What one step of [`EventDriven`] hands to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct EventMemory<T, const NV: usize> {
+    adaptive: AdaptiveMemory<T, NV>,
+    /// Steps of hardly any length that have followed each other.
+    short: u32,
+    /// Steps of time stepping among them, each twice as long as the one before.
+    stretch: u32,
+    /// For how many more steps contacts are taken to slip whose forces the motion does not tell apart.
+    shared: u32,
+}
+
+/// Steps of hardly any length after which time stepping takes turns with them: more than the last bounces of a ball, fewer than slip
+/// in space takes to find its way where it has just begun, which is stiff.
+const MANY: u32 = 100;
+/// A step of hardly any length, in shortest steps of time stepping.
+const SHORT: f64 = 64.0;
+/// Likewise where contacts slip whose forces the motion does not tell apart: which of them is right is not known, and looking for
+/// the one that lasts does not end.
+const SHORT_SHARED: f64 = 8192.0;
+/// As how many short steps one then counts.
+const FEWER: u32 = 8;
+/// For how many steps that is so after the last of them.
+const LATELY: u32 = 16;
+/// Doublings of the shortest step of time stepping.
+const LONGEST: u32 = 14;
+
+impl<T: Real, const NV: usize> EventMemory<T, NV> {
+    /// Counts a step of a length in shortest steps of time stepping.
+    fn count(&mut self, length: T, is_shared: bool) {
+        self.shared = if is_shared { LATELY } else { self.shared.saturating_sub(1) };
+        let (short, weight) = if self.shared > 0 { (SHORT_SHARED, FEWER) } else { (SHORT, 1) };
+        if length < constant(short) {
+            self.short += weight;
+        } else {
+            (self.short, self.stretch) = (0, 0);
+        }
+    }
+
+    /// Whether it is time stepping's turn.
+    fn is_stuck(&mut self) -> bool {
+        let is_stuck = self.short > MANY;
+        if is_stuck {
+            self.short = MANY - 1;
+        }
+        is_stuck
+    }
+}
+
+impl<T: Real> Method<T> for EventDriven<T> {
+    type Memory<const NV: usize> = EventMemory<T, NV>;
+
+    const FIXED: bool = false;
+    const CONTACTS: bool = true;
+    const LOCATES: bool = true;
+
+    fn check(&self) -> Result<(), Error> {
+        self.settings.check()
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        EventMemory { adaptive: AdaptiveMemory::new(self.settings.first), short: 0, stretch: 0, shared: 0 }
+    }
+
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+        memory.adaptive.acceleration = None;
+    }
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        memory: &mut Self::Memory<NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        let section =
+            Section { settings: self.settings, memory: &mut *memory, start, until, origin: T::zero() };
+        if let Some(step) = system.follow(section) {
+            return step;
+        }
+        self.settings.advance(&CONTROL, &mut memory.adaptive, system, start, until, |system, attempt| {
+            Ok(trial(system, attempt, dense))
+        })
+    }
+}
+
+/// A step that is to be made.
+#[derive(Debug)]
+pub struct Section<'a, T, const NQ: usize, const NV: usize> {
+    settings: Settings<T>,
+    memory: &'a mut EventMemory<T, NV>,
+    start: &'a State<T, NQ, NV>,
+    until: Option<T>,
+    /// Since when times are counted.
+    origin: T,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
+    /// The step with its time counted from `origin` seconds earlier.
+    pub(super) fn later(self, origin: T) -> Self {
+        Self { origin: self.origin + origin, ..self }
+    }
+}
+
+/// A step of a mechanism with contacts, under its inputs.
+pub(super) struct Following<'a, T, I, const NQ: usize, const NV: usize> {
+    pub(super) section: Section<'a, T, NQ, NV>,
+    pub(super) inputs: &'a mut I,
+}
+
+impl<T, I, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
+    for Following<'_, T, I, NQ, NV>
+where
+    T: Real,
+    I: Inputs<T, NQ, NV, NU>,
+{
+    type Output = Result<Step<T, NQ, NV>, Error>;
+
+    fn visit<M, const NK: usize, const NR: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let Self { section: Section { settings, memory, start, until, origin }, inputs } = self;
+        let now = origin + start.t;
+        let reported = |reason| Error::Constraint { t: to_f64(start.t), reason };
+        let v = separated(mechanism, now, &start.q, &start.v).map_err(reported)?;
+        let begin = State { v, ..*start };
+        let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.at(now, &begin.q, &v));
+        let (mut located, mut shared) = (None, false);
+        if memory.is_stuck() {
+            // Then events have their turn again.
+        } else if let Ok((phase, acceleration)) = Phase::of(mechanism, now, &begin.q, &v, &tau) {
+            shared = phase.is_shared();
+            let phased = Phased { mechanism, phase };
+            let mut within = Within { phased: &phased, inputs: &mut *inputs, origin, begin, acceleration };
+            located = within.step(&settings, &mut memory.adaptive, until);
+        }
+        let resolution = epsilon::<T>().sqrt();
+        let step = if let Some(Ok(step)) = located {
+            memory.count((step.end.t - start.t) / resolution, shared);
+            step
+        } else {
+            let h = resolution * constant(f64::from(1_u32 << memory.stretch));
+            memory.stretch = (memory.stretch + 1).min(LONGEST);
+            memory.adaptive.tried(&settings, start.t)?;
+            let until = until.map_or(start.t + h, |until| until.min(start.t + h));
+            let mut system = System::new(mechanism, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut local = Local { system: &mut system, origin };
+            TimeStepping::step(h).advance(&mut (), &mut local, &begin, Some(until), true)?
+        };
+        let v = separated(mechanism, origin + step.end.t, &step.end.q, &step.end.v).map_err(reported)?;
+        Ok(Step { end: State { v, ..step.end }, ..step })
+    }
+}
+
+/// A step within a phase.
+struct Within<'a, M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize> {
+    phased: &'a Phased<'a, M, T, NK, NR>,
+    inputs: &'a mut I,
+    origin: T,
+    begin: State<T, NQ, NV>,
+    acceleration: SVector<T, NV>,
+}
+
+impl<M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>
+    Within<'_, M, T, I, NQ, NV, NK, NR>
+where
+    T: Real,
+{
+    /// What is left until the first event of the phase in a state that a step has led to.
+    fn left<const NU: usize>(&mut self, state: &State<T, NQ, NV>) -> T
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        let State { t, q, v } = state;
+        let (s, t) = (*t - self.begin.t, self.origin + *t);
+        let tau = self.phased.mechanism.generalized_forces(t, q, v, &self.inputs.at(t, q, v));
+        Watch { s, t, q, v, tau: &tau }.left(self.phased)
+    }
+
+    /// A step up to the first event at the latest; `None` where an event is at its start.
+    fn step<const NU: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        memory: &mut AdaptiveMemory<T, NV>,
+        until: Option<T>,
+    ) -> Option<Result<Step<T, NQ, NV>, Error>>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        let Self { phased, origin, begin, .. } = *self;
+        let landing = phased.phase.landing();
+        let near = landing.map(|s| begin.t + s * constant(1.5));
+        let until = match (near, until) {
+            (Some(near), Some(until)) => Some(near.min(until)),
+            (near, until) => near.or(until),
+        };
+        let made = {
+            let inputs = &mut *self.inputs;
+            let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut local = Local { system: &mut system, origin };
+            memory.acceleration = Some(self.acceleration);
+            let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
+                Ok(trial(system, attempt, true))
+            });
+            made.map(|step| {
+                let states = [0.25, 0.5, 0.75].map(|part| step.at(&local, constant(part)));
+                (step, states)
+            })
+        };
+        let (step, quarters) = match made {
+            Ok(made) => made,
+            Err(error) => return Some(Err(error)),
+        };
+        let past = quarters.into_iter().chain([step.end]).find(|state| self.left(state) < T::zero());
+        let Some(past) = past else { return Some(self.ended(step)) };
+        let least = landing.map_or(epsilon::<T>().powf(constant(0.75)), |s| s * constant(1e-3));
+        self.located(settings, past.t - begin.t, least).map(|step| self.ended(step))
+    }
+
+    /// The step up to an event that is past after `h` seconds; `None` if it is past after `least`.
+    fn located<const NU: usize>(&mut self, settings: &Settings<T>, h: T, least: T) -> Option<Step<T, NQ, NV>>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        // Each second trial halves what is left, so that these are enough for all digits.
+        const TRIALS: usize = 120;
+        let half = constant::<T>(0.5);
+        let (mut before, mut after) = ((T::zero(), None), (h, None));
+        for k in 0..TRIALS {
+            let between = (before.0 + after.0) * half;
+            let secant = match (before.1, after.1) {
+                (Some(a), Some(b)) if k % 3 != 2 => before.0 + (after.0 - before.0) * a / (a - b),
+                _ => between,
+            };
+            let middle = if secant > before.0 && secant < after.0 { secant } else { between };
+            let is_done = after.0 - before.0 <= after.0 * epsilon::<T>() * constant(4.0);
+            if is_done || middle <= before.0 || middle >= after.0 {
+                break;
+            }
+            if after.0 < least {
+                return None;
+            }
+            let state = self.tried(settings, middle, false).end;
+            let left = self.left(&state);
+            // The function is steep where one event follows another: what is past by nothing is it, too.
+            if left < T::zero() { after = (middle, Some(left)) } else { before = (middle, Some(left)) }
+        }
+        Some(self.tried(settings, after.0, true))
+    }
+
+    /// A step of `h` seconds.
+    fn tried<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        let Self { phased, origin, begin, .. } = *self;
+        let inputs = &mut *self.inputs;
+        let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let mut local = Local { system: &mut system, origin };
+        let scale = Scale { relative: settings.relative, absolute: settings.absolute };
+        let attempt =
+            Attempt { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
+        trial(&mut local, &attempt, dense).step
+    }
+
+    /// The step with its end where contacts and constraints hold it.
+    fn ended<const NU: usize>(&mut self, step: Step<T, NQ, NV>) -> Result<Step<T, NQ, NV>, Error>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+        I: Inputs<T, NQ, NV, NU>,
+    {
+        let Self { phased, origin, begin, .. } = *self;
+        let end = step.end.finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
+        let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
+        let inputs = &mut *self.inputs;
+        let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let local = Local { system: &mut system, origin };
+        Ok(Step { end: settled(&local, State { q, v, ..end }, begin.t)?, ..step })
+    }
+}

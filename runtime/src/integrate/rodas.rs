@@ -1,0 +1,273 @@
+//! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
+
+use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
+use super::rosenbrock::{Slopes, slopes};
+use super::stages::Rates;
+use super::{Dynamics, Error, Jump, Method, State, Step};
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::{SMatrix, SVector};
+
+/// RODAS's.
+const CONTROL: Control = Control { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
+/// How far each stage's matrix looks ahead, as a part of the step.
+const GAMMA: f64 = 0.25;
+/// When the stages are, as parts of the step.
+const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+/// Which earlier stages each starts from; the last is also what the result starts from, without its own last stages.
+const STARTS: [&[f64]; 6] = [
+    &[],
+    &[1.544],
+    &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
+    &[3.314_825_187_068_521, 2.896_124_015_972_201, 0.998_641_913_997_781_7],
+    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
+    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
+];
+/// Which earlier stages are added to the rates of each, divided by the step.
+const ADDED: [&[f64]; 6] = [
+    &[],
+    &[-5.6688],
+    &[-2.430_093_356_833_875, -0.206_359_915_709_191_5],
+    &[-0.107_352_905_815_137_5, -9.594_562_251_023_355, -20.470_286_148_096_16],
+    &[7.496_443_313_967_647, -10.246_804_314_643_52, -33.999_903_528_199_05, 11.708_908_932_061_6],
+    &[
+        8.083_246_795_921_522,
+        -7.981_132_988_064_893,
+        -31.521_594_328_743_71,
+        16.319_305_431_231_36,
+        -6.058_818_238_834_054,
+    ],
+];
+/// Weights of the rates' slope in time, times the step.
+const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
+/// Third and fourth term of the interpolating polynomial.
+const TERMS: [[f64; 5]; 2] = [
+    [
+        10.126_235_083_445_86,
+        -7.487_995_877_610_167,
+        -34.800_918_615_557_47,
+        -7.992_771_707_568_823,
+        1.025_137_723_295_662,
+    ],
+    [
+        -0.676_280_339_280_125_3,
+        6.087_714_651_680_015,
+        16.430_843_208_924_78,
+        24.767_225_114_183_86,
+        -6.594_389_125_716_872,
+    ],
+];
+
+/// The Rosenbrock method RODAS of order 4 with an error estimate of order 3, for stiff mechanisms: steps of the size that the
+/// tolerance asks for, however stiff springs and dashpots are, and interpolation of order 3.
+///
+/// A step solves six linear systems with one matrix of size `NV`. Derivatives of the accelerations are differences, `2 NV + 3`
+/// evaluations of the dynamics; steps take five more. L-stable: what is fast and stiff is damped away. Errors are measured as
+/// [`DormandPrince`](super::DormandPrince) says, and constraints are kept as by [`Rosenbrock`](super::Rosenbrock). For
+/// tolerances of about 1e-3 to 1e-8; where nothing is stiff the explicit methods are faster.
+///
+/// [`Error::NotConverged`] means that the matrix of a step is singular.
+///
+/// ```
+/// # use linkwork::integrate::Rodas;
+/// let method = Rodas::new().tolerance(1e-6, 1e-9);
+/// # let _: Rodas<f64> = method;
+/// ```
+///
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), IV.7 and VI.4, and the program RODAS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rodas<T> {
+    settings: Settings<T>,
+}
+
+adaptive!(Rodas);
+
+/// What one step hands to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct RodasMemory<T, const NV: usize> {
+    steps: AdaptiveMemory<T, NV>,
+    /// Those of the last step, for positions where branches of the motion part.
+    slopes: Option<Slopes<T, NV>>,
+}
+
+impl<T: Real> Method<T> for Rodas<T> {
+    type Memory<const NV: usize> = RodasMemory<T, NV>;
+
+    const FIXED: bool = false;
+
+    fn check(&self) -> Result<(), Error> {
+        self.settings.check()
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        RodasMemory { steps: AdaptiveMemory::new(self.settings.first), slopes: None }
+    }
+
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+        memory.steps.acceleration = None;
+        if jump == Jump::State {
+            memory.slopes = None;
+        }
+    }
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        memory: &mut Self::Memory<NV>,
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        _dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        // One set of slopes for all trials of a step.
+        let (mut found, before) = (None, memory.slopes);
+        let advanced =
+            self.settings.advance(&CONTROL, &mut memory.steps, system, start, until, |system, attempt| {
+                let known = found.unwrap_or_else(|| linear(system, attempt, before));
+                found = Some(known);
+                trial(system, attempt, &known)
+                    .ok_or(Error::NotConverged { t: to_f64(start.t), iterations: 0 })
+            });
+        memory.slopes = found.map(|linear: Linear<T, NV>| linear.slopes).or(before);
+        advanced
+    }
+}
+
+/// The equations of motion, linear about the start of a step.
+#[derive(Clone, Copy)]
+struct Linear<T, const NV: usize> {
+    slopes: Slopes<T, NV>,
+    /// Derivatives of the displacement's rate by the displacement.
+    turn: SMatrix<T, NV, NV>,
+}
+
+fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    attempt: &Attempt<'_, T, NQ, NV>,
+    before: Option<Slopes<T, NV>>,
+) -> Linear<T, NV> {
+    let Attempt { start, acceleration, h, .. } = *attempt;
+    let mut slopes = slopes(system, start, acceleration, h).or(before).unwrap_or(Slopes::zero());
+    // Order 4 asks for more than a forward difference in time; inputs may jump at the start.
+    let later = h * constant(1e-3);
+    let [first, second] =
+        [T::one(), constant(2.0)].map(|n| system.acceleration(start.t + later * n, &start.q, &start.v));
+    let bend = first * constant::<T>(4.0) - second - acceleration * constant::<T>(3.0);
+    slopes.by_t = bend / (later * constant::<T>(2.0));
+    let mut turn = SMatrix::<T, NV, NV>::zeros();
+    let size: T = epsilon::<T>().powf(constant(1.0 / 3.0));
+    for k in 0..NV {
+        let mut direction = SVector::<T, NV>::zeros();
+        direction[k] = size;
+        let rate: SVector<T, NV> =
+            system.tangent_rate(&direction, &start.v) - system.tangent_rate(&-direction, &start.v);
+        turn.set_column(k, &(rate / (size * constant::<T>(2.0))));
+    }
+    Linear { slopes, turn }
+}
+
+/// A sum of stages by weights.
+fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) -> Rates<T, NV> {
+    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    for (weight, stage) in weights.iter().zip(stages) {
+        total.displacement += stage.displacement * constant::<T>(*weight);
+        total.velocity += stage.velocity * constant::<T>(*weight);
+    }
+    total
+}
+
+/// A step; `None` where its matrix is singular.
+fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    attempt: &Attempt<'_, T, NQ, NV>,
+    linear: &Linear<T, NV>,
+) -> Option<Trial<T, NQ, NV>> {
+    let Attempt { start, acceleration, scale, h, t } = *attempt;
+    let Linear { slopes, turn } = linear;
+    // Of (c − P) a − b = r and (c − Fv) b − Fφ a = s: one system for a.
+    let c = T::one() / (h * constant(GAMMA));
+    let scaled = SMatrix::<T, NV, NV>::identity() * c;
+    let (of_a, of_b) = (scaled - turn, scaled - slopes.by_v);
+    let matrix = Factored::of(of_b * of_a - slopes.by_q)?;
+    let mut u = [Rates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
+    let mut change = u[0];
+    for (k, part) in TIMES.iter().enumerate() {
+        let (Some(starts), Some(added), Some(in_time)) = (STARTS.get(k), ADDED.get(k), IN_TIME.get(k)) else {
+            break;
+        };
+        change = sum(starts, &u);
+        let (rate, force) = match k {
+            0 => (start.v, *acceleration),
+            _ => {
+                let time = if *part == 1.0 { t } else { start.t + h * constant(*part) };
+                let (q, v) = (system.integrate(&start.q, &change.displacement), start.v + change.velocity);
+                (system.tangent_rate(&change.displacement, &v), system.acceleration(time, &q, &v))
+            }
+        };
+        let added = sum(added, &u);
+        let r = rate + added.displacement / h;
+        let s = force + added.velocity / h + slopes.by_t * (h * constant(*in_time));
+        let a = matrix.solve(s + of_b * r);
+        if let Some(place) = u.get_mut(k) {
+            *place = Rates { displacement: a, velocity: of_a * a - r };
+        }
+    }
+    let error = u[5];
+    let displacement = change.displacement + error.displacement;
+    let v = start.v + change.velocity + error.velocity;
+    let end = State { t, q: system.integrate(&start.q, &displacement), v };
+    let mut step = Step::linear(*start, end, displacement);
+    let [square, cube] = TERMS.map(|weights| sum(&weights, &u));
+    step.displacement = step.displacement.with_terms([square.displacement, cube.displacement]);
+    step.velocity = step.velocity.with_terms([square.velocity, cube.velocity]);
+    let error = scale.error(&step, &displacement, &error);
+    Some(Trial { step, acceleration: None, error })
+}
+
+/// A matrix after Gaussian elimination with row pivots.
+struct Factored<T, const N: usize> {
+    /// The triangles: multipliers below the diagonal.
+    both: SMatrix<T, N, N>,
+    /// Which row each was exchanged with.
+    exchanged: [usize; N],
+}
+
+impl<T: Real, const N: usize> Factored<T, N> {
+    /// `None` for a matrix that is singular, or has an entry that is not finite in the way.
+    fn of(mut both: SMatrix<T, N, N>) -> Option<Self> {
+        let mut exchanged = [0; N];
+        for (k, place) in exchanged.iter_mut().enumerate() {
+            let size = |i: &usize| both[(*i, k)].abs();
+            let best =
+                (k..N).max_by(|i, j| size(i).partial_cmp(&size(j)).unwrap_or(core::cmp::Ordering::Equal))?;
+            *place = best;
+            both.swap_rows(k, best);
+            let pivot = both[(k, k)];
+            if !pivot.is_finite() || pivot == T::zero() {
+                return None;
+            }
+            for i in k + 1..N {
+                let factor = both[(i, k)] / pivot;
+                both[(i, k)] = factor;
+                for j in k + 1..N {
+                    let own = both[(k, j)];
+                    both[(i, j)] -= factor * own;
+                }
+            }
+        }
+        Some(Self { both, exchanged })
+    }
+
+    fn solve(&self, mut b: SVector<T, N>) -> SVector<T, N> {
+        for (k, with) in self.exchanged.iter().enumerate() {
+            b.swap_rows(k, *with);
+        }
+        for i in 0..N {
+            b[i] = (0..i).fold(b[i], |sum, j| sum - self.both[(i, j)] * b[j]);
+        }
+        for k in (0..N).rev() {
+            let rest = (k + 1..N).fold(b[k], |sum, j| sum - self.both[(k, j)] * b[j]);
+            b[k] = rest / self.both[(k, k)];
+        }
+        b
+    }
+}

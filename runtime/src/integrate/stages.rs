@@ -1,0 +1,56 @@
+//! Stages of Runge–Kutta methods: rates, sums of them, and the state after such a sum.
+
+use super::{Dynamics, State};
+use crate::Real;
+use crate::private::constant;
+use nalgebra::SVector;
+
+/// `φ̇` and `v̇` at one stage.
+#[derive(Clone, Copy)]
+pub(super) struct Rates<T, const NV: usize> {
+    pub displacement: SVector<T, NV>,
+    pub velocity: SVector<T, NV>,
+}
+
+/// `h Σ weight · rates`.
+pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
+    h: T,
+    terms: [(f64, &Rates<T, NV>); N],
+) -> Rates<T, NV> {
+    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    for (weight, rates) in terms {
+        let weight = h * constant(weight);
+        total.displacement += rates.displacement * weight;
+        total.velocity += rates.velocity * weight;
+    }
+    total
+}
+
+/// The rates at time `t`, after the change `change` from `start`; the state there.
+pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    t: T,
+    change: &Rates<T, NV>,
+) -> (Rates<T, NV>, State<T, NQ, NV>) {
+    let v = start.v + change.velocity;
+    let q = system.integrate(&start.q, &change.displacement);
+    let displacement = system.tangent_rate(&change.displacement, &v);
+    let velocity = system.acceleration(t, &q, &v);
+    (Rates { displacement, velocity }, State { t, q, v })
+}
+
+/// `h Σ weight · rates`, of the stages of these numbers.
+pub(super) fn weighted<T: Real, const NV: usize, const K: usize>(
+    h: T,
+    weights: &[(usize, f64)],
+    stages: &[Rates<T, NV>; K],
+) -> Rates<T, NV> {
+    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    for (rates, weight) in weights.iter().filter_map(|(k, weight)| Some((stages.get(*k)?, weight))) {
+        let weight = h * constant(*weight);
+        total.displacement += rates.displacement * weight;
+        total.velocity += rates.velocity * weight;
+    }
+    total
+}

@@ -1,0 +1,95 @@
+//! Time stepping: motion with impacts and friction in steps of fixed length.
+
+use super::rk4::through;
+use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use crate::Real;
+use crate::constraint::ConstraintError;
+use crate::contact::Touched;
+use crate::private::{constant, to_f64};
+use nalgebra::SVector;
+
+/// Time stepping after Moreau and Jean, for mechanisms with [contacts](crate::contact): impacts are not located, so that any
+/// number of them costs nothing.
+///
+/// A step of [`Rk4`](super::Rk4) leads to the configuration `q_f` and the velocity `v_f`, under the impulses `Λ₀` that hold those
+/// surfaces together which touch at its start. Then the impulses `Λ` of the whole step take their place:
+///
+/// ```text
+/// v₁ = v_f + M⁻¹ Gᵀ (Λ − Λ₀),   q₁ = q_f ⊕ (h/2) (v₁ − v_f)
+/// ```
+///
+/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses fulfil Coulomb's and Newton's
+/// laws to rounding ([`contact::solve`](crate::contact::solve)), so what sticks does not creep, and no contact gives energy.
+/// Surfaces overlap by what they approach in a step when they meet, at most; where they stay together the overlap is taken away at
+/// once, by displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing time-stepping
+/// schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013).
+///
+/// A step takes four evaluations of the dynamics, and with contacts that are closed two of gaps, rates, Jacobian and mass matrix.
+/// Constraints hold at the end of each step. Source: Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech.
+/// Eng. 177 (1999).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeStepping<T> {
+    step: T,
+}
+
+impl<T: Real> TimeStepping<T> {
+    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    pub const fn step(step: T) -> Self {
+        Self { step }
+    }
+}
+
+impl<T: Real> Method<T> for TimeStepping<T> {
+    type Memory<const NV: usize> = ();
+
+    const FIXED: bool = true;
+    const CONTACTS: bool = true;
+
+    fn check(&self) -> Result<(), Error> {
+        positive("the step", self.step)
+    }
+
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {}
+
+    fn disturb<const NV: usize>(&self, (): &mut (), _jump: Jump) {}
+
+    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+        &self,
+        (): &mut (),
+        system: &mut D,
+        start: &State<T, NQ, NV>,
+        until: Option<T>,
+        _dense: bool,
+    ) -> Result<Step<T, NQ, NV>, Error> {
+        let (h, t) = equal_step(self.step, start.t, until)?;
+        let reported = |reason| match reason {
+            ConstraintError::NotFinite => Error::NotFinite { t: to_f64(start.t) },
+            reason => Error::Constraint { t: to_f64(start.t), reason },
+        };
+        let (free, given) = guided(system, start, h, t).map_err(reported)?;
+        let free = settled(system, free, start.t)?;
+        let v = free.v - given;
+        let Touched { q, v } =
+            system.contact_step(t, (&start.q, &start.v), (&free.q, &v), &given, h).map_err(reported)?;
+        let end = State { q, v, ..free };
+        let end = if end == free { end } else { settled(system, end, start.t)? };
+        Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
+    }
+}
+
+/// Where a step of [`Rk4`] leads under the impulses that hold surfaces together at its start, and what these add to the velocity.
+pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    h: T,
+    t: T,
+) -> Result<(State<T, NQ, NV>, SVector<T, NV>), ConstraintError> {
+    let before = system.acceleration(start.t, &start.q, &start.v);
+    let (state, free) = ((&start.q, &start.v), start.v + before * h);
+    // Without a duration nothing moves.
+    let held = system.contact_step(start.t, state, (&start.q, &free), &SVector::zeros(), T::zero())?;
+    let given = held.v - free;
+    let (displacement, change) = through(system, start, h, before, &(given / h));
+    let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
+    Ok((end, system.carry(start.t, &displacement, &given)))
+}

@@ -1,0 +1,385 @@
+//! Whether parameters are those of a mechanism that can be.
+
+use crate::Real;
+use crate::private::{constant, epsilon, to_f64};
+use core::fmt;
+
+/// A figure that no mechanism can have, found by the function `validate` of a mechanism with parameters.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork::{Fault, ParameterError};
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct Pendulum {
+///     mass: f64,
+///     length: f64,
+///     #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+///     rod: Body,
+///     #[joint(ground -> rod, about = z)]
+///     hinge: Pin,
+/// }
+///
+/// # fn main() -> Result<(), ParameterError> {
+/// Pendulum { mass: 2.0, length: 1.5 }.validate()?;
+/// let error = Pendulum { mass: -2.0, length: 1.5 }.validate().unwrap_err();
+/// assert_eq!((error.fault, error.parameters), (Fault::Negative, &["mass"][..]));
+/// assert_eq!(error.to_string(), "the mass of `rod` cannot be negative, but it is -2 (by the parameter `mass`)");
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// What is wrong with it.
+    pub fault: Fault,
+    /// Which figure it is: ``the mass of `rod` ``.
+    pub figure: &'static str,
+    /// The names of the parameters that it follows from.
+    pub parameters: &'static [&'static str],
+    /// Its value in SI units; of a range its lower end minus its upper one, of an inertia the sum of the two lesser principal
+    /// moments minus the largest. NaN where it is not a number, and where lanes differ.
+    pub value: f64,
+}
+
+/// What can be wrong with a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// It is infinite or NaN.
+    NotFinite,
+    /// It is negative: masses, sizes and coefficients of friction or damping are zero or more.
+    Negative,
+    /// It is not positive, as the sizes of surfaces and the speeds of smooth laws are.
+    NotPositive,
+    /// It is so large that products with it are not finite.
+    TooLarge,
+    /// It is so small that its reciprocal is not finite, and not zero.
+    TooSmall,
+    /// It is no half angle of a cone: not between zero and a right angle.
+    NotHalfAngle,
+    /// It is the square of the length of a quaternion, and not one.
+    NotUnit,
+    /// It is a coefficient of restitution, and not between zero and one.
+    NotFraction,
+    /// It is a range that ends before it begins.
+    EmptyRange,
+    /// It is an inertia that no body has: a principal moment is negative, or exceeds the sum of the others.
+    Inertia,
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fault, figure, parameters, value } = self;
+        match fault {
+            Fault::NotFinite => write!(f, "{figure} is not a finite number: it is {value}"),
+            Fault::Negative => write!(f, "{figure} cannot be negative, but it is {value}"),
+            Fault::NotPositive => write!(f, "{figure} must be positive, but it is {value}"),
+            Fault::TooLarge => write!(f, "{figure} is too large to compute with: {value:e}"),
+            Fault::TooSmall => write!(f, "{figure} is too small to divide by, and not zero: {value:e}"),
+            Fault::NotHalfAngle => write!(f, "{figure} is not between 0 and π/2: it is {value}"),
+            Fault::NotUnit => {
+                write!(f, "{figure} is not of unit length: the square of its length is {value}")
+            }
+            Fault::NotFraction => write!(f, "{figure} is not between 0 and 1: it is {value}"),
+            Fault::EmptyRange => write!(f, "{figure} begins above its end, by {value}"),
+            Fault::Inertia => write!(
+                f,
+                "{figure} is that of no real body: a principal moment is negative, or exceeds the sum of the others, by {} kg·m²",
+                -value
+            ),
+        }?;
+        let [first, rest @ ..] = parameters else { return Ok(()) };
+        // A parameter by itself says so already.
+        if rest.is_empty() && figure.starts_with("the parameter") {
+            return Ok(());
+        }
+        let s = if rest.is_empty() { "" } else { "s" };
+        write!(f, " (by the parameter{s} `{first}`")?;
+        rest.iter().try_for_each(|name| write!(f, ", `{name}`"))?;
+        f.write_str(")")
+    }
+}
+
+impl core::error::Error for ParameterError {}
+
+/// What generated code knows of a figure, or of several that are checked together.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure {
+    /// The condition.
+    pub rule: Rule,
+    /// What it is.
+    pub name: &'static str,
+    /// Names of the parameters that it follows from.
+    pub parameters: &'static [&'static str],
+}
+
+/// The conditions; the compiler describes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "no part of the public interface")]
+pub enum Rule {
+    Finite,
+    Mass,
+    Length,
+    NotNegative,
+    Positive,
+    HalfAngle,
+    Unit,
+    Fraction,
+    Order,
+    Inertia,
+}
+
+impl Rule {
+    /// How many numbers it takes.
+    fn count(self) -> usize {
+        match self {
+            Rule::Order => 2,
+            Rule::Inertia => 7,
+            _ => 1,
+        }
+    }
+}
+
+/// Checks all figures; `values` are theirs, one after another.
+///
+/// # Errors
+///
+/// The first that does not fulfil its condition.
+pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), ParameterError> {
+    let mut rest = values;
+    for figure in figures {
+        let Some((own, after)) = rest.split_at_checked(figure.rule.count()) else { break };
+        rest = after;
+        if let Some((fault, value)) = fault(figure.rule, own) {
+            let Figure { name, parameters, .. } = *figure;
+            return Err(ParameterError { fault, figure: name, parameters, value });
+        }
+    }
+    Ok(())
+}
+
+/// What a type of numbers leaves room for. The figures are those by which the compiler judges numbers.
+struct Range {
+    /// Largest mass and moment.
+    most: f64,
+    /// Largest length.
+    length: f64,
+    /// Smallest mass beside zero.
+    least: f64,
+    /// Relative tolerance of inertias: published figures are rounded, and single precision rounds more.
+    tolerance: f64,
+}
+
+impl Range {
+    fn of<T: Real>() -> Range {
+        if epsilon::<T>() > constant(1e-10) {
+            return Range { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
+        }
+        Range { most: 1e150, length: 1e75, least: 1e-300, tolerance: 1e-6 }
+    }
+}
+
+/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
+const NOTHING: f64 = 1e-18;
+
+/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m².
+const SMALLEST: f64 = 1e-16;
+
+/// What is wrong with figures, and the value to tell.
+fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
+    if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
+        return Some((Fault::NotFinite, to_f64(*x)));
+    }
+    let Range { most, length, least, tolerance } = Range::of::<T>();
+    let zero = T::zero();
+    let wrong = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
+    match (rule, values) {
+        (Rule::Mass, [m]) => {
+            let (m, least) = (*m, constant(least));
+            wrong(is_at_least(m, zero), Fault::Negative, m)
+                .or_else(|| wrong(is_at_most(m, constant(most)), Fault::TooLarge, m))
+                .or_else(|| wrong(is_zero_or_at_least(m, least), Fault::TooSmall, m))
+        }
+        (Rule::Length, [x]) => wrong(is_at_most(x.abs(), constant(length)), Fault::TooLarge, *x),
+        (Rule::NotNegative, [x]) => wrong(is_at_least(*x, zero), Fault::Negative, *x),
+        (Rule::Positive, [x]) => wrong(*x > zero, Fault::NotPositive, *x),
+        (Rule::HalfAngle, [x]) => wrong(*x > zero && *x < T::frac_pi_2(), Fault::NotHalfAngle, *x),
+        (Rule::Unit, [square]) => {
+            let off = (*square - T::one()).abs();
+            wrong(is_at_most(off, constant(tolerance)), Fault::NotUnit, *square)
+        }
+        (Rule::Fraction, [x]) => {
+            wrong(is_at_least(*x, zero) && is_at_most(*x, T::one()), Fault::NotFraction, *x)
+        }
+        (Rule::Order, [low, high]) => wrong(is_at_least(*high, *low), Fault::EmptyRange, *low - *high),
+        (Rule::Inertia, [xx, yy, zz, xy, xz, yz, m]) => {
+            let moments = [*xx, *yy, *zz, *xy, *xz, *yz];
+            let large = moments.iter().find(|x| !is_at_most(x.abs(), constant(most)));
+            large.map(|x| (Fault::TooLarge, to_f64(*x))).or_else(|| {
+                let holds = is_of_a_body(moments, *m, tolerance);
+                (!holds).then(|| (Fault::Inertia, lacking(moments.map(to_f64))))
+            })
+        }
+        _ => None,
+    }
+}
+
+/// Whether a number is finite; of lanes, whether all are.
+fn is_finite<T: Real>(x: T) -> bool {
+    x * T::zero() == T::zero()
+}
+
+/// Whether `x` is no less than `y`; of lanes, whether none is.
+fn is_at_least<T: Real>(x: T, y: T) -> bool {
+    x.max(y) == x
+}
+
+/// Whether `x` is no more than `y`; of lanes, whether none is.
+fn is_at_most<T: Real>(x: T, y: T) -> bool {
+    x.min(y) == x
+}
+
+/// Whether a number that is not negative is zero, or no less than `least`; of lanes, whether each is one of both.
+fn is_zero_or_at_least<T: Real>(m: T, least: T) -> bool {
+    let part = m.min(least) / least;
+    (T::one() - part) * part == T::zero()
+}
+
+/// Whether a body of mass `m` can have the inertia xx, yy, zz, xy, xz, yz: whether `½ tr(I) 1 − I`, the second moments of its mass,
+/// is positive semidefinite (Wensing, Kim and Slotine, *Linear matrix inequalities for physically consistent inertial parameter
+/// identification*, 2018). Its pivots are those of a matrix that is lifted by the tolerance.
+fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64) -> bool {
+    let half = (xx + yy + zz) * constant(0.5);
+    let nothing = m.max(T::zero()) * constant(SMALLEST) + constant(NOTHING);
+    let size = half.abs() + nothing;
+    let lift = nothing / size + constant(tolerance * 0.5);
+    let [a, b, c] = [xx, yy, zz].map(|i| (half - i) / size + lift);
+    let [ab, ac, bc] = [xy, xz, yz].map(|i| -i / size);
+    let (l, n) = (ab / a, ac / a);
+    let second = b - l * ab;
+    let off = bc - l * ac;
+    let third = c - n * ac - off * off / second;
+    a > T::zero() && second > T::zero() && third > T::zero()
+}
+
+/// The sum of the two lesser principal moments minus the largest (rotations of Jacobi).
+fn lacking([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
+    // Diagonal x, y, z and off-diagonal entries opposite to them: yz, xz, xy.
+    let (mut d, mut o) = ([xx, yy, zz], [yz, xz, xy]);
+    for _ in 0..16 {
+        for [p, q, r] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+            if o[r] == 0.0 {
+                continue;
+            }
+            let half = (d[q] - d[p]) / (2.0 * o[r]);
+            let size = half.abs() + sqrt(half * half + 1.0);
+            let t = if half < 0.0 { -1.0 / size } else { 1.0 / size };
+            let c = 1.0 / sqrt(t * t + 1.0);
+            let s = t * c;
+            (d[p], d[q]) = (d[p] - t * o[r], d[q] + t * o[r]);
+            (o[r], o[q], o[p]) = (0.0, c * o[q] - s * o[p], s * o[q] + c * o[p]);
+        }
+    }
+    let largest = d.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    d.into_iter().sum::<f64>() - 2.0 * largest
+}
+
+/// The square root, without a standard library too.
+fn sqrt(x: f64) -> f64 {
+    nalgebra::ComplexField::sqrt(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Lanes, f64x4};
+
+    fn check<T: Real>(rule: Rule, values: &[f64]) -> Option<Fault> {
+        let values: std::vec::Vec<T> = values.iter().map(|x| constant(*x)).collect();
+        validate(&[Figure { rule, name: "x", parameters: &["p"] }], &values).err().map(|error| error.fault)
+    }
+
+    /// Values with the fault of each, in any type of numbers.
+    const TABLE: [(Rule, &[f64], Option<Fault>); 26] = [
+        (Rule::Finite, &[-1.0], None),
+        (Rule::Finite, &[f64::NAN], Some(Fault::NotFinite)),
+        (Rule::Finite, &[f64::INFINITY], Some(Fault::NotFinite)),
+        (Rule::Mass, &[0.0], None),
+        (Rule::Mass, &[3.0], None),
+        (Rule::Mass, &[-1e-3], Some(Fault::Negative)),
+        (Rule::Mass, &[f64::NAN], Some(Fault::NotFinite)),
+        (Rule::Length, &[-2.0], None),
+        (Rule::NotNegative, &[0.0], None),
+        (Rule::NotNegative, &[-1.0], Some(Fault::Negative)),
+        (Rule::Positive, &[0.1], None),
+        (Rule::Positive, &[0.0], Some(Fault::NotPositive)),
+        (Rule::HalfAngle, &[0.7], None),
+        (Rule::HalfAngle, &[1.6], Some(Fault::NotHalfAngle)),
+        (Rule::Unit, &[1.0], None),
+        (Rule::Unit, &[1.1], Some(Fault::NotUnit)),
+        (Rule::Order, &[-1.0, 1.0], None),
+        (Rule::Order, &[1.0, 1.0], None),
+        (Rule::Order, &[1.0, -1.0], Some(Fault::EmptyRange)),
+        // A ball; a rod, at the bound; a rod along (1, 1, 0); nothing; moments of which one exceeds the others; a negative one.
+        (Rule::Inertia, &[0.4, 0.4, 0.4, 0.0, 0.0, 0.0, 1.0], None),
+        (Rule::Inertia, &[0.0, 0.3, 0.3, 0.0, 0.0, 0.0, 1.0], None),
+        (Rule::Inertia, &[0.15, 0.15, 0.3, -0.15, 0.0, 0.0, 1.0], None),
+        (Rule::Inertia, &[0.0; 7], None),
+        (Rule::Inertia, &[0.1, 0.1, 0.3, 0.0, 0.0, 0.0, 1.0], Some(Fault::Inertia)),
+        (Rule::Inertia, &[-0.1, 0.1, 0.1, 0.0, 0.0, 0.0, 1.0], Some(Fault::Inertia)),
+        (Rule::Inertia, &[0.2, 0.2, 0.2, 0.19, 0.0, 0.0, 1.0], Some(Fault::Inertia)),
+    ];
+
+    #[test]
+    fn figures_are_judged_in_all_types_of_numbers() {
+        for (rule, values, fault) in TABLE {
+            assert_eq!(check::<f64>(rule, values), fault, "{rule:?} {values:?}");
+            assert_eq!(check::<f32>(rule, values), fault, "{rule:?} {values:?} in single precision");
+            assert_eq!(check::<f64x4>(rule, values), fault, "{rule:?} {values:?} in lanes");
+        }
+    }
+
+    #[test]
+    fn one_lane_suffices_for_a_fault() {
+        let figure = |rule| [Figure { rule, name: "x", parameters: &[] }];
+        for (rule, values, fault) in TABLE {
+            // Beside numbers that every rule but that of order admits.
+            let sound = |k: usize| {
+                if rule == Rule::Order { k as f64 } else { [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0][k] }
+            };
+            let lanes = |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { sound(k) });
+            let values: std::vec::Vec<f64x4> = (0..values.len()).map(lanes).collect();
+            let found = validate(&figure(rule), &values).err().map(|error| error.fault);
+            assert_eq!(found, fault, "{rule:?} {values:?}");
+        }
+        assert_eq!(validate(&figure(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
+        let small = validate(&figure(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
+        assert_eq!(small.unwrap_err().fault, Fault::TooSmall);
+    }
+
+    #[test]
+    fn ranges_are_those_of_the_type() {
+        assert_eq!(check::<f64>(Rule::Mass, &[1e30]), None);
+        assert_eq!(check::<f32>(Rule::Mass, &[1e30]), Some(Fault::TooLarge));
+        assert_eq!(check::<f64>(Rule::Length, &[-1e80]), Some(Fault::TooLarge));
+        assert_eq!(check::<f64>(Rule::Mass, &[1e-310]), Some(Fault::TooSmall));
+    }
+
+    #[test]
+    fn the_message_says_how_much_is_lacking() {
+        // Turned by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
+        let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
+        let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];
+        let moments = [0.1, 0.5, 0.2];
+        let entry = |i: usize, j: usize| (0..3).map(|k| moments[k] * axes[k][i] * axes[k][j]).sum();
+        let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| entry(i, j));
+        assert!((lacking(full) + 0.2).abs() < 1e-12);
+        let [xx, yy, zz, xy, xz, yz] = full;
+        let figure = Figure { rule: Rule::Inertia, name: "the inertia of `hand`", parameters: &["m", "l"] };
+        let error = validate(&[figure], &[xx, yy, zz, xy, xz, yz, 1.0]).unwrap_err();
+        assert!((error.value + 0.2).abs() < 1e-12);
+        let said = std::string::ToString::to_string(&error);
+        assert!(said.starts_with("the inertia of `hand` is that of no real body"), "{said}");
+        assert!(said.ends_with("(by the parameters `m`, `l`)"), "{said}");
+    }
+}

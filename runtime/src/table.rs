@@ -1,0 +1,407 @@
+//! Tables: functions of one to three variables, given by their values on a grid.
+
+use crate::Real;
+use crate::private::constant;
+use core::fmt;
+
+/// A function of `N` variables, one to three, by its values on a grid: a parameter of mechanisms.
+///
+/// A field `pub lift: Table<2>` is called in expressions, `lift(alpha, elevator)`, and its slopes in derivatives of the
+/// mechanism are those of the interpolation. Units of values and axes are inferred from use, as those of numbers are.
+///
+/// Between the points of the grid it is linear in each variable, or [`smooth`](Table::smooth) with continuous slopes; beyond the
+/// grid it keeps the value of the edge, or is [`extrapolated`](Table::extrapolated).
+///
+/// It borrows its figures, so that a mechanism with tables stays `Copy` and allocates nothing: constants, or what
+/// `Vec::leak` makes of figures that are read at run time. They are `f64` whatever the mechanism's numbers.
+///
+/// ```
+/// use linkwork::{Table, TableError};
+///
+/// // Rows for two angles, columns for three.
+/// const LIFT: Table<2> = match Table::new(
+///     [&[0.0, 0.1], &[-0.2, 0.0, 0.2]],
+///     &[-0.1, 0.0, 0.1, 0.4, 0.5, 0.6],
+/// ) {
+///     Ok(table) => table,
+///     Err(error) => panic!("{}", error.message()),
+/// };
+/// assert!((LIFT.value([0.05, 0.1]) - 0.3_f64).abs() < 1e-15);
+/// assert!((LIFT.slope([0.05, 0.1], 0) - 5.0_f64).abs() < 1e-14);
+/// assert_eq!(LIFT.value([9.0, 0.0]), 0.5);
+/// assert_eq!(Table::new([&[0.0, 0.0]], &[1.0, 2.0]), Err(TableError::NotIncreasing { axis: 0, place: 1 }));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table<const N: usize> {
+    axes: [&'static [f64]; N],
+    values: &'static [f64],
+    smooth: bool,
+    extrapolated: bool,
+}
+
+/// Why figures are no table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TableError {
+    /// An axis, counted from zero, has fewer than two points.
+    TooFewPoints {
+        /// Which axis.
+        axis: usize,
+    },
+    /// A point of an axis is not greater than the one before it, or is infinite or NaN.
+    NotIncreasing {
+        /// Which axis.
+        axis: usize,
+        /// Which point of it.
+        place: usize,
+    },
+    /// There are not as many values as points of the grid.
+    Size {
+        /// How many points the grid has.
+        expected: usize,
+        /// How many values there are.
+        found: usize,
+    },
+    /// A value is infinite or NaN.
+    NotFinite {
+        /// Which value.
+        place: usize,
+    },
+}
+
+impl TableError {
+    /// What is wrong, in words; for constants, which cannot be formatted.
+    #[must_use]
+    pub const fn message(self) -> &'static str {
+        match self {
+            TableError::TooFewPoints { .. } => "an axis of this table has fewer than two points",
+            TableError::NotIncreasing { .. } => "an axis of this table does not increase strictly",
+            TableError::Size { .. } => "this table has not as many values as its grid has points",
+            TableError::NotFinite { .. } => "a value of this table is not a finite number",
+        }
+    }
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TableError::TooFewPoints { axis } => {
+                write!(f, "axis {axis} of the table has fewer than two points")
+            }
+            TableError::NotIncreasing { axis, place } => {
+                write!(f, "axis {axis} of the table does not increase strictly at its point {place}")
+            }
+            TableError::Size { expected, found } => {
+                write!(f, "the grid of the table has {expected} points, but there are {found} values")
+            }
+            TableError::NotFinite { place } => write!(f, "value {place} of the table is not a finite number"),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl<const N: usize> Table<N> {
+    /// A table that is linear between the points of its grid and keeps the value of the edge beyond it. Values stand in order
+    /// of their points, those along the last axis side by side.
+    ///
+    /// # Errors
+    ///
+    /// Axes that do not increase strictly or have fewer than two points, values that are not finite, or more or fewer of
+    /// them than the grid has points. In a constant they can stop the compiler, as the example of [`Table`] shows.
+    pub const fn new(axes: [&'static [f64]; N], values: &'static [f64]) -> Result<Table<N>, TableError> {
+        const { assert!(N >= 1 && N <= 3, "a table has one to three variables") };
+        let (mut axis, mut expected) = (0, 1_usize);
+        while axis < N {
+            let points = axes[axis];
+            if points.len() < 2 {
+                return Err(TableError::TooFewPoints { axis });
+            }
+            let mut place = 0;
+            while place < points.len() {
+                if !points[place].is_finite() || (place > 0 && points[place - 1] >= points[place]) {
+                    return Err(TableError::NotIncreasing { axis, place });
+                }
+                place += 1;
+            }
+            expected = expected.saturating_mul(points.len());
+            axis += 1;
+        }
+        if values.len() != expected {
+            return Err(TableError::Size { expected, found: values.len() });
+        }
+        let mut place = 0;
+        while place < values.len() {
+            if !values[place].is_finite() {
+                return Err(TableError::NotFinite { place });
+            }
+            place += 1;
+        }
+        Ok(Table { axes, values, smooth: false, extrapolated: false })
+    }
+
+    /// The table with continuous slopes: along each axis cubic between neighbouring points, where its slope is that of the
+    /// parabola through a point and its neighbours (Bessel's tangents; de Boor, *A Practical Guide to Splines*, ch. IV). It
+    /// goes through all values, and is exact for parabolas. Second slopes jump at the points, where those to the right count.
+    #[must_use]
+    pub const fn smooth(self) -> Table<N> {
+        Table { smooth: true, ..self }
+    }
+
+    /// The table continued beyond its grid in straight lines, with the slopes of the edge.
+    #[must_use]
+    pub const fn extrapolated(self) -> Table<N> {
+        Table { extrapolated: true, ..self }
+    }
+
+    /// The points of the axes.
+    #[must_use]
+    pub const fn axes(&self) -> &[&'static [f64]; N] {
+        &self.axes
+    }
+
+    /// The value at `x`. NaN where an entry of `x` is.
+    #[must_use]
+    pub fn value<T: Real>(&self, x: [T; N]) -> T {
+        self.derivative(x, [0; N])
+    }
+
+    /// The slope with variable `k` at `x`: zero where the table keeps the value of its edge, and with a variable that it does
+    /// not have. At a point of a linear table it is the slope to the right.
+    #[must_use]
+    pub fn slope<T: Real>(&self, x: [T; N], k: usize) -> T {
+        if k >= N {
+            return T::zero();
+        }
+        self.derivative(x, core::array::from_fn(|i| u8::from(i == k)))
+    }
+
+    /// The derivative of these orders in the variables at `x`, of the interpolation; `[1, 1]` is ∂²f/∂x₀∂x₁. Second and higher
+    /// ones of one variable are zero in a linear table, and those above the third in all.
+    #[must_use]
+    pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
+        let mut all = [Weights::one(); 3];
+        let mut cells = [[0, 1]; 3];
+        let axes = self.axes.iter().zip(x).zip(orders);
+        for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
+            let place = Place::of(points, x);
+            *range = place.cells(points);
+            *weights = Weights { place: Some(place), order };
+        }
+        let [first, second, third] = cells;
+        let mut sum = T::zero();
+        for i in first[0]..first[1] {
+            let outer = self.weights(0, i, first, &all);
+            for j in second[0]..second[1] {
+                let middle = self.weights(1, j, second, &all);
+                for k in third[0]..third[1] {
+                    let inner = self.weights(2, k, third, &all);
+                    sum += self.block([i, j, k], [&outer, &middle, &inner]);
+                }
+            }
+        }
+        sum
+    }
+
+    /// The weights of the values around a cell of an axis; a variable that the table does not have is at its only point.
+    fn weights<T: Real>(&self, axis: usize, cell: usize, range: [usize; 2], all: &[Weights<T>; 3]) -> [T; 4] {
+        let only = [T::zero(), T::one(), T::zero(), T::zero()];
+        let (Some(points), Some(Weights { place: Some(place), order })) =
+            (self.axes.get(axis), all.get(axis))
+        else {
+            return only;
+        };
+        let shape = Shape { smooth: self.smooth, extrapolated: self.extrapolated };
+        let weights = place.weights(points, cell, *order, shape);
+        if range[1] - range[0] <= 1 {
+            return weights;
+        }
+        let share = place.share(points, cell);
+        weights.map(|w| w * share)
+    }
+
+    /// Which of the four weights of an axis count.
+    fn slots(&self, axis: usize) -> core::ops::Range<usize> {
+        match (axis < N, self.smooth) {
+            (false, _) => 1..2,
+            (true, false) => 1..3,
+            (true, true) => 0..4,
+        }
+    }
+
+    /// The weighted sum of the values around a cell.
+    fn block<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
+        let length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
+        // Weights stand for the points from the one before the cell on.
+        let point = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
+        let weight = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
+        let (rows, columns) = (length(1), length(2));
+        let mut sum = T::zero();
+        for a in self.slots(0) {
+            let Some(i) = point(0, a) else { continue };
+            for b in self.slots(1) {
+                let Some(j) = point(1, b) else { continue };
+                let both = weight(0, a) * weight(1, b);
+                for c in self.slots(2) {
+                    let value = point(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
+                    if let Some(value) = value {
+                        sum += both * weight(2, c) * constant(*value);
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// How a table goes on between and beyond its points.
+#[derive(Clone, Copy)]
+struct Shape {
+    smooth: bool,
+    extrapolated: bool,
+}
+
+/// What the weights of an axis are made of.
+#[derive(Clone, Copy)]
+struct Weights<T> {
+    place: Option<Place<T>>,
+    order: u8,
+}
+
+impl<T> Weights<T> {
+    fn one() -> Weights<T> {
+        Weights { place: None, order: 0 }
+    }
+}
+
+/// Where a variable is: within the axis, how far beyond it, and whether it is within (one or zero).
+#[derive(Clone, Copy)]
+struct Place<T> {
+    x: T,
+    beyond: T,
+    within: T,
+}
+
+/// One for a number that is not negative, zero for one that is; of lanes, in each.
+fn step<T: Real>(x: T) -> T {
+    (T::one() + x.signum()) * constant(0.5)
+}
+
+impl<T: Real> Place<T> {
+    fn of(points: &[f64], x: T) -> Place<T> {
+        let at = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
+        let (low, high) = (at(points.first()), at(points.last()));
+        let inner = x.max(low).min(high);
+        // The extremes of a NaN and a number are the number.
+        let nothing = x * T::zero();
+        Place { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
+    }
+
+    /// The cells that may hold it, from the first to before the last: one, or where lanes differ all.
+    fn cells(&self, points: &[f64]) -> [usize; 2] {
+        let last = points.len().saturating_sub(2);
+        let (mut low, mut high) = (0, last);
+        while low < high {
+            let middle = low + (high - low).div_ceil(2);
+            let Some(p) = points.get(middle) else { break };
+            let p = constant::<T>(*p);
+            if self.x >= p {
+                low = middle;
+            } else if self.x < p {
+                high = middle - 1;
+            } else {
+                return [0, last + 1];
+            }
+        }
+        [low, low + 1]
+    }
+
+    /// One where the cell holds it, zero elsewhere.
+    fn share(&self, points: &[f64], cell: usize) -> T {
+        let from = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let last = cell + 2 >= points.len();
+        let low = if cell == 0 { T::one() } else { from(cell) };
+        low - if last { T::zero() } else { from(cell + 1) }
+    }
+
+    /// The weights of the four points around a cell, of the derivative of some order.
+    fn weights(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
+        let around = Around::of(points, cell, shape.smooth);
+        let s = (self.x - constant(around.start)) / constant(around.width);
+        let value = |order| around.weights(s, order);
+        match (order, shape.extrapolated) {
+            (0, true) => {
+                let (value, slope) = (value(0), value(1));
+                core::array::from_fn(|k| value[k] + self.beyond * slope[k])
+            }
+            (0, false) => value(0),
+            (1, true) => value(1),
+            _ => value(order).map(|w| w * self.within),
+        }
+    }
+}
+
+/// A cell of an axis: where it starts, how wide it is, and by which weights of the four points around it the slopes at its
+/// ends are made, times its width.
+struct Around {
+    start: f64,
+    width: f64,
+    slopes: Option<[[f64; 4]; 2]>,
+}
+
+impl Around {
+    fn of(points: &[f64], cell: usize, smooth: bool) -> Around {
+        let at = |k: usize| points.get(k).copied();
+        let (start, end) = (at(cell).unwrap_or(0.0), at(cell + 1).unwrap_or(1.0));
+        let h = end - start;
+        let before = cell.checked_sub(1).and_then(at).map(|p| start - p);
+        let after = at(cell + 2).map(|p| p - end);
+        let slopes = smooth.then(|| {
+            // The slope at the middle of three points, then at the first and at the last of them, times `h`.
+            let first = match before {
+                Some(b) => [-h * h / (b * (b + h)), (h - b) / b, b / (b + h), 0.0],
+                None => after.map_or([0.0, -1.0, 1.0, 0.0], |a| {
+                    [0.0, -(2.0 * h + a) / (h + a), (h + a) / a, -h * h / (a * (h + a))]
+                }),
+            };
+            let second = match after {
+                Some(a) => [0.0, -a / (h + a), (a - h) / a, h * h / (a * (h + a))],
+                None => before.map_or([0.0, -1.0, 1.0, 0.0], |b| {
+                    [h * h / (b * (h + b)), -(h + b) / b, (2.0 * h + b) / (h + b), 0.0]
+                }),
+            };
+            [first, second]
+        });
+        Around { start, width: h, slopes }
+    }
+
+    /// The weights at a part `s` of the width, of the derivative of some order.
+    fn weights<T: Real>(&self, s: T, order: u8) -> [T; 4] {
+        let c = constant::<T>;
+        let zero = T::zero();
+        let scale = (0..order).fold(T::one(), |scale, _| scale / c(self.width));
+        let Some([first, second]) = &self.slopes else {
+            return match order {
+                0 => [zero, T::one() - s, s, zero],
+                1 => [zero, -scale, scale, zero],
+                _ => [zero; 4],
+            };
+        };
+        // Hermite's polynomials: of the values at both ends, and of the slopes there.
+        let (one, s2) = (T::one(), s * s);
+        let s3 = s2 * s;
+        let [end, m0, m1] = match order {
+            0 => [c(3.0) * s2 - c(2.0) * s3, s3 - c(2.0) * s2 + s, s3 - s2],
+            1 => [c(6.0) * (s - s2), c(3.0) * s2 - c(4.0) * s + one, c(3.0) * s2 - c(2.0) * s],
+            2 => [c(6.0) - c(12.0) * s, c(6.0) * s - c(4.0), c(6.0) * s - c(2.0)],
+            3 => [c(-12.0), c(6.0), c(6.0)],
+            _ => [zero; 3],
+        };
+        let start = if order == 0 { one - end } else { -end };
+        let values = [zero, start, end, zero];
+        core::array::from_fn(|k| scale * (values[k] + m0 * c(first[k]) + m1 * c(second[k])))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+//! The two ways of simulating contacts: each obeys its laws, and both lead to the same.
+
+use linkwork::contact::Contacts;
+use linkwork::integrate::EventDriven;
+use linkwork::prelude::*;
+
+use crate::laws::{Chain, Pile, Random};
+
+/// Follows a motion whose energy must not grow and whose surfaces must not pass each other; how many steps it takes.
+fn follow<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    duration: f64,
+) -> (usize, SVector<f64, NQ>)
+where
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = f64>,
+{
+    let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
+    let mut last = energy(q, v);
+    let lowest = m.contact_gaps(0.0, q).min().min(0.0);
+    let method = EventDriven::new().tolerance(1e-10, 1e-10).max_steps(20_000);
+    let (mut count, mut end) = (0, *q);
+    for sample in simulate(m).from(*q, *v).method(method).duration(duration) {
+        let sample = sample.unwrap_or_else(|error| panic!("{error} from {q} {v}"));
+        let now = energy(&sample.q, &sample.v);
+        assert!(now <= last + 1e-6 * (1.0 + last.abs()), "{now} after {last} at {} from {q} {v}", sample.t);
+        let gaps = m.contact_gaps(0.0, &sample.q);
+        assert!(gaps.min() > lowest - 1e-9, "{gaps} at {} from {q} {v}", sample.t);
+        (last, end, count) = (now, sample.q, count + 1);
+    }
+    (count, end)
+}
+
+#[mechanism(gravity = -9.81 * y)]
+struct Tile {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    tile: Body,
+    #[joint(ground -> tile, about = z)]
+    pose: Planar,
+    #[contact(tile.at(-0.15 * x - 0.1 * y), ground.plane(y), friction = friction, restitution = restitution)]
+    a: Contact,
+    #[contact(tile.at(0.15 * x - 0.1 * y), ground.plane(y), friction = friction, restitution = restitution)]
+    b: Contact,
+    #[contact(tile.at(0.15 * x + 0.1 * y), ground.plane(y), friction = friction, restitution = restitution)]
+    c: Contact,
+    #[contact(tile.at(-0.15 * x + 0.1 * y), ground.plane(y), friction = friction, restitution = restitution)]
+    d: Contact,
+    #[contact(tile.at(-0.15 * x - 0.1 * y), ground.plane(x), friction = friction, restitution = restitution)]
+    e: Contact,
+    #[contact(tile.at(-0.15 * x + 0.1 * y), ground.plane(x), friction = friction, restitution = restitution)]
+    f: Contact,
+}
+
+/// Tiles that fall into a corner, turning: they strike with corners, tip, slide and come to rest.
+#[test]
+fn tiles_fall_into_a_corner() {
+    let mut random = Random(7);
+    for _ in 0..10 {
+        let m = Tile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.3]) };
+        let q = SVector::from([0.3, 0.3, random.next() * 3.0]);
+        let (_, end) = follow(&m, &q, &random.vector(1.0), 2.0);
+        assert!(end.iter().all(|x| x.is_finite()));
+    }
+}
+
+/// Balls of very different masses that fall on each other.
+#[test]
+fn balls_fall_on_each_other() {
+    let mut random = Random(8);
+    for _ in 0..3 {
+        let m = Pile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.4]) };
+        let mut q = m.neutral();
+        (q[0], q[2], q[7], q[9], q[16]) = (-0.11, 0.12, 0.11, 0.15, 0.4);
+        follow(&m, &q, &random.vector(0.3), 0.4);
+    }
+}
+
+/// A double pendulum whose tip strikes the floor, slides there and sticks.
+#[test]
+fn a_double_pendulum_strikes_the_floor() {
+    let mut random = Random(9);
+    for _ in 0..30 {
+        let q = SVector::from([random.next() * 1.5, random.next() * 1.5]);
+        let m = Chain {
+            friction: random.one_of([0.0, 0.3, 0.7]),
+            restitution: random.one_of([0.0, 0.5]),
+            height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),
+        };
+        follow(&m, &q, &random.vector(2.0), 2.0);
+    }
+}
+
+/// Time stepping leads to where located events do, the nearer the shorter its steps are: to first order where something strikes.
+#[test]
+fn time_stepping_leads_to_the_same() {
+    let m = Tile { friction: 0.4, restitution: 0.0 };
+    let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
+    let (_, end) = follow(&m, &q, &v, 0.3);
+    let away = |h: f64| {
+        let run = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.3);
+        (run.finish().unwrap().q - end).norm()
+    };
+    let [coarse, fine, finest] = [1e-3, 1e-4, 1e-5].map(away);
+    assert!(coarse < 1e-2 && fine < 1e-3 && finest < 1e-4, "{coarse} {fine} {finest}");
+}

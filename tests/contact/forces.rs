@@ -1,0 +1,207 @@
+//! Forces at contacts in a state, and outputs that name them.
+
+use linkwork::contact::{self, Touch};
+use linkwork::nalgebra::Vector3;
+use linkwork::prelude::*;
+
+#[mechanism(gravity = -9.81 * cos(tilt) * z + 9.81 * sin(tilt) * x)]
+struct Ball {
+    tilt: f64,
+    friction: f64,
+    #[body(mass = 0.1, inertia = sphere(0.1, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.05), ground.plane(z), friction = friction)]
+    touch: Contact,
+    #[output(contact_force(touch))]
+    force: Vector,
+    #[output(dot(contact_force(touch), ground.z))]
+    press: Scalar,
+}
+
+fn resting() -> SVector<f64, 7> {
+    [0.0, 0.0, 0.05, 0.0, 0.0, 0.0, 1.0].into()
+}
+
+/// A sphere on a slope of 15°: the figures of Drake's test of a rolling sphere.
+#[test]
+fn a_rolling_sphere_is_held_by_friction() {
+    let m = Ball { tilt: 15.0_f64.to_radians(), friction: 0.5 };
+    let force = m.force(&resting(), &SVector::zeros()).unwrap();
+    assert!((force - Vector3::new(-0.072_543_280_927_306_54, 0.0, 0.1 * 9.81 * m.tilt.cos())).amax() < 1e-9);
+    assert_eq!(m.press(&resting(), &SVector::zeros()).unwrap(), force[2]);
+    // In the air nothing acts.
+    let mut q = resting();
+    q[2] += 1e-6;
+    assert_eq!(m.force(&q, &SVector::zeros()).unwrap(), Vector3::zeros());
+}
+
+/// Friction acts against the slip, whatever its speed.
+#[test]
+fn a_sliding_sphere_is_braked() {
+    let m = Ball { tilt: 0.0, friction: 0.2 };
+    for speed in [1e-4, 1.0, 30.0] {
+        let v = [0.6 * speed, -0.8 * speed, 0.0, 0.0, 0.0, 0.0].into();
+        let force = m.force(&resting(), &v).unwrap();
+        let weight = 0.1 * 9.81;
+        assert!((force - Vector3::new(-0.12, 0.16, 1.0) * weight).amax() < 1e-9, "{force}");
+    }
+}
+
+#[mechanism(gravity = -9.81 * z)]
+struct Table {
+    #[body(mass = 3, inertia = cuboid(3, 1, 0.6, 0.1))]
+    top: Body,
+    #[joint(ground -> top)]
+    pose: Free,
+    #[body(mass = 2, inertia = cuboid(2, 0.2, 0.2, 0.1))]
+    load: Body,
+    #[joint(top -> load)]
+    place: Free,
+    #[contact(ground.plane(z), top.cuboid(1, 0.6, 0.1), friction = 0.4)]
+    floor: Contact,
+    #[contact(load.cuboid(0.2, 0.2, 0.1), top.at(0.05 * z).plane(z), friction = 0.4)]
+    stack: Contact,
+    #[output(contact_force(floor), resolved_in = top)]
+    below: Vector,
+    #[output(contact_force(stack))]
+    between: Vector,
+}
+
+/// What the second surface exerts on the first, over all points, in either order of surfaces.
+#[test]
+fn forces_act_on_the_first_surface() {
+    let m = Table {};
+    let q: [f64; 14] = core::array::from_fn(|k| {
+        if k == 2 {
+            0.05
+        } else if k == 9 {
+            0.1
+        } else {
+            f64::from(k == 6 || k == 13)
+        }
+    });
+    let (below, between) =
+        (m.below(&q.into(), &SVector::zeros()).unwrap(), m.between(&q.into(), &SVector::zeros()).unwrap());
+    assert!((below - Vector3::new(0.0, 0.0, -5.0 * 9.81)).amax() < 1e-7, "{below}");
+    assert!((between - Vector3::new(0.0, 0.0, 2.0 * 9.81)).amax() < 1e-7, "{between}");
+    let all = contact::acting(&m, 0.0, &q.into(), &SVector::zeros(), &SVector::zeros()).unwrap();
+    assert!(all.iter().all(|force| force.abs() < 5.0 * 9.81));
+}
+
+#[mechanism(gravity = -9.81 * z)]
+struct Piston {
+    #[body(mass = 0.5, inertia = rod(0.5, 0.04, x))]
+    crank: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[body(mass = 0.3, inertia = rod(0.3, 0.13, x))]
+    rod: Body,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[body(mass = 0.5, inertia = 0)]
+    piston: Body,
+    #[joint(ground -> piston, along = x)]
+    bore: Sleeve,
+    #[joint(rod.at(0.13 * x) -> piston, about = z)]
+    small_end: Pin,
+    #[contact(piston, ground.at(0.165 * x).plane(-x))]
+    stop: Contact,
+    #[acts(on = main)]
+    motor: Torque,
+    #[output(dot(contact_force(stop), ground.x))]
+    load: Scalar,
+}
+
+/// Through a loop: the force at the stop does the work that the motor does not.
+#[test]
+fn a_motor_presses_a_piston_onto_its_stop() {
+    let m = Piston {};
+    // The crank's angle where the piston is at its stop.
+    let angle = ((0.04_f64.powi(2) + 0.165_f64.powi(2) - 0.13_f64.powi(2)) / (2.0 * 0.04 * 0.165)).acos();
+    let guess = m.neutral();
+    let mut guess = guess;
+    guess[0] = -angle;
+    let start = m.assemble(&guess, &[0]).unwrap();
+    assert!(m.contact_gaps(&start)[0].abs() < 1e-9);
+    let load = m.load(&start, &SVector::zeros(), &[1.5].into()).unwrap();
+    // Virtual work: the piston's displacement by the crank's angle.
+    let far = |angle: f64| 0.04 * angle.cos() + (0.13_f64.powi(2) - (0.04 * angle.sin()).powi(2)).sqrt();
+    let slope = (far(-angle + 1e-6) - far(-angle - 1e-6)) / 2e-6;
+    assert!((load + 1.5 / slope).abs() < 1e-5 * load.abs(), "{load} {slope}");
+}
+
+/// Chosen contacts: the equations hold, through a loop and with slip, and where nothing slips what acts is what is chosen.
+#[test]
+fn chosen_contacts_stay_closed() {
+    let m = Table {};
+    let mut q = m.neutral();
+    (q[2], q[9]) = (0.05, 0.1);
+    let mut tau = SVector::<f64, 12>::from_fn(|k, _| f64::from(k as u32 % 5) - 2.0);
+    tau[2] = -1.0;
+    tau[8] = -3.0;
+    for (kind, speed) in [(Touch::Sticks, 0.0), (Touch::Slips, 0.3)] {
+        let mut v = SVector::<f64, 12>::zeros();
+        v[6] = speed;
+        let touches: [Touch; 16] = core::array::from_fn(|k| match k {
+            0..4 => Touch::Sticks,
+            8..12 => kind,
+            _ => Touch::Open,
+        });
+        let found = contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap();
+        let (g, b) = (m.contact_jacobian(&q), m.contact_bias(&q, &v));
+        let left = m.mass_matrix(&q) * found.a + m.bias_forces(&q, &v) - tau - g.transpose() * found.forces;
+        assert!(left.amax() < 1e-9, "{left}");
+        let (rates, slip) = (g * found.a + b, m.contact_rates(&q, &v));
+        for (k, touch) in touches.iter().enumerate() {
+            let contact::Rows { first, .. } = Table::CONTACT_ROWS[k];
+            let force = found.forces.fixed_rows::<3>(first);
+            match touch {
+                Touch::Open => assert_eq!(force.norm(), 0.0),
+                Touch::Sticks => assert!(rates.fixed_rows::<3>(first).amax() < 1e-8, "{rates}"),
+                Touch::Slips => {
+                    let along = slip.fixed_rows::<2>(first + 1).normalize();
+                    let friction = force.fixed_rows::<2>(1) + along * (0.4 * force[0]);
+                    assert!(rates[first].abs() < 1e-8 && friction.amax() < 1e-8, "{friction}");
+                }
+            }
+        }
+    }
+    // Of those that rest, what acts.
+    let touches: [Touch; 16] = core::array::from_fn(|k| if k % 8 < 4 { Touch::Sticks } else { Touch::Open });
+    let still = SVector::zeros();
+    let found = contact::forward_dynamics(&m, 0.0, &q, &still, &SVector::zeros(), &touches).unwrap();
+    let acting = contact::acting(&m, 0.0, &q, &still, &SVector::zeros()).unwrap();
+    let push = m.contact_jacobian(&q).transpose() * (found.forces - acting);
+    assert!(found.a.amax() < 1e-9 && push.amax() < 1e-6, "{push}");
+}
+
+/// A stop that is asked to move: the crank is held by another, too.
+#[test]
+fn contacts_that_contradict_each_other_are_errors() {
+    #[mechanism]
+    struct Spun {
+        #[body(mass = 1, inertia = rod(1, 1, x))]
+        arm: Body,
+        #[joint(ground -> arm, about = z)]
+        hinge: Pin,
+        #[body(mass = 1, inertia = 0)]
+        cart: Body,
+        #[joint(ground -> cart, along = z)]
+        rail: Sleeve,
+        #[constraint(rate(hinge) - 2 * t)]
+        driven: Nonholonomic,
+        #[limit(on = hinge, from = 0, restitution = 0)]
+        stop: Limit,
+    }
+    let held = contact::forward_dynamics(
+        &Spun {},
+        0.0,
+        &SVector::zeros(),
+        &SVector::zeros(),
+        &SVector::zeros(),
+        &[Touch::Sticks],
+    );
+    assert_eq!(held.unwrap_err(), ConstraintError::Contact { constraint: "stop.from" });
+}

@@ -1,0 +1,9 @@
+//! Contacts that open and close: closed forms, laws that always hold, and what engines get wrong.
+
+mod bodies;
+mod both;
+mod events;
+mod forces;
+mod laws;
+mod mechanisms;
+mod robots;

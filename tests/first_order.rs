@@ -1,0 +1,293 @@
+//! States of first order: integrated by every method, and part of every derivative.
+
+use linkwork::integrate::Method;
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+use linkwork::{Rheonomic, RheonomicDerivatives, mechanism};
+use support::compare::assert_similar;
+use support::random::Random;
+
+/// Between derivatives and differences of eighth order.
+const DIFFERENCE: f64 = 1e-10;
+
+/// An aircraft whose thrust follows the throttle late, and whose elevator moves by a filtered angle of attack; the jet's deflection,
+/// an input, acts by the thrust there is.
+#[mechanism(gravity = 9.81 * z, derivatives)]
+#[derive(Debug)]
+struct Fighter<T: Real> {
+    mass: T,
+    area: T,
+    arm: T,
+    lag: T,
+    lift: Table<2>,
+    throttle: Input,
+    deflection: Input,
+    #[state(rate = (1e4 * throttle - power) * (1 + speed / 400) / lag)]
+    power: State,
+    #[state(rate = (alpha - sensed * sensed * sensed) / lag + wind * throttle)]
+    sensed: State,
+    #[define(sin(t) / (5 * lag))]
+    wind: Scalar,
+    #[body(mass = mass, inertia = [[1000, 0, 120], [0, 2000, 0], [120, 0, 2500]])]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(norm(velocity))]
+    speed: Scalar,
+    #[define(angle_of_attack(airframe, velocity))]
+    alpha: Scalar,
+    #[define(density(-dot(r(airframe / ground), ground.z)) / 2 * dot(velocity, velocity) * area)]
+    load: Scalar,
+    #[acts(on = airframe, value = -load * lift(alpha, sensed) * airframe.z)]
+    lifting: Force,
+    #[acts(on = airframe, value = power * airframe.x)]
+    pushing: Force,
+    #[acts(on = airframe, value = power * arm * (2 + sensed) * sin(deflection) * airframe.y)]
+    turning: Torque,
+}
+
+static ANGLES: [f64; 4] = [-1.6, -0.1, 0.4, 1.7];
+static ELEVATOR: [f64; 3] = [-1.5, 0.2, 1.5];
+
+fn fighter() -> Fighter<f64> {
+    let of = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
+    let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| of(*a, d))).collect();
+    let lift = Table::new([&ANGLES, &ELEVATOR], values.leak()).unwrap().smooth();
+    Fighter { mass: 900.0, area: 12.0, arm: 0.8, lag: 0.7, lift, power: 3e3, sensed: 0.1 }
+}
+
+struct Case {
+    t: f64,
+    q: SVector<f64, 7>,
+    v: SVector<f64, 8>,
+    a: SVector<f64, 8>,
+    u: SVector<f64, 2>,
+}
+
+fn cases() -> Vec<Case> {
+    let mut random = Random::new(11);
+    let one = |k: usize| {
+        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
+        let q = SVector::from_column_slice(&[10.0, 20.0, -900.0, turn[0], turn[1], turn[2], turn[3]]);
+        let mut v: SVector<f64, 8> = random.vector(0.7);
+        v[0] += 60.0;
+        v[2] += 3.0 * k as f64;
+        v[6] = 4000.0 + 100.0 * v[6];
+        Case { t: random.uniform(2.0), q, v, a: random.vector(2.0), u: random.vector(1.0) }
+    };
+    (0..6).map(one).collect()
+}
+
+/// A derivative of eighth order.
+fn slope<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+    let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
+    terms.fold(SVector::zeros(), |sum, term| sum + term) / h
+}
+
+/// The matrix of derivatives along each of `K` directions.
+fn slopes<const N: usize, const K: usize>(
+    sizes: [f64; K],
+    f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
+) -> Vec<f64> {
+    let along = |k: usize| {
+        slope(sizes[k], |s| {
+            let mut by = SVector::zeros();
+            by[k] = s;
+            f(by)
+        })
+    };
+    (0..K).flat_map(|k| along(k).as_slice().to_vec()).collect()
+}
+
+const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
+
+#[test]
+fn states_are_named_after_the_velocities() {
+    fn names<M: Rheonomic<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+        _: &M,
+    ) -> [&'static str; NV] {
+        assert_eq!(M::FIRST_ORDER, 2);
+        M::VELOCITIES
+    }
+    let fighter = fighter();
+    assert_eq!(names(&fighter.extended())[5..], ["flight.wz", "power", "sensed"]);
+    assert_eq!(fighter.states().as_slice(), [3e3, 0.1]);
+    let other = fighter.with_states(&[1.0, 2.0].into());
+    assert_eq!((other.power, other.sensed, other.mass), (1.0, 2.0, 900.0));
+}
+
+#[test]
+fn forward_undoes_inverse_dynamics() {
+    let fighter = fighter();
+    let whole = fighter.extended();
+    for Case { t, q, v, a, .. } in cases() {
+        let tau = whole.inverse_dynamics(t, &q, &v, &a);
+        let back = whole.forward_dynamics(t, &q, &v, &tau);
+        assert_similar("accelerations and rates", back.as_slice(), a.as_slice(), 1e-12);
+        let sum = whole.mass_matrix(t, &q) * a + whole.bias_forces(t, &q, &v);
+        assert_similar("M v̇ + h", sum.as_slice(), tau.as_slice(), 1e-12);
+    }
+}
+
+#[test]
+fn the_rates_are_what_was_written() {
+    let fighter = fighter();
+    for Case { t, q, v, u, .. } in cases() {
+        let now = fighter.with_states(&[v[6], v[7]].into());
+        let own = v.fixed_rows::<6>(0).into_owned();
+        let whole = fighter.extended();
+        let found = whole.forward_dynamics(t, &q, &v, &whole.generalized_forces(t, &q, &v, &u));
+        let tau = Rheonomic::generalized_forces(&now, t, &q, &own, &u);
+        let accelerations = Rheonomic::forward_dynamics(&now, t, &q, &own, &tau);
+        assert_similar("v̇", found.fixed_rows::<6>(0).as_slice(), accelerations.as_slice(), 1e-14);
+        // Velocities are in body axes.
+        let speed = own.fixed_rows::<3>(0).norm();
+        let alpha = own[2].atan2(own[0]);
+        let power = (1e4 * u[0] - v[6]) * (1.0 + speed / 400.0) / 0.7;
+        let sensed = (alpha - v[7].powi(3)) / 0.7 + t.sin() / 3.5 * u[0];
+        assert_similar("ẋ", &[found[6], found[7]], &[power, sensed], 1e-12);
+    }
+}
+
+#[test]
+fn derivatives_agree_with_differences() {
+    let fighter = fighter();
+    let whole = fighter.extended();
+    for Case { t, q, v, a, u } in cases() {
+        let tau = whole.inverse_dynamics(t, &q, &v, &a);
+        let moved = |by| whole.integrate(&q, &by);
+        let mut still = STEP;
+        still[6..].fill(1.0);
+
+        let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
+        let forward = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
+        assert_similar(
+            "∂v̇/∂q",
+            by_q.as_slice(),
+            &slopes(still, |by| forward(&moved(by), &v, &tau)),
+            DIFFERENCE,
+        );
+        assert_similar(
+            "∂v̇/∂v",
+            by_v.as_slice(),
+            &slopes(STEP, |by| forward(&q, &(v + by), &tau)),
+            DIFFERENCE,
+        );
+        let by_tau = slopes([1.0; 8], |by| forward(&q, &v, &(tau + by)));
+        assert_similar("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
+
+        let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
+        let inverse = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
+        assert_similar("∂τ/∂q", by_q.as_slice(), &slopes(still, |by| inverse(&moved(by), &v)), DIFFERENCE);
+        assert_similar("∂τ/∂v", by_v.as_slice(), &slopes(STEP, |by| inverse(&q, &(v + by))), DIFFERENCE);
+
+        let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
+        let forces = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
+        let found = slopes(still, |by| forces(&moved(by), &v, &u));
+        assert_similar("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
+        let found = slopes(STEP, |by| forces(&q, &(v + by), &u));
+        assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
+        let found = slopes([1e-2; 2], |by: SVector<f64, 2>| forces(&q, &v, &(u + by)));
+        assert_similar("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
+    }
+}
+
+/// A sled with a late engine: `F = F₀ (1 − e^{−t/τ})`.
+#[mechanism]
+#[derive(Clone, Copy)]
+struct Sled {
+    mass: f64,
+    lag: f64,
+    throttle: Input,
+    #[state(rate = (throttle - thrust) / lag)]
+    thrust: State,
+    #[body(mass = mass)]
+    sled: Body,
+    #[joint(ground -> sled, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, value = thrust)]
+    engine: Force,
+}
+
+#[track_caller]
+fn sled_runs_by(method: impl Method<f64>, lag: f64, tolerance: f64) {
+    let sled = Sled { mass: 2.0, lag, thrust: 0.0 };
+    let whole = sled.extended();
+    let run = simulate(&whole).from([0.0], [0.0, 0.0]).inputs(|_, _, _| [6.0].into());
+    let end = run.method(method).duration(1.5).finish().unwrap();
+    let late = 1.0 - (-1.5 / lag).exp();
+    let (force, speed) = (6.0 * late, 3.0 * (1.5 - lag * late));
+    let place = 3.0 * (1.5 * 1.5 / 2.0 - lag * (1.5 - lag * late));
+    assert_similar(
+        "place, speed, thrust",
+        &[end.q[0], end.v[0], end.v[1]],
+        &[place, speed, force],
+        tolerance,
+    );
+}
+
+#[test]
+fn every_method_integrates_them() {
+    sled_runs_by(Rk4::step(1e-3), 0.4, 1e-11);
+    sled_runs_by(DormandPrince::new().tolerance(1e-11, 1e-12), 0.4, 1e-9);
+    sled_runs_by(DormandPrince8::new().tolerance(1e-12, 1e-13), 0.4, 1e-10);
+    sled_runs_by(Rodas::new().tolerance(1e-8, 1e-9), 0.4, 1e-6);
+    sled_runs_by(Rosenbrock::step(1e-3), 0.4, 1e-5);
+    sled_runs_by(ImplicitMidpoint::step(1e-3), 0.4, 1e-5);
+    sled_runs_by(SemiImplicitEuler::step(1e-4), 0.4, 1e-3);
+    // A lag a thousand times shorter than a step.
+    sled_runs_by(Rodas::new().tolerance(1e-6, 1e-8), 1e-5, 1e-5);
+    sled_runs_by(Rosenbrock::step(1e-2), 1e-5, 1e-4);
+}
+
+/// A slider-crank driven by a torque that is late, or by one that is given.
+macro_rules! engine {
+    ($name:ident, { $($field:tt)* }) => {
+        #[mechanism(gravity = -9.81 * y)]
+        struct $name {
+            $($field)*
+            #[body(mass = 1, com = x / 10, inertia = rod(1, 0.2, x))]
+            crank: Body,
+            #[body(mass = 2, com = 0.3 * x, inertia = rod(2, 0.6, x))]
+            rod: Body,
+            #[body(mass = 1.5)]
+            piston: Body,
+            #[joint(ground -> crank, about = z)]
+            main: Pin,
+            #[joint(crank.at(0.2 * x) -> rod, about = z)]
+            big_end: Pin,
+            #[joint(ground -> piston, along = x)]
+            cylinder: Sleeve,
+            #[joint(rod.at(0.6 * x) -> piston, about = z)]
+            small_end: Pin,
+        }
+    };
+}
+engine!(Late, {
+    lag: f64,
+    command: Input,
+    #[state(rate = (command - torque) / lag)]
+    torque: State,
+    #[acts(on = main, value = torque)]
+    motor: Torque,
+});
+engine!(Prompt, {
+    #[acts(on = main)]
+    motor: Torque,
+});
+
+#[test]
+fn constrained_mechanisms_have_them() {
+    let (lag, q) = (0.3, [0.0, 0.0, 0.8]);
+    let late = Late { lag, torque: 0.0 };
+    let command = |_, _: &_, _: &_| [12.0].into();
+    let run = simulate(&late.extended()).from(q, [0.0; 4]).inputs(command).duration(1.0).finish().unwrap();
+    let given = |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
+    let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(given).duration(1.0).finish().unwrap();
+    assert_similar("q", run.q.as_slice(), other.q.as_slice(), 1e-5);
+    assert_similar("v", run.v.fixed_rows::<3>(0).as_slice(), other.v.as_slice(), 1e-5);
+    assert!(other.v[0].abs() > 1.0, "it moves");
+}

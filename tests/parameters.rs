@@ -1,0 +1,333 @@
+//! Robots whose figures are parameters: with the file's figures they are the robot of the file, with others that of another file.
+
+use linkwork::identification::{PutBackError, approach};
+use linkwork::lanes::f64x4;
+use linkwork::nalgebra::SVector;
+use linkwork::{Fault, Inertial, Lanes, Placement, frame, mechanism};
+use support::compare::{assert_close, assert_same_dynamics, assert_similar};
+use support::random::Random;
+
+const TOLERANCE: f64 = 1e-11;
+
+/// Links and joints of all kinds, in figures.
+#[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, derivatives, regressor)]
+struct Everything;
+
+/// All of them parameters.
+#[mechanism(
+    urdf = "data/urdf/everything.urdf", mimic = independent, derivatives, regressor, prepare,
+    parameters = [inertial, placement, damping, friction]
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AllOfIt;
+
+/// A quadruped, the mass properties of whose links are parameters.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, parameters = inertial, prepare)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quadruped;
+
+#[test]
+fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
+    let (plain, robot) = (Everything, AllOfIt::FILE);
+    assert_eq!(robot.validate(), Ok(()));
+    assert_eq!(AllOfIt::from_file(), robot);
+    assert_same_dynamics(&robot, &plain, 20, TOLERANCE);
+    assert_same_dynamics(&robot.prepare(), &plain, 20, TOLERANCE);
+    let mut random = Random::new(3);
+    let q = random.configuration(&plain);
+    let [v, a] = [random.vector(2.0), random.vector(2.0)];
+    let close = |what: &str, a: &[f64], b: &[f64]| assert_similar(what, a, b, TOLERANCE);
+    let (one, other) =
+        (robot.inverse_dynamics_derivatives(&q, &v, &a), plain.inverse_dynamics_derivatives(&q, &v, &a));
+    close("by q", one.0.as_slice(), other.0.as_slice());
+    close("by v", one.1.as_slice(), other.1.as_slice());
+    let (one, other) = (robot.joint_torque_regressor(&q, &v, &a), plain.joint_torque_regressor(&q, &v, &a));
+    close("regressor", one.as_slice(), other.as_slice());
+    close("standard", robot.standard_parameters().as_slice(), plain.standard_parameters().as_slice());
+    close("momentum", robot.momentum(&q, &v).as_slice(), plain.momentum(&q, &v).as_slice());
+    for (one, other) in robot.frame_placements(&q).iter().zip(plain.frame_placements(&q)) {
+        close("placements", one.to_homogeneous().as_slice(), other.to_homogeneous().as_slice());
+    }
+    let quadruped = Quadruped::FILE;
+    assert_eq!(quadruped.validate(), Ok(()));
+    assert_same_dynamics(&quadruped, &linkwork_models::Solo12, 10, TOLERANCE);
+    assert_same_dynamics(&quadruped.prepare(), &linkwork_models::Solo12, 10, TOLERANCE);
+}
+
+/// An arm in figures, and in others.
+#[mechanism(urdf = "data/urdf/arm_before.urdf")]
+struct Before;
+#[mechanism(urdf = "data/urdf/arm_after.urdf")]
+struct After;
+
+/// The arm with all parameters, beside one of its own.
+#[mechanism(
+    urdf = "data/urdf/arm_before.urdf", regressor, sensitivities,
+    parameters = [inertial, placement, damping, friction]
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Arm<T> {
+    load: T,
+    #[particle(mass = load, at = fore.at(0.1 * x))]
+    tool: Particle,
+}
+
+/// The figures of the other file.
+#[mechanism(urdf = "data/urdf/arm_after.urdf", parameters = [inertial, placement, damping, friction])]
+#[derive(Clone, Copy)]
+struct Figures;
+
+fn arm_of(f: &Figures) -> Arm<f64> {
+    Arm {
+        load: 0.0,
+        upper_arm: f.upper_arm,
+        fore: f.fore,
+        type_link: f.type_link,
+        shoulder_placement: f.shoulder_placement,
+        elbow_placement: f.elbow_placement,
+        slide_placement: f.slide_placement,
+        shoulder_damping: f.shoulder_damping,
+        elbow_damping: f.elbow_damping,
+        slide_damping: f.slide_damping,
+        shoulder_friction: f.shoulder_friction,
+        elbow_friction: f.elbow_friction,
+        slide_friction: f.slide_friction,
+    }
+}
+
+#[test]
+fn with_other_figures_it_is_the_robot_of_another_file() {
+    let before = Arm::<f64>::from_file(0.0);
+    assert_same_dynamics(&before, &Before, 20, TOLERANCE);
+    let after = arm_of(&Figures::FILE);
+    assert_same_dynamics(&after, &After, 20, TOLERANCE);
+    assert_ne!(before, after);
+    // As they are written in the file, with an inertia that stands in other axes there.
+    assert_eq!(
+        before.fore,
+        Inertial {
+            mass: 2.0,
+            com: [0.15, 0.0, 0.01],
+            ixx: 0.01,
+            ixy: 0.0,
+            ixz: 0.0,
+            iyy: 0.02,
+            iyz: 0.0,
+            izz: 0.022
+        }
+    );
+    assert_eq!(
+        before.elbow_placement,
+        Placement { xyz: [0.4, 0.0, 0.1], rpy: [std::f64::consts::FRAC_PI_2, 0.0, 0.0] }
+    );
+    assert_eq!([before.slide_damping, before.slide_friction, before.shoulder_friction], [2.0, 0.0, 0.1]);
+    let i = before.upper_arm;
+    assert!((i.ixx + i.iyy + i.izz - 0.09).abs() < 1e-15 && i.ixx != 0.03);
+}
+
+#[test]
+fn parameters_have_the_names_by_which_they_are_written() {
+    assert_eq!(Arm::<f64>::LINKS, ["upper-arm", "fore", "type"]);
+    let index = |name| linkwork::index_of(&Arm::<f64>::PARAMETERS, name).unwrap();
+    assert_eq!(index("load"), 0);
+    // The derivative by the damping of a joint is its velocity.
+    let arm = Arm::<f64>::from_file(0.3);
+    let (q, v, a) = ([0.3, 0.2, 0.1].into(), [0.5, -0.7, 0.9].into(), [0.1, 0.2, 0.3].into());
+    let by = arm.inverse_dynamics_by_parameters(&q, &v, &a);
+    assert_close("damping", by.column(index("elbow_damping")).as_slice(), &[0.0, -0.7, 0.0], 1e-15);
+    let change = |mass: f64| {
+        let mut other = arm;
+        other.type_link.mass += mass;
+        other.inverse_dynamics(&q, &v, &a)
+    };
+    let differences = (change(1e-4) - change(-1e-4)) / 2e-4;
+    assert_close("mass", by.column(index("type_link.mass")).as_slice(), differences.as_slice(), 1e-8);
+}
+
+#[test]
+fn lanes_carry_different_parameters() {
+    let mut robots = Arm::<f64x4>::from_file(Lanes([0.0, 0.1, 0.2, 0.3]));
+    robots.fore.mass = Lanes([2.0, 2.5, 3.0, 3.5]);
+    robots.elbow_friction = Lanes([0.0, 0.1, 0.2, 0.3]);
+    assert_eq!(robots.validate(), Ok(()));
+    let (q, v, a) = ([0.3, 0.2, 0.1], [0.5, -0.7, 0.9], [0.1, 0.2, 0.3]);
+    let wide = |x: [f64; 3]| SVector::from(x.map(f64x4::splat));
+    let tau = robots.inverse_dynamics(&wide(q), &wide(v), &wide(a));
+    for k in 0..4 {
+        let mut one = Arm::<f64>::from_file(0.1 * k as f64);
+        (one.fore.mass, one.elbow_friction) = (2.0 + 0.5 * k as f64, 0.1 * k as f64);
+        let expected = one.inverse_dynamics(&q.into(), &v.into(), &a.into());
+        assert_close(format!("lane {k}"), tau.map(|x| x[k]).as_slice(), expected.as_slice(), 1e-14);
+    }
+    robots.fore.mass = Lanes([2.0, 2.0, -2.0, 2.0]);
+    assert_eq!(robots.validate().unwrap_err().parameters, ["fore.mass"]);
+}
+
+#[test]
+fn what_no_body_has_is_named() {
+    let sound = Arm::<f64>::from_file(1.0);
+    assert_eq!(sound.validate(), Ok(()));
+    let faults = |change: fn(&mut Arm<f64>)| {
+        let mut arm = sound;
+        change(&mut arm);
+        let error = arm.validate().unwrap_err();
+        (error.fault, error.figure, error.parameters.first().copied())
+    };
+    assert_eq!(
+        faults(|arm| arm.fore.mass = -1.0),
+        (Fault::Negative, "the mass of `fore`", Some("fore.mass"))
+    );
+    let (fault, figure, _) = faults(|arm| arm.fore.izz = 0.04);
+    assert_eq!((fault, figure), (Fault::Inertia, "the inertia of `fore`"));
+    assert_eq!(faults(|arm| arm.fore.com[1] = f64::NAN).2, Some("fore.com[1]"));
+    assert_eq!(
+        faults(|arm| arm.elbow_damping = -0.1),
+        (Fault::Negative, "the damping of `elbow`", Some("elbow_damping"))
+    );
+    assert_eq!(faults(|arm| arm.slide_placement.rpy[2] = f64::INFINITY).0, Fault::NotFinite);
+    assert_eq!(faults(|arm| arm.slide_placement.xyz[2] = 1e90).0, Fault::TooLarge);
+}
+
+/// A seven-axis arm, whose links are parameters, and one of whose links is.
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
+    regressor, prepare, parameters = inertial
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Panda;
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
+    regressor, parameters = inertial("panda_link7")
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wrist;
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
+    regressor, scalar = f32, parameters = inertial("panda_link7")
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SingleWrist;
+
+/// Other bodies with other shapes: some of the density of the one that is known before, some at other places.
+fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
+    let mut point =
+        || Inertial::point(link.mass * (0.06 + random.uniform(0.05)), random.vector::<3>(0.06).into());
+    let (a, b) = (point(), point());
+    let [x, y, z] = link.com;
+    let at = |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
+    link.scaled(0.95).plus(&at(a)).plus(&at(b))
+}
+
+/// The potential energy and the masses by themselves do not act.
+fn same_torques(one: &Panda, other: &Panda) {
+    let mut random = Random::new(2);
+    for _ in 0..20 {
+        let [q, v, a] = [random.vector(2.0), random.vector(2.0), random.vector(3.0)];
+        let (one, other) = (one.inverse_dynamics(&q, &v, &a), other.inverse_dynamics(&q, &v, &a));
+        assert_similar("torques", one.as_slice(), other.as_slice(), 1e-8);
+    }
+}
+
+#[test]
+fn identified_base_parameters_are_put_back() {
+    let mut random = Random::new(17);
+    for _ in 0..3 {
+        let mut truth = Panda::FILE;
+        truth.set_inertials(&truth.inertials().map(|link| other(&mut random, &link)));
+        assert_eq!(truth.validate(), Ok(()));
+        let base = truth.base_parameters(&truth.standard_parameters());
+        let mut found = Panda::FILE;
+        found.set_base_parameters(&base).unwrap();
+        assert_eq!(found.validate(), Ok(()));
+        let again = found.base_parameters(&found.standard_parameters());
+        assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-9);
+        same_torques(&found, &truth);
+        // They are other bodies: what does not act cannot be known.
+        assert_ne!(found, truth);
+        // What was found is kept if it is put back once more.
+        let before = found;
+        found.set_base_parameters(&base).unwrap();
+        for (one, other) in found.inertials().iter().zip(before.inertials()) {
+            assert_close("kept", &one.to_standard(), &other.to_standard(), 1e-7);
+        }
+    }
+    // The file's own base parameters leave its links as they are, up to those that are at the bound of what there is.
+    let mut same = Panda::FILE;
+    same.set_base_parameters(&same.base_parameters(&same.standard_parameters())).unwrap();
+    same_torques(&same, &Panda::FILE);
+}
+
+#[test]
+fn noise_gives_bodies_all_the_same() {
+    let mut random = Random::new(23);
+    let file = Panda::FILE;
+    let base = file.base_parameters(&file.standard_parameters());
+    for (noise, most) in [(0.02, 0.05), (0.3, 0.5)] {
+        let noisy = base.map(|x| x * (1.0 + random.uniform(noise)));
+        let mut found = file;
+        approach(&mut found, &noisy, 1e-6).unwrap();
+        assert_eq!(found.validate(), Ok(()));
+        let again = found.base_parameters(&found.standard_parameters());
+        assert!((again - noisy).amax() < most * base.amax(), "{}", (again - noisy).amax());
+    }
+    // Without noise nothing is lost but what the softness allows.
+    let mut found = file;
+    approach(&mut found, &base, 1e-6).unwrap();
+    let again = found.base_parameters(&found.standard_parameters());
+    assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-4);
+    assert!(approach(&mut found, &base, -1.0).is_err());
+}
+
+#[test]
+fn what_no_bodies_have_is_an_error_and_changes_nothing() {
+    let file = Panda::FILE;
+    let base = file.base_parameters(&file.standard_parameters());
+    let mut found = file;
+    assert!(
+        matches!(found.set_base_parameters(&-base), Err(PutBackError::NotPhysical { residual }) if residual > 0.0)
+    );
+    assert_eq!(found, file);
+    assert_eq!(found.set_base_parameters(&base.map(|_| f64::NAN)), Err(PutBackError::NotFinite));
+    assert_eq!(found, file);
+    found.panda_link3.mass = 0.0;
+    let before = found;
+    let k = linkwork::index_of(&Panda::LINKS, "panda_link3").unwrap();
+    assert_eq!(found.set_base_parameters(&base), Err(PutBackError::Prior { link: k }));
+    assert_eq!(found, before);
+}
+
+/// One link alone takes what can be said of it, in single precision too.
+macro_rules! one_link {
+    ($robot:ident, $scalar:ty, $tolerance:literal) => {{
+        let mut truth = $robot::FILE;
+        truth.panda_link7 = truth.panda_link7.plus(&Inertial::point(0.8, [0.0, 0.05, 0.1]));
+        let base = truth.base_parameters(&truth.standard_parameters());
+        let mut found = $robot::FILE;
+        found.set_base_parameters(&base).unwrap();
+        assert_eq!(found.validate(), Ok(()));
+        let again = found.base_parameters(&found.standard_parameters());
+        let off = (again - base).amax();
+        assert!(off < $tolerance * base.amax(), "{off}");
+        let q = SVector::repeat(0.4 as $scalar);
+        let (one, other) = (found.bias_forces(&q, &q), truth.bias_forces(&q, &q));
+        assert!((one - other).amax() < $tolerance * other.amax());
+        assert!((found.panda_link7.mass - $robot::FILE.panda_link7.mass).abs() > 0.1);
+    }};
+}
+
+#[test]
+fn one_link_takes_what_reaches_it() {
+    one_link!(Wrist, f64, 1e-6);
+    one_link!(SingleWrist, f32, 2e-2);
+}
+
+/// Links whose placement is a parameter stand where it says.
+#[test]
+fn calibration_moves_frames() {
+    let mut arm = Arm::<f64>::from_file(0.0);
+    let q = [0.0; 3].into();
+    let at = |arm: &Arm<f64>| arm.frame_placement(frame!(Arm<f64>, "fore"), &q).translation.vector;
+    let before = at(&arm);
+    arm.elbow_placement.xyz[0] += 0.01;
+    assert_close("moved", (at(&arm) - before).as_slice(), &[0.01, 0.0, 0.0], 1e-15);
+}

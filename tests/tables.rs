@@ -1,0 +1,288 @@
+//! Tables, the standard atmosphere and angles of flight in mechanisms: a table of a parabola is the parabola, in every function
+//! and every derivative; others agree with differences of high order.
+
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{Lanes, Real, Table, mechanism};
+use support::compare::assert_similar;
+use support::random::Random;
+
+/// Between a table and the formula that it was made of.
+const FORMULA: f64 = 1e-10;
+/// Between derivatives and differences of eighth order.
+const DIFFERENCE: f64 = 1e-10;
+
+/// The aircraft once with tables and once with formulas: what is written between the braces are its coefficients.
+macro_rules! aircraft {
+    ($name:ident<$t:ident>, { $($parameter:ident: $kind:ty),* }, $lift:expr, $drag:expr, $thrust:expr) => {
+        #[mechanism(gravity = 9.81 * z, derivatives, second_derivatives, sensitivities, prepare, batch)]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        struct $name<$t: Real> {
+            mass: $t,
+            area: $t,
+            $($parameter: $kind,)*
+            elevator: Input,
+            throttle: Input,
+            #[body(mass = mass, inertia = diagonal(1000, 2000, 2500))]
+            airframe: Body,
+            #[joint(ground -> airframe)]
+            flight: Free,
+            #[define(v(airframe / ground / ground))]
+            velocity: Vector,
+            #[define(angle_of_attack(airframe, velocity))]
+            alpha: Scalar,
+            #[define(-dot(r(airframe / ground), ground.z))]
+            height: Scalar,
+            #[define(density(height) / 2 * dot(velocity, velocity))]
+            load: Scalar,
+            #[acts(on = airframe, value = -load * area * $lift * airframe.z)]
+            lifting: Force,
+            #[acts(on = airframe, value = -load * area * $drag * airframe.x)]
+            dragging: Force,
+            #[acts(on = airframe, value = $thrust * airframe.x)]
+            pushing: Force,
+            #[output(alpha)]
+            attack: Scalar,
+            #[output($lift)]
+            coefficient: Scalar,
+        }
+    };
+}
+
+aircraft!(
+    Tabulated<T>,
+    { lift: Table<2>, drag: Table<1>, thrust: Table<3> },
+    lift(alpha, elevator),
+    drag(alpha),
+    thrust(throttle, height, norm(velocity))
+);
+aircraft!(
+    Written<T>,
+    {},
+    ((0.2 + 5 * alpha - 3 * alpha * alpha) * (1 + 0.3 * elevator + elevator * elevator)),
+    (0.02 + 0.9 * alpha * alpha),
+    (2000 * (0.1 + throttle + throttle * throttle / 4) * (1 - height / 20000) * (1 - norm(velocity) / 400))
+);
+
+static ANGLES: [f64; 6] = [-1.6, -0.4, -0.05, 0.3, 0.8, 1.7];
+static ELEVATOR: [f64; 4] = [-1.2, -0.3, 0.1, 1.3];
+static POWER: [f64; 4] = [-1.5, 0.0, 0.4, 1.6];
+static HEIGHT: [f64; 3] = [-10.0, 800.0, 9000.0];
+static SPEED: [f64; 3] = [0.0, 40.0, 300.0];
+
+fn tables() -> (Table<2>, Table<1>, Table<3>) {
+    let (mut lift, mut drag, mut thrust) = (Vec::new(), Vec::new(), Vec::new());
+    for a in ANGLES {
+        lift.extend(ELEVATOR.map(|d| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d + d * d)));
+        drag.push(0.02 + 0.9 * a * a);
+    }
+    for p in POWER {
+        for h in HEIGHT {
+            thrust.extend(
+                SPEED.map(|v| 2000.0 * (0.1 + p + p * p / 4.0) * (1.0 - h / 20_000.0) * (1.0 - v / 400.0)),
+            );
+        }
+    }
+    let lift = Table::new([&ANGLES, &ELEVATOR], lift.leak()).unwrap();
+    let drag = Table::new([&ANGLES], drag.leak()).unwrap();
+    (lift, drag, Table::new([&POWER, &HEIGHT, &SPEED], thrust.leak()).unwrap())
+}
+
+fn tabulated<T: Real>(mass: T, area: T) -> Tabulated<T> {
+    let (lift, drag, thrust) = tables();
+    Tabulated { mass, area, lift: lift.smooth(), drag: drag.smooth(), thrust: thrust.smooth() }
+}
+
+struct State {
+    q: SVector<f64, 7>,
+    v: SVector<f64, 6>,
+    u: SVector<f64, 2>,
+}
+
+fn states() -> Vec<State> {
+    let mut random = Random::new(5);
+    let one = |k: usize| {
+        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
+        let r: SVector<f64, 3> = random.vector(100.0);
+        let mut v: SVector<f64, 6> = random.vector(1.0);
+        v[0] += 60.0;
+        v[2] += 4.0 * k as f64;
+        let q = SVector::from_column_slice(&[r[0], r[1], -1000.0 - r[2], turn[0], turn[1], turn[2], turn[3]]);
+        State { q, v, u: random.vector(1.0) }
+    };
+    (0..4).map(one).collect()
+}
+
+#[test]
+fn a_table_of_a_parabola_is_the_parabola_in_every_function() {
+    let (table, formula) = (tabulated(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
+    let prepared = table.prepare();
+    for State { q, v, u } in states() {
+        let same =
+            |what: &str, found: &[f64], expected: &[f64]| assert_similar(what, found, expected, FORMULA);
+        let (tau, expected) = (table.generalized_forces(&q, &v, &u), formula.generalized_forces(&q, &v, &u));
+        same("τ", tau.as_slice(), expected.as_slice());
+        same("τ, prepared", prepared.generalized_forces(&q, &v, &u).as_slice(), expected.as_slice());
+        same("output", &[table.coefficient(&q, &v, &u)], &[formula.coefficient(&q, &v, &u)]);
+        let ((a, b), (c, d)) = (table.linearize(&q, &v, &u), formula.linearize(&q, &v, &u));
+        same("A", a.as_slice(), c.as_slice());
+        same("B", b.as_slice(), d.as_slice());
+        let (a, b) = prepared.linearize(&q, &v, &u);
+        same("A, prepared", a.as_slice(), c.as_slice());
+        same("B, prepared", b.as_slice(), d.as_slice());
+    }
+}
+
+#[test]
+fn tables_agree_with_differences_of_high_order() {
+    let (lift, drag, thrust) = tables();
+    for linear in [true, false] {
+        let shape = |smooth: bool| {
+            if smooth {
+                tabulated(900.0, 16.0)
+            } else {
+                Tabulated { mass: 900.0, area: 16.0, lift: lift.extrapolated(), drag, thrust }
+            }
+        };
+        let aircraft = shape(!linear);
+        for State { q, v, u } in states() {
+            let (state, input) = aircraft.linearize(&q, &v, &u);
+            let zero = SVector::<f64, 6>::zeros();
+            let change = |dq: &SVector<f64, 6>, dv: &SVector<f64, 6>, du: &SVector<f64, 2>| {
+                let (q, v, u) = (aircraft.integrate(&q, dq), v + dv, u + du);
+                aircraft.forward_dynamics(&q, &v, &aircraft.generalized_forces(&q, &v, &u))
+            };
+            for k in 0..6 {
+                let unit = SVector::<f64, 6>::from_fn(|i, _| f64::from(u8::from(i == k)));
+                let none = SVector::<f64, 2>::zeros();
+                let by_q = slope(|s| change(&(unit * s), &zero, &none));
+                let by_v = slope(|s| change(&zero, &(unit * s), &none));
+                let rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
+                assert_similar("by q", rows(k).as_slice(), by_q.as_slice(), DIFFERENCE);
+                assert_similar("by v", rows(6 + k).as_slice(), by_v.as_slice(), DIFFERENCE);
+            }
+            for k in 0..2 {
+                let unit = SVector::<f64, 2>::from_fn(|i, _| f64::from(u8::from(i == k)));
+                let by_u = slope(|s| change(&zero, &zero, &(unit * s)));
+                let column = input.fixed_view::<6, 1>(6, k).into_owned();
+                assert_similar("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
+            }
+        }
+    }
+}
+
+/// Derivative at zero by central differences of eighth order.
+fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
+    let h = 2e-3;
+    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+    let mut sum = SVector::zeros();
+    for (k, weight) in weights.into_iter().enumerate() {
+        let step = (k + 1) as f64 * h;
+        sum += (f(step) - f(-step)) * weight;
+    }
+    sum / h
+}
+
+#[test]
+fn several_states_at_once_look_up_each_for_itself() {
+    let aircraft = tabulated(900.0, 16.0);
+    let wide = tabulated(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
+    let states = states();
+    let put = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
+    let q = SVector::<_, 7>::from_fn(|i, _| put(&|s| s.q[i]));
+    let v = SVector::<_, 6>::from_fn(|i, _| put(&|s| s.v[i]));
+    let u = SVector::<_, 2>::from_fn(|i, _| put(&|s| s.u[i]));
+    let (all, batched) = (wide.generalized_forces(&q, &v, &u), aircraft.generalized_forces_lanes(&q, &v, &u));
+    for (lane, state) in states.iter().enumerate() {
+        let one = aircraft.generalized_forces(&state.q, &state.v, &state.u);
+        let of = |all: &SVector<Lanes<f64, 4>, 6>| all.map(|x| x.0[lane]);
+        assert_similar("numbers of lanes", of(&all).as_slice(), one.as_slice(), 1e-12);
+        assert_similar("functions of lanes", of(&batched).as_slice(), one.as_slice(), 1e-12);
+    }
+}
+
+/// Angles of flight for a known attitude and velocity.
+#[mechanism]
+struct Attitude {
+    #[body(mass = 1, inertia = sphere(1, 1))]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[output([heading(airframe), elevation(airframe), bank(airframe)])]
+    attitude: Vector,
+    #[output([angle_of_attack(airframe, velocity), sideslip(airframe, velocity), 0])]
+    incidence: Vector,
+    #[output([course(velocity), flight_path(velocity), 0])]
+    path: Vector,
+    #[output(speed_of_sound(-dot(r(airframe / ground), ground.z)))]
+    sound: Scalar,
+}
+
+#[test]
+fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
+    use linkwork::nalgebra::{UnitQuaternion, Vector3};
+    let (heading, elevation, bank) = (0.7, 0.3, -0.4);
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading)
+        * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), elevation)
+        * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), bank);
+    let c = turn.coords;
+    let q = SVector::from_column_slice(&[0.0, 0.0, -11_000.0, c[0], c[1], c[2], c[3]]);
+    let (attack, slip, speed) = (0.2_f64, -0.1_f64, 50.0);
+    let body = Vector3::new(attack.cos() * slip.cos(), slip.sin(), attack.sin() * slip.cos()) * speed;
+    let v = SVector::from_column_slice(&[body[0], body[1], body[2], 0.0, 0.0, 0.0]);
+    assert_similar("attitude", Attitude.attitude(&q).as_slice(), &[heading, elevation, bank], 1e-14);
+    assert_similar("incidence", Attitude.incidence(&q, &v).as_slice(), &[attack, slip, 0.0], 1e-14);
+    let path = turn * body;
+    let expected = [path[1].atan2(path[0]), (-path[2] / speed).asin(), 0.0];
+    assert_similar("path", Attitude.path(&q, &v).as_slice(), &expected, 1e-14);
+    // U.S. Standard Atmosphere 1976, table III: 295.154 m/s at 11 km.
+    assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
+}
+
+/// A cam: a follower that a table holds at a height over the angle.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Cam {
+    rise: Table<1>,
+    #[body(mass = 2, inertia = disk(2, 0.1, z))]
+    disk: Body,
+    #[body(mass = 0.5)]
+    follower: Body,
+    #[joint(ground -> disk, about = z)]
+    shaft: Pin,
+    #[joint(ground -> follower, along = y)]
+    guide: Sleeve,
+    #[constraint(guide - rise(shaft))]
+    contact: Holonomic,
+}
+
+#[test]
+fn a_constraint_may_be_a_table() {
+    static ANGLE: [f64; 4] = [-2.0, -0.5, 0.5, 2.0];
+    static RISE: [f64; 4] = [0.4, 0.025, 0.025, 0.4];
+    // The rise is θ² / 10.
+    let cam = Cam { rise: Table::new([&ANGLE], &RISE).unwrap().smooth() };
+    let (q, v) = (SVector::from([0.6, 0.036]), SVector::from([1.5, 0.18]));
+    let motion = cam.constrained_dynamics(&q, &v, &SVector::zeros());
+    // θ̈ (I + m r'²) = −m r' (g + r'' θ̇²), with r' = θ / 5 and r'' = 1/5.
+    let (inertia, mass, slope): (f64, f64, f64) = (0.01, 0.5, 0.12);
+    let expected = -mass * slope * (9.81 + 0.2 * 1.5 * 1.5) / (inertia + mass * slope * slope);
+    assert!((motion.0[0] - expected).abs() < 1e-9, "{} is not {expected}", motion.0[0]);
+    let _: SMatrix<f64, 1, 2> = cam.constraint_jacobian(&q);
+}
+
+#[test]
+fn all_adaptive_methods_agree_on_a_constrained_motion() {
+    use linkwork::prelude::{DormandPrince, DormandPrince8, Rodas, simulate};
+    static ANGLE: [f64; 4] = [-2.0, -0.5, 0.5, 2.0];
+    static RISE: [f64; 4] = [0.4, 0.025, 0.025, 0.4];
+    let cam = Cam { rise: Table::new([&ANGLE], &RISE).unwrap().smooth() };
+    let run = simulate(&cam).from([0.6, 0.036], [1.5, 0.18]).duration(2.0);
+    let tight = run.clone().method(DormandPrince::new().tolerance(1e-12, 1e-12)).finish().unwrap();
+    let eighth = run.clone().method(DormandPrince8::new().tolerance(1e-11, 1e-11)).finish().unwrap();
+    let stiff = run.method(Rodas::new().tolerance(1e-7, 1e-7)).finish().unwrap();
+    for (end, tolerance) in [(eighth, 1e-8), (stiff, 1e-4)] {
+        assert!((end.q - tight.q).norm() < tolerance, "{} for {}", end.q, tight.q);
+        assert!((end.v - tight.v).norm() < tolerance, "{} for {}", end.v, tight.v);
+    }
+}
