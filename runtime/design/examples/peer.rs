@@ -1,0 +1,98 @@
+//! Results for systems that come by standard input, to be compared with python-control (`benches/peers/run control`): a line
+//! `n m p`, then the entries of A, B, C, D by rows. Prints a line a result, then the seconds that each took.
+
+use linkwork_design::matrices::{Cost, discrete_riccati, lyapunov, riccati};
+use linkwork_design::{Error, Hold, StateSpace};
+use nalgebra::{Complex, DMatrix};
+use std::collections::BTreeMap;
+use std::error::Error as Failure;
+use std::io::Read;
+use std::time::Instant;
+
+type Numbers = Result<Vec<f64>, Error>;
+
+fn flat(m: &DMatrix<f64>) -> Vec<f64> {
+    m.transpose().iter().copied().collect()
+}
+
+fn pairs(all: &[Complex<f64>]) -> Vec<f64> {
+    all.iter().flat_map(|x| [x.re, x.im]).collect()
+}
+
+/// A result by its name.
+fn result(name: &str, s: &StateSpace) -> Numbers {
+    let (n, m) = s.b().shape();
+    let cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
+    Ok(match name {
+        "poles" => pairs(&s.poles()?),
+        "zeros" => pairs(&s.zeros()?),
+        "lyap" => flat(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
+        "care" => flat(&riccati(s.a(), s.b(), &cost())?.x),
+        "dare" => {
+            let held = s.discretize(0.1, Hold::Zero)?;
+            flat(&discrete_riccati(held.a(), held.b(), &cost())?.x)
+        }
+        "gram" => flat(&s.controllability_gramian()?),
+        "h2" => vec![
+            StateSpace::new(s.a().clone(), s.b().clone(), s.c().clone(), DMatrix::zeros(s.d().nrows(), m))?
+                .h2_norm()?,
+        ],
+        "hinf" => vec![s.peak_gain()?.gain],
+        "zoh" => {
+            let held = s.discretize(0.1, Hold::Zero)?;
+            [flat(held.a()), flat(held.b())].concat()
+        }
+        "response" => {
+            let map = s.frequency_map()?;
+            let mut all = Vec::new();
+            for w in [0.01, 0.1, 1.0, 10.0, 100.0] {
+                let values: Vec<_> = map.response(w)?.transpose().iter().copied().collect();
+                all.extend(pairs(&values));
+            }
+            all
+        }
+        _ => {
+            let margins = s.channel(0, 0)?.margins()?;
+            let gain = margins.gain_increase().map_or(f64::INFINITY, |m| m.factor);
+            vec![
+                gain,
+                margins.nearest_phase().map_or(f64::INFINITY, |m| m.degrees.abs()),
+                margins.stability.distance,
+            ]
+        }
+    })
+}
+
+fn main() -> Result<(), Box<dyn Failure>> {
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text)?;
+    let mut numbers = text.split_whitespace().map(str::parse::<f64>);
+    let mut times = BTreeMap::new();
+    while let Some(n) = numbers.next() {
+        let mut take = || numbers.next().unwrap_or(Ok(0.0));
+        let (n, m, p) = (n? as usize, take()? as usize, take()? as usize);
+        let mut matrix = |rows: usize, columns: usize| -> Result<DMatrix<f64>, Box<dyn Failure>> {
+            let entries = (0..rows * columns).map(|_| take()).collect::<Result<Vec<_>, _>>()?;
+            Ok(DMatrix::from_row_slice(rows, columns, &entries))
+        };
+        let system = StateSpace::new(matrix(n, n)?, matrix(n, m)?, matrix(p, n)?, matrix(p, m)?)?;
+        for name in
+            ["poles", "zeros", "lyap", "care", "dare", "gram", "h2", "hinf", "zoh", "response", "margins"]
+        {
+            let start = Instant::now();
+            let found = result(name, &system);
+            *times.entry(name).or_insert(0.0) += start.elapsed().as_secs_f64();
+            match found {
+                Ok(values) => {
+                    let words: Vec<String> = values.iter().map(|x| format!("{x:e}")).collect();
+                    println!("{name} {}", words.join(" "));
+                }
+                Err(error) => println!("{name} error {error}"),
+            }
+        }
+    }
+    for (name, seconds) in times {
+        println!("time {name} {seconds}");
+    }
+    Ok(())
+}

@@ -1,0 +1,235 @@
+//! Connections of systems.
+
+use crate::matrices::solve;
+use crate::{Error, Port, Signal, StateSpace};
+use nalgebra::DMatrix;
+
+/// `[one 0; 0 other]`.
+fn diagonal(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut m = DMatrix::zeros(one.nrows() + other.nrows(), one.ncols() + other.ncols());
+    m.view_mut((0, 0), one.shape()).copy_from(one);
+    m.view_mut(one.shape(), other.shape()).copy_from(other);
+    m
+}
+
+fn chained(one: &[Signal], other: &[Signal]) -> Vec<Signal> {
+    one.iter().chain(other).cloned().collect()
+}
+
+impl StateSpace {
+    /// The common period; a system without states and period fits all.
+    fn common_period(&self, other: &Self) -> Result<Option<f64>, Error> {
+        let constant = |s: &Self| s.order() == 0 && s.period.is_none();
+        let alike = match (self.period, other.period) {
+            (Some(one), Some(other)) => (one - other).abs() <= 1e-12 * one,
+            (None, None) => true,
+            _ => constant(self) || constant(other),
+        };
+        if !alike {
+            return Err(Error::Time { periods: [self.period, other.period] });
+        }
+        Ok(self.period.or(other.period))
+    }
+
+    /// Both side by side: inputs and outputs of this one, then those of the other.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Time`] for different periods.
+    pub fn append(&self, other: &Self) -> Result<Self, Error> {
+        Ok(Self {
+            a: diagonal(&self.a, &other.a),
+            b: diagonal(&self.b, &other.b),
+            c: diagonal(&self.c, &other.c),
+            d: diagonal(&self.d, &other.d),
+            states: chained(&self.states, &other.states),
+            inputs: chained(&self.inputs, &other.inputs),
+            outputs: chained(&self.outputs, &other.outputs),
+            period: self.common_period(other)?,
+        })
+    }
+
+    /// This one, then `next`: the outputs of this one are the inputs of the other, in order.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for another number of them, [`Error::Time`] for different periods.
+    pub fn series(&self, next: &Self) -> Result<Self, Error> {
+        let (found, expected) = (self.outputs.len(), next.inputs.len());
+        if found != expected {
+            return Err(Error::Count { what: "outputs for the next system", expected, found });
+        }
+        let mut a = diagonal(&self.a, &next.a);
+        let (n, m) = (self.order(), next.order());
+        a.view_mut((n, 0), (m, n)).copy_from(&(&next.b * &self.c));
+        let mut b = DMatrix::zeros(n + m, self.inputs.len());
+        b.view_mut((0, 0), self.b.shape()).copy_from(&self.b);
+        b.view_mut((n, 0), (m, self.inputs.len())).copy_from(&(&next.b * &self.d));
+        let mut c = DMatrix::zeros(next.outputs.len(), n + m);
+        c.view_mut((0, 0), (next.outputs.len(), n)).copy_from(&(&next.d * &self.c));
+        c.view_mut((0, n), next.c.shape()).copy_from(&next.c);
+        Ok(Self {
+            a,
+            b,
+            c,
+            d: &next.d * &self.d,
+            states: chained(&self.states, &next.states),
+            inputs: self.inputs.clone(),
+            outputs: next.outputs.clone(),
+            period: self.common_period(next)?,
+        })
+    }
+
+    /// Both with the same inputs; their outputs are added.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for other numbers of inputs or outputs, [`Error::Time`] for different periods.
+    pub fn parallel(&self, other: &Self) -> Result<Self, Error> {
+        let counts = [("inputs", &self.inputs, &other.inputs), ("outputs", &self.outputs, &other.outputs)];
+        for (what, one, two) in counts {
+            if one.len() != two.len() {
+                return Err(Error::Count { what, expected: one.len(), found: two.len() });
+            }
+        }
+        let both = self.append(other)?;
+        let (m, p) = (self.inputs.len(), self.outputs.len());
+        let fan = DMatrix::from_fn(2 * m, m, |i, j| f64::from(i % m.max(1) == j));
+        let sum = DMatrix::from_fn(p, 2 * p, |i, j| f64::from(j % p.max(1) == i));
+        Ok(Self {
+            b: &both.b * &fan,
+            c: &sum * &both.c,
+            d: &sum * &both.d * &fan,
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            ..both
+        })
+    }
+
+    /// Negative feedback through `back`: `u = r − back(y)`. Inputs and outputs stay those of this system.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::AlgebraicLoop`] where `I + D₁ D₂` is singular, [`Error::Count`], [`Error::Time`].
+    pub fn feedback(&self, back: &Self) -> Result<Self, Error> {
+        for (what, one, two) in [
+            ("inputs of the feedback", &self.outputs, &back.inputs),
+            ("outputs of the feedback", &self.inputs, &back.outputs),
+        ] {
+            if one.len() != two.len() {
+                return Err(Error::Count { what, expected: one.len(), found: two.len() });
+            }
+        }
+        let period = self.common_period(back)?;
+        let (n, m) = (self.order(), back.order());
+        let (inputs, outputs) = (self.inputs.len(), self.outputs.len());
+        // y = W (C₁ x₁ − D₁ C₂ x₂ + D₁ r) with W = (I + D₁ D₂)⁻¹.
+        let w = DMatrix::identity(outputs, outputs) + &self.d * &back.d;
+        if outputs > 0 && crate::matrices::rank(&w, 1e-14)? < outputs {
+            return Err(Error::AlgebraicLoop);
+        }
+        let mut right = DMatrix::zeros(outputs, n + m + inputs);
+        right.view_mut((0, 0), (outputs, n)).copy_from(&self.c);
+        right.view_mut((0, n), (outputs, m)).copy_from(&-(&self.d * &back.c));
+        right.view_mut((0, n + m), (outputs, inputs)).copy_from(&self.d);
+        let y = solve("I + D₁ D₂", &w, &right)?;
+        // u = r − C₂ x₂ − D₂ y.
+        let mut u = -(&back.d * &y);
+        let mut shifted = u.view_mut((0, n), (inputs, m));
+        shifted -= &back.c;
+        let mut own = u.view_mut((0, n + m), (inputs, inputs));
+        own += DMatrix::<f64>::identity(inputs, inputs);
+        let mut x = DMatrix::zeros(n + m, n + m + inputs);
+        x.view_mut((0, 0), (n, n + m + inputs)).copy_from(&(&self.b * &u));
+        x.view_mut((n, 0), (m, n + m + inputs)).copy_from(&(&back.b * &y));
+        let mut a = x.columns(0, n + m).into_owned();
+        a += diagonal(&self.a, &back.a);
+        Ok(Self {
+            a,
+            b: x.columns(n + m, inputs).into_owned(),
+            c: y.columns(0, n + m).into_owned(),
+            d: y.columns(n + m, inputs).into_owned(),
+            states: chained(&self.states, &back.states),
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            period,
+        })
+    }
+
+    /// Feedback by a constant: `u = r − gain y`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] of a gain that does not fit, [`Error::AlgebraicLoop`].
+    pub fn feedback_gain(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
+        crate::matrices::check("the gain", gain, self.inputs.len(), self.outputs.len())?;
+        self.feedback(&Self::gain(gain.clone())?)
+    }
+
+    /// Feedback of all states: `u = r − K x`, so `A − B K`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] of a gain that does not fit.
+    pub fn state_feedback(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
+        crate::matrices::check("the gain", gain, self.inputs.len(), self.order())?;
+        let (a, c) = (&self.a - &self.b * gain, &self.c - &self.d * gain);
+        Ok(Self { a, c, ..self.clone() })
+    }
+
+    /// Some inputs and outputs of this system, by names or places.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn select<'a, I: Into<Port<'a>>, O: Into<Port<'a>>>(
+        &self,
+        outputs: impl IntoIterator<Item = O>,
+        inputs: impl IntoIterator<Item = I>,
+    ) -> Result<Self, Error> {
+        let rows = outputs.into_iter().map(|o| self.output_index(o)).collect::<Result<Vec<_>, _>>()?;
+        let columns = inputs.into_iter().map(|i| self.input_index(i)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self {
+            b: self.b.select_columns(&columns),
+            c: self.c.select_rows(&rows),
+            d: self.d.select_rows(&rows).select_columns(&columns),
+            inputs: columns.iter().filter_map(|k| self.inputs.get(*k).cloned()).collect(),
+            outputs: rows.iter().filter_map(|k| self.outputs.get(*k).cloned()).collect(),
+            ..self.clone()
+        })
+    }
+
+    /// The system from one input to one output.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn channel<'a>(
+        &self,
+        output: impl Into<Port<'a>>,
+        input: impl Into<Port<'a>>,
+    ) -> Result<Self, Error> {
+        self.select([output.into()], [input.into()])
+    }
+
+    /// Every state as an output, in place of the outputs.
+    pub fn with_states_as_outputs(&self) -> Self {
+        let n = self.order();
+        Self {
+            c: DMatrix::identity(n, n),
+            d: DMatrix::zeros(n, self.inputs.len()),
+            outputs: self.states.clone(),
+            ..self.clone()
+        }
+    }
+
+    /// Refuses systems with several inputs or outputs.
+    pub(crate) fn check_single(&self) -> Result<(), Error> {
+        for (what, signals) in [("input", &self.inputs), ("output", &self.outputs)] {
+            if signals.len() != 1 {
+                return Err(Error::Count { what, expected: 1, found: signals.len() });
+            }
+        }
+        Ok(())
+    }
+}

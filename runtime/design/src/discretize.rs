@@ -1,0 +1,176 @@
+//! Discretisation, and back.
+
+use crate::matrices::{C, exponential, logarithm, solve};
+use crate::{Error, StateSpace, ZerosPolesGain};
+use nalgebra::DMatrix;
+
+/// How a continuous system becomes a discrete one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Hold {
+    /// Inputs are constant from one instant to the next: exact for a digital controller.
+    Zero,
+    /// Inputs are straight from one instant to the next (the triangle hold): exact for measured inputs.
+    First,
+    /// The trapezoidal rule, `s = 2 (z − 1) / (h (z + 1))`, after Tustin.
+    Tustin,
+    /// Tustin's, exact at this frequency, rad/s.
+    Prewarped(f64),
+}
+
+fn check_period(period: f64) -> Result<(), Error> {
+    if period > 0.0 && period.is_finite() { Ok(()) } else { Err(Error::Period { period }) }
+}
+
+/// `a` of `s = a (z − 1) / (z + 1)`.
+fn bilinear(hold: Hold, h: f64) -> Result<f64, Error> {
+    match hold {
+        Hold::Prewarped(w) if !(w > 0.0 && w * h < std::f64::consts::PI) => {
+            Err(Error::Range { what: "a frequency for prewarping", value: w })
+        }
+        Hold::Prewarped(w) => Ok(w / (0.5 * w * h).tan()),
+        _ => Ok(2.0 / h),
+    }
+}
+
+impl StateSpace {
+    fn expect_continuous(&self) -> Result<(), Error> {
+        if self.period.is_some() { Err(Error::Time { periods: [self.period, None] }) } else { Ok(()) }
+    }
+
+    /// The discrete system that gives the outputs at the instants `0, h, 2 h, …` (Franklin, Powell and Workman, *Digital Control
+    /// of Dynamic Systems*, ch. 4 and 6).
+    ///
+    /// ```
+    /// use linkwork_design::{Hold, TransferFunction};
+    ///
+    /// // A lag of one second sampled ten times a second.
+    /// let lag = TransferFunction::new([1.0], [1.0, 1.0])?.state_space()?;
+    /// assert!((lag.discretize(0.1, Hold::Zero)?.poles()?[0].re - (-0.1_f64).exp()).abs() < 1e-15);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Period`] unless it is positive and finite, [`Error::Time`] of a system that is discrete already,
+    /// [`Error::Singular`] where Tustin's rule meets a pole at `2 / h`.
+    pub fn discretize(&self, period: f64, hold: Hold) -> Result<Self, Error> {
+        self.expect_continuous()?;
+        check_period(period)?;
+        let (n, m) = self.b.shape();
+        let (a, b, c, d) = match hold {
+            Hold::Zero => {
+                let mut both = DMatrix::zeros(n + m, n + m);
+                both.view_mut((0, 0), (n, n)).copy_from(&(&self.a * period));
+                both.view_mut((0, n), (n, m)).copy_from(&(&self.b * period));
+                let e = exponential(&both)?;
+                let (a, b) = (e.view((0, 0), (n, n)).into_owned(), e.view((0, n), (n, m)).into_owned());
+                (a, b, self.c.clone(), self.d.clone())
+            }
+            Hold::First => {
+                let mut all = DMatrix::zeros(n + 2 * m, n + 2 * m);
+                all.view_mut((0, 0), (n, n)).copy_from(&(&self.a * period));
+                all.view_mut((0, n), (n, m)).copy_from(&(&self.b * period));
+                all.view_mut((n, n + m), (m, m)).fill_with_identity();
+                let e = exponential(&all)?;
+                let a = e.view((0, 0), (n, n)).into_owned();
+                let (one, two) =
+                    (e.view((0, n), (n, m)).into_owned(), e.view((0, n + m), (n, m)).into_owned());
+                let (b, d) = (&one + &a * &two - &two, &self.d + &self.c * &two);
+                (a, b, self.c.clone(), d)
+            }
+            Hold::Tustin | Hold::Prewarped(_) => {
+                let s = bilinear(hold, period)?;
+                let what = "I − A / s of Tustin's rule";
+                let m = DMatrix::identity(n, n) - &self.a / s;
+                let a = solve(what, &m, &(DMatrix::identity(n, n) + &self.a / s))?;
+                let b = solve(what, &m, &(&self.b * (2.0 / s)))?;
+                let c = solve(what, &m.transpose(), &self.c.transpose())?.transpose();
+                let d = &self.d + &self.c * &b * 0.5;
+                (a, b, c, d)
+            }
+        };
+        Self { a, b, c, d, ..self.clone() }.with_period(period)
+    }
+
+    /// The continuous system whose discretisation this one is.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Time`] of a continuous system; [`Error::Range`] with a pole that is zero or negative, which no held system has;
+    /// [`Error::Singular`] where Tustin's rule meets a pole at −1.
+    pub fn undiscretize(&self, hold: Hold) -> Result<Self, Error> {
+        let Some(period) = self.period else { return Err(Error::Time { periods: [None, Some(0.0)] }) };
+        let (n, m) = self.b.shape();
+        let identity = DMatrix::<f64>::identity(n, n);
+        let (a, b, c, d) = match hold {
+            Hold::Zero => {
+                let mut both = DMatrix::identity(n + m, n + m);
+                both.view_mut((0, 0), (n, n)).copy_from(&self.a);
+                both.view_mut((0, n), (n, m)).copy_from(&self.b);
+                let log = logarithm(&both)? / period;
+                let (a, b) = (log.view((0, 0), (n, n)).into_owned(), log.view((0, n), (n, m)).into_owned());
+                (a, b, self.c.clone(), self.d.clone())
+            }
+            Hold::First => return self.undiscretize_first(period),
+            Hold::Tustin | Hold::Prewarped(_) => {
+                let s = bilinear(hold, period)?;
+                let what = "A + I of Tustin's rule";
+                let m = &self.a + &identity;
+                let a = solve(what, &m, &(&self.a - &identity))? * s;
+                let b = solve(what, &m, &self.b)? * s;
+                let c = solve(what, &m.transpose(), &self.c.transpose())?.transpose() * 2.0;
+                let d = &self.d - &self.c * solve(what, &m, &self.b)?;
+                (a, b, c, d)
+            }
+        };
+        Ok(Self { a, b, c, d, period: None, ..self.clone() })
+    }
+
+    fn undiscretize_first(&self, period: f64) -> Result<Self, Error> {
+        let n = self.order();
+        let a = logarithm(&self.a)? / period;
+        // Γ₁ = W₁ B and Γ₂ = W₂ B with the blocks of the exponential of [A h, h I, 0; 0, 0, I; 0, 0, 0].
+        let mut all = DMatrix::zeros(3 * n, 3 * n);
+        all.view_mut((0, 0), (n, n)).copy_from(&(&a * period));
+        all.view_mut((0, n), (n, n)).copy_from(&(DMatrix::<f64>::identity(n, n) * period));
+        all.view_mut((n, 2 * n), (n, n)).fill_with_identity();
+        let e = exponential(&all)?;
+        let (one, two) = (e.view((0, n), (n, n)).into_owned(), e.view((0, 2 * n), (n, n)).into_owned());
+        let b = solve("the triangle hold", &(&one + &self.a * &two - &two), &self.b)?;
+        let d = &self.d - &self.c * &two * &b;
+        Ok(Self { a, b, d, period: None, ..self.clone() })
+    }
+}
+
+impl ZerosPolesGain {
+    /// Discretised by matching: zeros and poles become `e^{s h}`, zeros at infinity −1 but for one that stays there, and the
+    /// gain at rest is kept (with poles or zeros at rest, that at a tenth of Nyquist's frequency).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one.
+    pub fn matched(&self, period: f64) -> Result<Self, Error> {
+        check_period(period)?;
+        if self.period.is_some() {
+            return Err(Error::Time { periods: [self.period, None] });
+        }
+        let (numerator, denominator) = (self.zeros.len(), self.poles.len());
+        if numerator > denominator {
+            return Err(Error::Improper { numerator, denominator });
+        }
+        let map = |roots: &[C]| roots.iter().map(|s| (s * period).exp()).collect::<Vec<_>>();
+        let mut zeros = map(&self.zeros);
+        let excess = (denominator - numerator).saturating_sub(1);
+        zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
+        let mut matched = Self { zeros, poles: map(&self.poles), gain: 1.0, period: Some(period) };
+        let at_rest = |x: &C| x.norm() <= 1e-9 / period;
+        let s = if self.zeros.iter().chain(&self.poles).any(at_rest) {
+            C::new(0.1 * std::f64::consts::PI / period, 0.0)
+        } else {
+            C::new(0.0, 0.0)
+        };
+        matched.gain = (self.at(s) / matched.at((s * period).exp())).re;
+        Ok(matched)
+    }
+}

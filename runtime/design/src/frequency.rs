@@ -1,0 +1,232 @@
+//! Frequency response: Bode's and Nyquist's data.
+
+use crate::matrices::{C, CMatrix, balance_system, complex};
+use crate::{Error, StateSpace};
+use nalgebra::{DMatrix, Hessenberg};
+
+/// A system in Hessenberg form: each frequency takes `n²` operations (Laub, *Efficient multivariable frequency response
+/// computations*, 1981).
+#[derive(Clone, Debug)]
+pub struct FrequencyMap {
+    h: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+    period: Option<f64>,
+}
+
+impl FrequencyMap {
+    /// `C (s I − A)⁻¹ B + D` at a complex frequency; `s` is `z` of a discrete system.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] at a pole.
+    pub fn at(&self, s: C) -> Result<CMatrix, Error> {
+        let n = self.h.nrows();
+        let mut m = CMatrix::from_fn(n, n, |i, j| {
+            let entry = C::new(-self.h[(i, j)], 0.0);
+            if i == j { entry + s } else { entry }
+        });
+        let mut x = complex(&self.b);
+        for k in 0..n.saturating_sub(1) {
+            if m[(k + 1, k)].norm() > m[(k, k)].norm() {
+                m.swap_rows(k, k + 1);
+                x.swap_rows(k, k + 1);
+            }
+            let pivot = m[(k, k)];
+            if pivot.norm() == 0.0 {
+                return Err(Error::Singular { what: "s I − A" });
+            }
+            let factor = m[(k + 1, k)] / pivot;
+            for j in k..n {
+                let above = m[(k, j)];
+                m[(k + 1, j)] -= factor * above;
+            }
+            for j in 0..x.ncols() {
+                let above = x[(k, j)];
+                x[(k + 1, j)] -= factor * above;
+            }
+        }
+        for i in (0..n).rev() {
+            if m[(i, i)].norm() == 0.0 {
+                return Err(Error::Singular { what: "s I − A" });
+            }
+            for j in 0..x.ncols() {
+                let sum: C = (i + 1..n).map(|k| m[(i, k)] * x[(k, j)]).sum();
+                x[(i, j)] = (x[(i, j)] - sum) / m[(i, i)];
+            }
+        }
+        Ok(complex(&self.c) * x + complex(&self.d))
+    }
+
+    /// The response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] at a pole.
+    pub fn response(&self, frequency: f64) -> Result<CMatrix, Error> {
+        self.at(boundary(self.period, frequency))
+    }
+}
+
+/// The point on the border of stability.
+pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
+    match period {
+        Some(h) => C::new(0.0, frequency * h).exp(),
+        None => C::new(0.0, frequency),
+    }
+}
+
+/// The response of one channel over frequencies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrequencyResponse {
+    /// rad/s.
+    pub frequencies: Vec<f64>,
+    /// The response at each.
+    pub values: Vec<C>,
+    /// Name and unit of the input.
+    pub input: crate::Signal,
+    /// Name and unit of the output.
+    pub output: crate::Signal,
+}
+
+impl FrequencyResponse {
+    /// Magnitudes.
+    pub fn magnitudes(&self) -> Vec<f64> {
+        self.values.iter().map(|x| x.norm()).collect()
+    }
+
+    /// Magnitudes in decibels, `20 log₁₀ |G|`.
+    pub fn decibels(&self) -> Vec<f64> {
+        self.values.iter().map(|x| 20.0 * x.norm().log10()).collect()
+    }
+
+    /// Phases in degrees, continuous from one frequency to the next; the first lies within ±180.
+    pub fn degrees(&self) -> Vec<f64> {
+        let mut turns = 0.0;
+        let mut last: Option<f64> = None;
+        let next = |x: &C| {
+            let phase = x.arg().to_degrees();
+            if let Some(last) = last {
+                turns -= ((phase - last) / 360.0).round();
+            }
+            last = Some(phase);
+            phase + 360.0 * turns
+        };
+        self.values.iter().map(next).collect()
+    }
+
+    /// The largest magnitude and its frequency, rad/s, among those that were computed.
+    pub fn peak(&self) -> Option<(f64, f64)> {
+        let all = self.values.iter().zip(&self.frequencies).map(|(x, w)| (x.norm(), *w));
+        all.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+/// `count` frequencies from `low` to `high`, rad/s, as far apart on a logarithmic scale.
+///
+/// # Errors
+///
+/// [`Error::Range`] unless both are positive and finite.
+pub fn logarithmic(low: f64, high: f64, count: usize) -> Result<Vec<f64>, Error> {
+    for value in [low, high] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::Range { what: "a frequency", value });
+        }
+    }
+    let step = (high / low).ln() / count.saturating_sub(1).max(1) as f64;
+    Ok((0..count).map(|k| low * (step * k as f64).exp()).collect())
+}
+
+impl StateSpace {
+    /// The system prepared for many frequencies.
+    ///
+    /// # Errors
+    ///
+    /// None but for what matrices of a later version refuse.
+    pub fn frequency_map(&self) -> Result<FrequencyMap, Error> {
+        let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
+        let (d, period) = (self.d.clone(), self.period);
+        if self.order() < 3 {
+            return Ok(FrequencyMap { h: a, b, c, d, period });
+        }
+        let (q, h) = Hessenberg::new(a).unpack();
+        Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period })
+    }
+
+    /// `C (s I − A)⁻¹ B + D` at a complex frequency.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] at a pole.
+    pub fn at(&self, s: C) -> Result<CMatrix, Error> {
+        self.frequency_map()?.at(s)
+    }
+
+    /// The response of one channel at these frequencies, rad/s.
+    ///
+    /// ```
+    /// use linkwork_design::TransferFunction;
+    ///
+    /// let lag = TransferFunction::new([1.0], [1.0, 1.0])?.state_space()?;
+    /// let bode = lag.frequency_response(0, 0, &[1.0])?;
+    /// assert!((bode.decibels()[0] + 10.0 * 2.0_f64.log10()).abs() < 1e-13 && (bode.degrees()[0] + 45.0).abs() < 1e-13);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`], [`Error::Singular`] at a pole on the border of stability, [`Error::Range`] for a frequency that is
+    /// not finite.
+    pub fn frequency_response<'a>(
+        &self,
+        output: impl Into<crate::Port<'a>>,
+        input: impl Into<crate::Port<'a>>,
+        frequencies: &[f64],
+    ) -> Result<FrequencyResponse, Error> {
+        let channel = self.channel(output, input)?;
+        let map = channel.frequency_map()?;
+        let value = |w: &f64| {
+            if !w.is_finite() {
+                return Err(Error::Range { what: "a frequency", value: *w });
+            }
+            Ok(map.response(*w)?[(0, 0)])
+        };
+        let values = frequencies.iter().map(value).collect::<Result<Vec<_>, _>>()?;
+        let (input, output) = (channel.inputs[0].clone(), channel.outputs[0].clone());
+        Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values, input, output })
+    }
+
+    /// Frequencies that show what the system does: from a decade below its slowest pole or zero to a decade above the fastest,
+    /// closer together where poles and zeros are near, rad/s. Up to Nyquist's frequency of a discrete system.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`].
+    pub fn natural_frequencies(&self, count: usize) -> Result<Vec<f64>, Error> {
+        let mut points = Vec::new();
+        for root in self.poles()?.into_iter().chain(self.zeros()?) {
+            let s = self.period.map_or(root, |h| root.ln() / h);
+            if s.norm() > 1e-12 && s.norm().is_finite() {
+                points.push(s);
+            }
+        }
+        let low = points.iter().map(|s| s.norm()).fold(f64::INFINITY, f64::min);
+        let high = points.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let (low, high) = if high > 0.0 { (0.1 * low, 10.0 * high) } else { (0.01, 100.0) };
+        let nyquist = self.period.map_or(f64::INFINITY, |h| std::f64::consts::PI / h);
+        let mut all = logarithmic(low.min(0.01 * nyquist), high.min(nyquist), count.max(2))?;
+        for s in points.iter().filter(|s| s.im != 0.0) {
+            // A resonance is as wide as its real part.
+            let width = s.re.abs().max(1e-9 * s.im.abs());
+            for k in -24..=24 {
+                let x = f64::from(k) / 6.0;
+                all.push(s.im.abs() + width * x * x.abs());
+            }
+        }
+        all.retain(|w| *w > 0.0 && *w <= nyquist);
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        Ok(all)
+    }
+}

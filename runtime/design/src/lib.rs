@@ -1,0 +1,54 @@
+//! Linear systems of mechanisms, and the equilibria and steady motions that they are taken about.
+//!
+//! A [`StateSpace`] has the matrices A, B, C, D with the names and units of its states, inputs and outputs; it comes from a
+//! mechanism ([`mechanism`]) or from matrices. It has [modes](StateSpace::modes), [zeros](StateSpace::zeros),
+//! [transfer functions](StateSpace::transfer_function), [responses](StateSpace::step_response) over time and
+//! [frequency](StateSpace::frequency_response), [margins](StateSpace::margins), [regulators](StateSpace::lqr) and
+//! [estimators](StateSpace::kalman). [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names.
+//!
+//! The [guide] goes through all of it with one aircraft.
+
+pub use discretize::Hold;
+pub use error::Error;
+pub use frequency::{FrequencyMap, FrequencyResponse, logarithmic};
+pub use margins::{GainMargin, Margins, PhaseMargin, StabilityMargin};
+pub use modes::Mode;
+pub use norms::PeakGain;
+pub use polynomial::Polynomial;
+pub use regulator::{Kalman, Noise};
+pub use response::Response;
+pub use root_locus::RootLocus;
+pub use routh::{GainRange, Routh, Special};
+pub use second_order::SecondOrderForm;
+pub use state_space::{Port, Signal, StateSpace};
+pub use step::{StepFigures, StepLimits};
+pub use structure::{KalmanRanks, Staircase};
+pub use transfer::{TransferFunction, ZerosPolesGain};
+
+mod connect;
+mod discretize;
+mod error;
+mod frequency;
+mod margins;
+pub mod matrices;
+pub mod mechanism;
+mod modes;
+mod norms;
+
+pub mod picture;
+mod polynomial;
+mod regulator;
+mod response;
+mod root_locus;
+mod routh;
+mod second_order;
+mod state_space;
+pub mod steady;
+mod step;
+mod structure;
+mod transfer;
+mod zeros;
+
+#[cfg(any(doc, doctest))]
+#[doc = include_str!("../guide.md")]
+pub mod guide {}

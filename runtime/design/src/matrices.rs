@@ -1,0 +1,77 @@
+//! Matrix equations and functions on dense matrices of any size: eigenvalues, exponential and logarithm, Sylvester's,
+//! Lyapunov's and Riccati's equations. Everything rests on orthogonal transformations: Hessenberg and Schur forms, QR
+//! decompositions with pivoting.
+
+use crate::Error;
+use nalgebra::{Complex, DMatrix};
+
+mod balance;
+mod eigenvalues;
+mod exponential;
+mod logarithm;
+mod lyapunov;
+mod rank;
+mod riccati;
+mod schur;
+
+pub(crate) use balance::{balance_system, balanced};
+pub use eigenvalues::eigenvalues;
+pub use exponential::exponential;
+pub use logarithm::logarithm;
+pub use lyapunov::{discrete_lyapunov, discrete_sylvester, lyapunov, sylvester};
+pub use rank::rank;
+pub(crate) use rank::{Compression, smallest_singular};
+pub use riccati::{Cost, Riccati, discrete_riccati, riccati};
+pub(crate) use schur::Schur;
+
+/// A complex number.
+pub(crate) type C = Complex<f64>;
+/// A complex matrix of any size.
+pub(crate) type CMatrix = DMatrix<C>;
+
+/// Refuses a matrix of another shape, or with entries that are not finite.
+pub(crate) fn check(
+    matrix: &'static str,
+    m: &DMatrix<f64>,
+    rows: usize,
+    columns: usize,
+) -> Result<(), Error> {
+    if m.shape() != (rows, columns) {
+        return Err(Error::Shape { matrix, expected: (rows, columns), found: m.shape() });
+    }
+    if m.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Error::NotFinite { what: matrix }) }
+}
+
+/// Refuses a matrix that is not square or not finite.
+pub(crate) fn check_square(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
+    check(matrix, m, m.nrows(), m.nrows())?;
+    Ok(m.nrows())
+}
+
+/// Complex entries for real ones.
+pub(crate) fn complex(m: &DMatrix<f64>) -> CMatrix {
+    m.map(|x| C::new(x, 0.0))
+}
+
+/// The largest sum of magnitudes of a column.
+pub(crate) fn norm_one(m: &DMatrix<f64>) -> f64 {
+    m.column_iter().map(|c| c.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
+}
+
+/// Half the sum with the transpose.
+pub(crate) fn symmetric(m: &DMatrix<f64>) -> DMatrix<f64> {
+    (m + m.transpose()) * 0.5
+}
+
+/// `X` of `M X = R`.
+pub(crate) fn solve(
+    what: &'static str,
+    m: &DMatrix<f64>,
+    right: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, Error> {
+    if m.is_empty() {
+        return Ok(right.clone());
+    }
+    let x = m.clone().lu().solve(right).ok_or(Error::Singular { what })?;
+    if x.iter().all(|x| x.is_finite()) { Ok(x) } else { Err(Error::Singular { what }) }
+}

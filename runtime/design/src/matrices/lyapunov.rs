@@ -1,0 +1,128 @@
+//! Sylvester's and Lyapunov's equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation AX + XB = C*,
+//! 1972), with a step of refinement.
+
+use super::{C, CMatrix, Schur, check, check_square, complex, symmetric};
+use crate::Error;
+use nalgebra::{DMatrix, DVector};
+
+type CVector = DVector<C>;
+
+/// `A X + X B` or `A X B − X`, of triangular factors.
+#[derive(Clone, Copy)]
+enum Kind {
+    Continuous,
+    Discrete,
+}
+
+/// Schur forms of both sides, kept for refinement.
+struct Sides {
+    left: Schur,
+    right: Schur,
+    kind: Kind,
+}
+
+impl Sides {
+    fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, kind: Kind) -> Result<Self, Error> {
+        Ok(Self { left: Schur::new(&complex(a))?, right: Schur::new(&complex(b))?, kind })
+    }
+
+    /// `X` of `A X + X B = F`, or `A X B − X = F`.
+    fn solve(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let (t, s) = (&self.left.t, &self.right.t);
+        let f = self.left.q.adjoint() * complex(f) * &self.right.q;
+        let mut y = CMatrix::zeros(f.nrows(), f.ncols());
+        for k in 0..f.ncols() {
+            let mut before = CVector::zeros(f.nrows());
+            for j in 0..k {
+                before += y.column(j) * s[(j, k)];
+            }
+            let own = s[(k, k)];
+            let (factor, plus, right) = match self.kind {
+                Kind::Continuous => (C::new(1.0, 0.0), own, f.column(k) - before),
+                Kind::Discrete => (own, C::new(-1.0, 0.0), f.column(k) - t * before),
+            };
+            y.set_column(k, &back(t, factor, plus, right)?);
+        }
+        Ok((&self.left.q * y * self.right.q.adjoint()).map(|x| x.re))
+    }
+}
+
+/// `x` of `(factor T + plus I) x = right`.
+fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, Error> {
+    for i in (0..right.nrows()).rev() {
+        let sum: C = (i + 1..right.nrows()).map(|j| factor * t[(i, j)] * right[j]).sum();
+        let (one, other) = (factor * t[(i, i)], plus);
+        if (one + other).norm() <= 4.0 * f64::EPSILON * (one.norm() + other.norm()) {
+            return Err(Error::Singular { what: "the equation, whose eigenvalues cancel," });
+        }
+        right[i] = (right[i] - sum) / (one + other);
+    }
+    Ok(right)
+}
+
+/// `X` of `A X + X B = C`.
+///
+/// ```
+/// use linkwork_design::matrices::sylvester;
+/// use nalgebra::dmatrix;
+///
+/// let (a, b, c) = (dmatrix![1.0, 2.0; 0.0, 3.0], dmatrix![4.0], dmatrix![5.0; 6.0]);
+/// let x = sylvester(&a, &b, &c)?;
+/// assert!((&a * &x + &x * &b - &c).norm() < 1e-14);
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where an eigenvalue of `A` is minus one of
+/// `B`.
+pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let (n, m) = (check_square("A", a)?, check_square("B", b)?);
+    check("C", c, n, m)?;
+    let sides = Sides::new(a, b, Kind::Continuous)?;
+    let x = sides.solve(c)?;
+    let residual = c - a * &x - &x * b;
+    Ok(&x + sides.solve(&residual)?)
+}
+
+/// `X` of `A X B − X + C = 0`.
+///
+/// # Errors
+///
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of an eigenvalue of `A`
+/// with one of `B` is one.
+pub fn discrete_sylvester(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, Error> {
+    let (n, m) = (check_square("A", a)?, check_square("B", b)?);
+    check("C", c, n, m)?;
+    let sides = Sides::new(a, b, Kind::Discrete)?;
+    let x = sides.solve(&-c)?;
+    let residual = -(c + a * &x * b - &x);
+    Ok(&x + sides.solve(&residual)?)
+}
+
+/// `X` of `A X + X Aᵀ + Q = 0` with `Q` symmetric: the covariance of a stable system under white noise.
+///
+/// # Errors
+///
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where two eigenvalues of `A` cancel.
+pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let n = check_square("A", a)?;
+    check("Q", q, n, n)?;
+    Ok(symmetric(&sylvester(a, &a.transpose(), &-q)?))
+}
+
+/// `X` of `A X Aᵀ − X + Q = 0` with `Q` symmetric.
+///
+/// # Errors
+///
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of two eigenvalues of `A`
+/// is one.
+pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let n = check_square("A", a)?;
+    check("Q", q, n, n)?;
+    Ok(symmetric(&discrete_sylvester(a, &a.transpose(), q)?))
+}

@@ -1,0 +1,68 @@
+//! Ranks by QR decompositions with column pivoting.
+
+use super::check;
+use crate::Error;
+use nalgebra::DMatrix;
+
+/// `Qᵀ M` with `rank` rows that matter above rows of rounding.
+pub(crate) struct Compression {
+    /// Orthogonal, square.
+    pub q: DMatrix<f64>,
+    /// How many rows of `Qᵀ M` are not zero.
+    pub rank: usize,
+}
+
+impl Compression {
+    /// Rows by Householder's reflections; the largest remaining column goes first. Columns below `least` count as zero.
+    pub fn rows(m: &DMatrix<f64>, least: f64) -> Self {
+        let (rows, columns) = m.shape();
+        let (mut r, mut q) = (m.clone(), DMatrix::identity(rows, rows));
+        let mut rank = 0;
+        while rank < rows.min(columns) {
+            let norm = |j: usize| r.view((rank, j), (rows - rank, 1)).norm();
+            let Some((best, size)) = (rank..columns).map(|j| (j, norm(j))).max_by(|a, b| a.1.total_cmp(&b.1))
+            else {
+                break;
+            };
+            if size <= least {
+                break;
+            }
+            r.swap_columns(rank, best);
+            let mut v = r.view((rank, rank), (rows - rank, 1)).clone_owned();
+            v[0] += size.copysign(v[0]);
+            let length = v.norm();
+            v /= length;
+            let mut below = r.view_mut((rank, rank), (rows - rank, columns - rank));
+            let product = v.transpose() * &below;
+            below -= &v * product * 2.0;
+            let mut right = q.view_mut((0, rank), (rows, rows - rank));
+            let product = &right * &v;
+            right -= product * v.transpose() * 2.0;
+            rank += 1;
+        }
+        Self { q, rank }
+    }
+}
+
+/// The number of singular values of `m` above `tolerance` times the largest. A tolerance of zero stands for rounding.
+///
+/// # Errors
+///
+/// [`Error::NotFinite`] for entries that are infinite or NaN, [`Error::NotConverged`] if the singular values do not settle.
+pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
+    check("the matrix", m, m.nrows(), m.ncols())?;
+    if m.is_empty() {
+        return Ok(0);
+    }
+    let values = m.clone().svd_unordered(false, false).singular_values;
+    let least = tolerance.max(f64::EPSILON * m.nrows().max(m.ncols()) as f64) * values.max();
+    Ok(values.iter().filter(|value| **value > least).count())
+}
+
+/// The smallest singular value of a complex matrix with at least as many columns as rows.
+pub(crate) fn smallest_singular(m: &super::CMatrix) -> f64 {
+    if m.is_empty() {
+        return f64::INFINITY;
+    }
+    m.clone().svd_unordered(false, false).singular_values.min()
+}

@@ -1,0 +1,313 @@
+//! Riccati's equations: the continuous one by an ordered Schur form, the discrete one by doubling, both refined by Newton's
+//! method.
+
+use super::{
+    C, CMatrix, Schur, balance_system, balanced, check, check_square, complex, discrete_lyapunov,
+    eigenvalues, lyapunov, smallest_singular, solve, symmetric,
+};
+use crate::Error;
+use nalgebra::DMatrix;
+
+/// Steps of doubling; ten are usual.
+const MOST: usize = 60;
+
+/// The weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or a sum): `Q` positive semidefinite, `R` positive definite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    /// Of states.
+    pub q: DMatrix<f64>,
+    /// Of inputs.
+    pub r: DMatrix<f64>,
+    /// Of products of states with inputs.
+    pub n: DMatrix<f64>,
+}
+
+impl Cost {
+    /// Without products of states with inputs.
+    pub fn new(q: DMatrix<f64>, r: DMatrix<f64>) -> Self {
+        let n = DMatrix::zeros(q.nrows(), r.nrows());
+        Self { q, r, n }
+    }
+
+    /// Weights on the diagonals: Bryson's rule takes one over the square of the largest deviation that is borne.
+    pub fn diagonal(states: &[f64], inputs: &[f64]) -> Self {
+        let diagonal = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
+        Self::new(diagonal(states), diagonal(inputs))
+    }
+
+    /// With weights of products of states with inputs.
+    pub fn with_products(mut self, n: DMatrix<f64>) -> Self {
+        self.n = n;
+        self
+    }
+
+    fn check(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
+        let n = check_square("A", a)?;
+        check("B", b, n, b.ncols())?;
+        check("Q", &self.q, n, n)?;
+        check("R", &self.r, b.ncols(), b.ncols())?;
+        check("N", &self.n, n, b.ncols())?;
+        for (matrix, m) in [("Q", &self.q), ("R", &self.r)] {
+            if (m - m.transpose()).amax() > 1e-10 * m.amax() {
+                return Err(Error::Indefinite { matrix });
+            }
+        }
+        if b.ncols() > 0 {
+            let values = symmetric(&self.r).symmetric_eigenvalues();
+            if values.iter().all(|x| x.abs() <= f64::EPSILON * self.r.amax()) || values.amin() == 0.0 {
+                return Err(Error::Singular { what: "R" });
+            }
+            if values.min() <= 0.0 {
+                return Err(Error::Indefinite { matrix: "R" });
+            }
+        }
+        Ok(n)
+    }
+
+    /// `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ`, `Q − N R⁻¹ Nᵀ`: the problem without products.
+    fn without_products(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<[DMatrix<f64>; 3], Error> {
+        let both = solve("R", &self.r, &self.n.transpose())?;
+        let g = b * solve("R", &self.r, &b.transpose())?;
+        Ok([a - b * &both, symmetric(&g), symmetric(&(&self.q - &self.n * both))])
+    }
+}
+
+/// The solution of Riccati's equation that stabilises.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Riccati {
+    /// `X`: `x₀ᵀ X x₀` is the least cost from `x₀`.
+    pub x: DMatrix<f64>,
+    /// `K` of the best inputs `u = −K x`.
+    pub gain: DMatrix<f64>,
+    /// The eigenvalues of `A − B K`.
+    pub poles: Vec<C>,
+}
+
+/// The continuous equation `Aᵀ X + X A − (X B + N) R⁻¹ (Bᵀ X + Nᵀ) + Q = 0`: the stable invariant subspace of the Hamiltonian
+/// matrix by an ordered Schur form (Laub, *A Schur method for solving algebraic Riccati equations*, 1979), scaled, then
+/// Kleinman's iteration.
+///
+/// ```
+/// use linkwork_design::matrices::{Cost, riccati};
+/// use nalgebra::dmatrix;
+///
+/// let (a, b) = (dmatrix![-3.0, 2.0; 1.0, 1.0], dmatrix![0.0; 1.0]);
+/// let best = riccati(&a, &b, &Cost::new(dmatrix![1.0, -1.0; -1.0, 1.0], dmatrix![3.0]))?;
+/// assert!((best.gain[(0, 1)] - 2.93961326897437).abs() < 1e-13);
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`] and
+/// [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
+    let n = cost.check(a, b)?;
+    check_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
+    let [f, g, q] = cost.without_products(a, b)?;
+    let mut h = DMatrix::zeros(2 * n, 2 * n);
+    h.view_mut((0, 0), (n, n)).copy_from(&f);
+    h.view_mut((0, n), (n, n)).copy_from(&-&g);
+    h.view_mut((n, 0), (n, n)).copy_from(&-&q);
+    h.view_mut((n, n), (n, n)).copy_from(&-f.transpose());
+    let d = symplectic(&h);
+    let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| h[(i, j)] * d[j] / d[i]);
+    let mut schur = Schur::new(&complex(&scaled))?;
+    if schur.reorder(|x| x.re < 0.0) != n {
+        return Err(Error::NotConverged {
+            what: "Riccati's equation, with eigenvalues on the imaginary axis,",
+        });
+    }
+    let x = subspace_solution(&schur, &d)?;
+    let residual = |x: &DMatrix<f64>| f.transpose() * x + x * &f - x * &g * x + &q;
+    let newton = |x: &DMatrix<f64>| {
+        let closed = &f - &g * x;
+        Ok(x + lyapunov(&closed.transpose(), &residual(x))?)
+    };
+    let x = refine(x, residual, newton)?;
+    let gain = solve("R", &cost.r, &(b.transpose() * &x + cost.n.transpose()))?;
+    let poles = eigenvalues(&(a - b * &gain))?;
+    if poles.iter().any(|p| p.re >= 0.0) {
+        return Err(Error::NotConverged { what: "Riccati's equation" });
+    }
+    Ok(Riccati { x, gain, poles })
+}
+
+/// Powers of two that balance a Hamiltonian matrix and keep it one: the second half of them is one over the first.
+fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
+    let n = h.nrows() / 2;
+    let sizes = h.map(f64::abs);
+    let (_, d) = balanced(&sizes);
+    let half = |i: usize| (0.5 * (d[i].log2() - d[n + i].log2())).round().exp2();
+    (0..n).map(half).chain((0..n).map(|i| 1.0 / half(i))).collect()
+}
+
+/// Newton's steps for as long as they make the residual smaller.
+fn refine(
+    mut x: DMatrix<f64>,
+    residual: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
+    newton: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, Error>,
+) -> Result<DMatrix<f64>, Error> {
+    let mut size = residual(&x).norm();
+    for _ in 0..4 {
+        if size == 0.0 {
+            break;
+        }
+        // A step may fail where the equation is nearly singular: what there is stays.
+        let Ok(next) = newton(&x) else { break };
+        let next = symmetric(&next);
+        let smaller = residual(&next).norm();
+        if smaller.is_nan() || smaller >= size {
+            break;
+        }
+        (x, size) = (next, smaller);
+    }
+    Ok(x)
+}
+
+/// Refuses problems whose solution does not exist, and names the mode: unstable ones must be moved by inputs, and those on the
+/// border of stability must be seen by the cost.
+fn check_modes(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    cost: &Cost,
+    unstable: impl Fn(C) -> bool,
+    distance: impl Fn(C) -> f64,
+) -> Result<(), Error> {
+    let size = balanced(a).0.norm().max(f64::MIN_POSITIVE);
+    for mode in eigenvalues(a)? {
+        if (unstable(mode) || distance(mode) <= 1e-10 * size) && is_fixed(a, b, mode) {
+            return Err(Error::Unstabilizable { mode });
+        }
+    }
+    let [f, _, q] = cost.without_products(a, b)?;
+    for mode in eigenvalues(&f)? {
+        if distance(mode) <= 1e-10 * size && is_fixed(&f.transpose(), &q, mode) {
+            return Err(Error::Undetectable { mode });
+        }
+    }
+    Ok(())
+}
+
+/// Whether `[A − λ I, B]` loses rank beside rounding (Popov, Belevitch and Hautus), each side in its own scale.
+pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
+    let n = a.nrows();
+    let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
+    let unit = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
+    let (of_a, of_b) = (unit(&a), unit(&b));
+    let m = CMatrix::from_fn(n, n + b.ncols(), |i, j| {
+        if j >= n {
+            return C::new(b[(i, j - n)] * of_b, 0.0);
+        }
+        let entry = C::new(a[(i, j)], 0.0);
+        (if i == j { entry - mode } else { entry }) * of_a
+    });
+    smallest_singular(&m) <= 1e-12 * n as f64
+}
+
+/// The discrete equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0` by doubling that keeps the structure
+/// (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time algebraic Riccati equations*, 2004),
+/// which needs no inverse of `A`; then Newton's method.
+///
+/// # Errors
+///
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`] and
+/// [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
+    cost.check(a, b)?;
+    check_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
+    let [f, g, q] = cost.without_products(a, b)?;
+    // Symplectic matrices lose digits where A is near to singular, doubling where it is far from stable.
+    let ways = [symplectic_subspace(&f, &g, &q), doubling(&f, &g, &q)];
+    let mut best = Err(Error::NotConverged { what: "the discrete Riccati equation" });
+    let mut least = f64::INFINITY;
+    for x in ways.into_iter().flatten() {
+        let Ok((found, residual)) = refined(a, b, cost, x) else { continue };
+        if residual < least {
+            (best, least) = (Ok(found), residual);
+        }
+    }
+    best
+}
+
+/// The limit of the doubled equation.
+fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let n = f.nrows();
+    let (mut a_k, mut g_k, mut h_k) = (f.clone(), g.clone(), q.clone());
+    let identity = DMatrix::<f64>::identity(n, n);
+    for _ in 0..MOST {
+        let lu = (&identity + &g_k * &h_k).lu();
+        let singular = Error::Singular { what: "the doubled equation" };
+        let (Some(wa), Some(wg)) = (lu.solve(&a_k), lu.solve(&g_k)) else { return Err(singular) };
+        let change = symmetric(&(a_k.transpose() * &h_k * &wa));
+        h_k += &change;
+        g_k = symmetric(&(&g_k + &a_k * wg * a_k.transpose()));
+        a_k *= wa;
+        if !change.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        if change.norm() <= 1e-15 * h_k.norm() {
+            return Ok(h_k);
+        }
+    }
+    Err(Error::NotConverged { what: "the discrete Riccati equation" })
+}
+
+/// By the invariant subspace of the symplectic matrix inside the unit circle (Laub, 1979).
+fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let n = f.nrows();
+    let inverse = solve("A", &f.transpose(), &DMatrix::identity(n, n))?;
+    let below = solve("A", &f.transpose(), q)?;
+    let mut s = DMatrix::zeros(2 * n, 2 * n);
+    s.view_mut((0, 0), (n, n)).copy_from(&(f + g * &below));
+    s.view_mut((0, n), (n, n)).copy_from(&-(g * &inverse));
+    s.view_mut((n, 0), (n, n)).copy_from(&-below);
+    s.view_mut((n, n), (n, n)).copy_from(&inverse);
+    let d = symplectic(&s);
+    let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| s[(i, j)] * d[j] / d[i]);
+    let mut schur = Schur::new(&complex(&scaled))?;
+    if schur.reorder(|x| x.norm() < 1.0) != n {
+        return Err(Error::NotConverged { what: "the discrete Riccati equation" });
+    }
+    subspace_solution(&schur, &d)
+}
+
+/// `X` of `X U₁ = U₂` for the leading subspace, in the units before scaling.
+fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
+    let n = d.len() / 2;
+    let (upper, lower) = (schur.q.view((0, 0), (n, n)), schur.q.view((n, 0), (n, n)));
+    let x: CMatrix =
+        upper.transpose().lu().solve(&lower.transpose()).ok_or(Error::Singular { what: "the subspace" })?;
+    let x = DMatrix::from_fn(n, n, |i, j| 0.5 * (x[(i, j)].re + x[(j, i)].re) * d[n + i] / d[j]);
+    Ok(symmetric(&x))
+}
+
+/// Refined by Newton's method, with the gain and what is left beside the terms; refused unless it stabilises.
+fn refined(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    cost: &Cost,
+    x: DMatrix<f64>,
+) -> Result<(Riccati, f64), Error> {
+    let n = a.nrows();
+    let gain = |x: &DMatrix<f64>| {
+        let weight = symmetric(&(&cost.r + b.transpose() * x * b));
+        solve("R + BᵀXB", &weight, &(b.transpose() * x * a + cost.n.transpose()))
+    };
+    let residual = |x: &DMatrix<f64>| match gain(x) {
+        Ok(k) => a.transpose() * x * a - x - (a.transpose() * x * b + &cost.n) * k + &cost.q,
+        Err(_) => DMatrix::from_element(n, n, f64::INFINITY),
+    };
+    let newton = |x: &DMatrix<f64>| {
+        let closed = a - b * gain(x)?;
+        Ok(x + discrete_lyapunov(&closed.transpose(), &symmetric(&residual(x)))?)
+    };
+    let x = refine(x, residual, newton)?;
+    let left = residual(&x).norm() / (x.norm() + cost.q.norm());
+    let gain = gain(&x)?;
+    let poles = eigenvalues(&(a - b * &gain))?;
+    if poles.iter().any(|p| p.norm() >= 1.0) {
+        return Err(Error::NotConverged { what: "the discrete Riccati equation" });
+    }
+    Ok((Riccati { x, gain, poles }, left))
+}

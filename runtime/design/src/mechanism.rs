@@ -1,0 +1,294 @@
+//! From mechanisms: their motion to first order as a [`StateSpace`].
+//!
+//! ```
+//! use linkwork::prelude::*;
+//! use linkwork_design::mechanism::linear_system;
+//!
+//! #[mechanism(gravity = -9.81 * y, derivatives)]
+//! struct Pendulum {
+//!     #[body(mass = 2, com = -0.5 * y)]
+//!     bob: Body,
+//!     #[joint(ground -> bob, about = z)]
+//!     hinge: Pin,
+//!     #[acts(on = hinge)]
+//!     motor: Torque,
+//! }
+//!
+//! let system = linear_system(&Pendulum {}, &[0.0].into(), &[0.0].into(), &[0.0].into())?;
+//! assert_eq!(system.states()[1].name, "hinge'");
+//! assert!((system.modes()?[0].frequency() - (9.81_f64 / 0.5).sqrt()).abs() < 1e-12);
+//! # Ok::<(), linkwork_design::Error>(())
+//! ```
+//!
+//! A mechanism that is driven in time is one at an instant, and its system is frozen there: pass `&at(&mechanism, t)`. Trees and
+//! mechanisms without constraints come by [`linear_system`]; those with constraints by [`constrained_system`] from what their
+//! `linearize` gives, in independent coordinates. Outputs come by [`measured_system`].
+
+use crate::{Error, SecondOrderForm, Signal, StateSpace};
+use linkwork::constraint::Linearization;
+use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJacobians, Rheonomic};
+use nalgebra::{DMatrix, SMatrix, SVector};
+
+/// A matrix of any size from one whose size is known.
+fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
+    DMatrix::from_fn(R, C, |i, j| m[(i, j)])
+}
+
+/// `[[a, b], [c, d]]` of blocks.
+fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
+    let [[a, b], [c, d]] = rows;
+    let mut m = DMatrix::zeros(a.nrows() + c.nrows(), a.ncols() + b.ncols());
+    m.view_mut((0, 0), a.shape()).copy_from(a);
+    m.view_mut((0, a.ncols()), b.shape()).copy_from(b);
+    m.view_mut((a.nrows(), 0), c.shape()).copy_from(c);
+    m.view_mut((a.nrows(), a.ncols()), d.shape()).copy_from(d);
+    m
+}
+
+pub(crate) fn named(names: &[&'static str]) -> Vec<Signal> {
+    names.iter().map(|name| Signal::from(*name)).collect()
+}
+
+/// Displacements by the names of the velocities, then changes of velocity with a prime, then so many states of first order.
+pub(crate) fn state_names(
+    coordinates: &[&'static str],
+    speeds: &[&'static str],
+    first_order: usize,
+) -> Vec<Signal> {
+    let (speeds, states) = speeds.split_at(speeds.len().saturating_sub(first_order));
+    let primed = speeds.iter().map(|name| Signal::from(format!("{name}'")));
+    named(coordinates).into_iter().chain(primed).chain(named(states)).collect()
+}
+
+/// Which of the displacements and velocities are states: states of first order have no displacement.
+fn kept(nv: usize, first_order: usize) -> Vec<usize> {
+    (0..nv.saturating_sub(first_order)).chain(nv..2 * nv).collect()
+}
+
+/// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The states are the
+/// displacements (in body axes for ball and free joints), named like the velocities, then the changes of velocity, named with a
+/// prime; they are the outputs, too. States of first order come last, by their own names: of a mechanism with such states pass
+/// `&at(&m.extended(), t)`.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork_design::mechanism::linear_system;
+///
+/// /// A cart whose motor follows the command late.
+/// #[mechanism(derivatives)]
+/// struct Cart {
+///     lag: f64,
+///     command: Input,
+///     #[state(rate = (command - push) / lag)]
+///     push: State,
+///     #[body(mass = 2)]
+///     cart: Body,
+///     #[joint(ground -> cart, along = x)]
+///     rail: Sleeve,
+///     #[acts(on = rail, value = push)]
+///     motor: Force,
+/// }
+///
+/// let cart = Cart { lag: 0.5, push: 0.0 };
+/// let system = linear_system(&at(&cart.extended(), 0.0), &[0.0].into(), &[0.0, 0.0].into(), &[0.0].into())?;
+/// assert_eq!(system.states()[2].name, "push");
+/// assert_eq!(system.transfer_function("rail", "command")?.to_string(), "1 / (s³ + 2 s²)");
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::NotFinite`] where the mass matrix is singular.
+pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) -> Result<StateSpace, Error>
+where
+    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let motion = m.linear_motion(q, v, u);
+    let n = M::FIRST_ORDER;
+    let system = of_motion(&motion, n)?;
+    let coordinates = M::VELOCITIES.get(..NV.saturating_sub(n)).unwrap_or_default();
+    let system = system.with_states(state_names(coordinates, &M::VELOCITIES, n))?;
+    Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+}
+
+fn of_motion<const NV: usize, const NU: usize>(
+    motion: &LinearMotion<f64, NV, NU>,
+    first_order: usize,
+) -> Result<StateSpace, Error> {
+    let identity = DMatrix::identity(NV, NV);
+    let a =
+        blocks([[&dynamic(&motion.turning), &identity], [&dynamic(&motion.by_q), &dynamic(&motion.by_v)]]);
+    let mut b = DMatrix::zeros(2 * NV, NU);
+    b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamic(&motion.by_u));
+    let kept = kept(NV, first_order);
+    let (a, b, n) = (a.select_rows(&kept).select_columns(&kept), b.select_rows(&kept), kept.len());
+    StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
+}
+
+/// The motion with the mechanism's own outputs as `y = C x + D δu`, at the time `t` for functions that the outputs depend on.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork_design::mechanism::measured_system;
+///
+/// /// A cart with an accelerometer.
+/// #[mechanism(derivatives)]
+/// struct Cart {
+///     #[body(mass = 2)]
+///     cart: Body,
+///     #[joint(ground -> cart, along = x)]
+///     rail: Sleeve,
+///     #[acts(on = rail, stiffness = 8)]
+///     spring: Spring,
+///     #[acts(on = rail)]
+///     push: Force,
+///     #[output(dot(a(cart / ground / ground), x))]
+///     accelerometer: Scalar,
+/// }
+///
+/// let system = measured_system(&Cart {}, 0.0, &[0.0].into(), &[0.0].into(), &[0.0].into())?;
+/// // (s²) / (2 s² + 8): what is pushed is felt at once.
+/// assert!((system.d()[(0, 0)] - 0.5).abs() < 1e-15);
+/// assert_eq!(system.transfer_function("accelerometer", "push")?.to_string(), "0.5 s² / (s² + 4)");
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::NotFinite`] where the mass matrix is singular.
+pub fn measured_system<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(
+    m: &M,
+    t: f64,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) -> Result<StateSpace, Error>
+where
+    M: Derivatives<NQ, NV, NU>
+        + Mechanism<NQ, NV, NU, Scalar = f64>
+        + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+{
+    let motion = m.linear_motion(q, v, u);
+    let seen = m.output_derivatives(t, q, v, &motion.acceleration, u).in_motion(&motion);
+    let system = of_motion(&motion, 0)?;
+    let (c, d) = output_matrices(&seen);
+    let system = StateSpace::new(system.a, system.b, c, d)?;
+    let system = system.with_states(state_names(&M::VELOCITIES, &M::VELOCITIES, 0))?;
+    system.with_inputs(named(&M::INPUTS))?.with_outputs(named(&M::OUTPUTS))
+}
+
+fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
+    seen: &OutputJacobians<f64, NY, NV, NU>,
+) -> (DMatrix<f64>, DMatrix<f64>) {
+    let mut c = DMatrix::zeros(NY, 2 * NV);
+    c.view_mut((0, 0), (NY, NV)).copy_from(&dynamic(&seen.by_q));
+    c.view_mut((0, NV), (NY, NV)).copy_from(&dynamic(&seen.by_v));
+    (c, dynamic(&seen.by_u))
+}
+
+/// The motion of a mechanism with constraints, from what its `linearize` gives: in independent coordinates and speeds, which
+/// are the outputs, too. The mechanism's type gives the names; the value itself is not looked at.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork_design::mechanism::constrained_system;
+///
+/// /// A bead on a parabola.
+/// #[mechanism(gravity = -9.81 * y, derivatives)]
+/// struct Bead {
+///     #[body(mass = 1)]
+///     bead: Body,
+///     #[joint(ground -> bead, along = (x, y))]
+///     place: Stage,
+///     #[constraint(place.y == place.x * place.x)]
+///     wire: Holonomic,
+/// }
+///
+/// let linear = Bead {}.linearize(&[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into(), &[0])?;
+/// let system = constrained_system(&Bead {}, &linear)?;
+/// assert_eq!(system.states()[0].name, "place.x");
+/// assert!((system.modes()?[0].frequency() - (2.0_f64 * 9.81).sqrt()).abs() < 1e-12);
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::NotFinite`].
+pub fn constrained_system<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NX: usize,
+    const NP: usize,
+    const NS: usize,
+>(
+    _mechanism: &M,
+    linear: &Linearization<f64, NX, NU, NP, NS>,
+) -> Result<StateSpace, Error>
+where
+    M: linkwork::Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let name = |k: &usize| M::VELOCITIES.get(*k).copied().unwrap_or_default();
+    let coordinates: Vec<_> = linear.coordinates.iter().map(name).collect();
+    let speeds: Vec<_> = linear.speeds.iter().map(name).collect();
+    let (a, b) = (dynamic(&linear.a), dynamic(&linear.b));
+    let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
+    let system = system.with_states(state_names(&coordinates, &speeds, 0))?;
+    Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+}
+
+/// What multiplies the accelerations: the mass matrix, or, where forces depend on accelerations, what inverse dynamics makes of each
+/// of them.
+pub(crate) fn effective_mass<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: f64,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+) -> DMatrix<f64>
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    if !M::FEEDBACK || M::CONSTRAINED {
+        return dynamic(&Rheonomic::mass_matrix(m, t, q));
+    }
+    let at_rest = Rheonomic::inverse_dynamics(m, t, q, v, &SVector::zeros());
+    let mut mass = DMatrix::zeros(NV, NV);
+    for k in 0..NV {
+        let unit = SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
+        let column = Rheonomic::inverse_dynamics(m, t, q, v, &unit) - at_rest;
+        mass.column_mut(k).copy_from(&column);
+    }
+    mass
+}
+
+/// The second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
+///
+/// # Errors
+///
+/// [`Error::NotFinite`].
+pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) -> Result<SecondOrderForm, Error>
+where
+    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let motion = m.linear_motion(q, v, u);
+    let mass = effective_mass(m, 0.0, q, v);
+    let (by_q, by_v) = (dynamic(&motion.by_q), dynamic(&motion.by_v));
+    let turning = dynamic(&motion.turning);
+    // δv = δq̇ − T δq, so that δv̇ = δq̈ − T δq̇ about a steady motion.
+    let velocity = -(&mass * (&by_v + &turning));
+    let position = -(&mass * (&by_q - &by_v * &turning));
+    let input = &mass * dynamic(&motion.by_u);
+    let form = SecondOrderForm::new(mass, velocity, position, input)?;
+    form.with_names(named(&M::VELOCITIES), named(&M::INPUTS))
+}

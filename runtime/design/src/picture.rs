@@ -1,0 +1,170 @@
+//! Pictures as SVG, one call each: Bode's and Nyquist's, root loci, poles and zeros, motions over time, modes. Drawn by
+//! [plotters](https://crates.io/crates/plotters), labelled with names and units.
+//!
+//! ```
+//! use linkwork_design::{TransferFunction, picture};
+//!
+//! let open = TransferFunction::new([2.0], [1.0, 2.0, 3.0, 4.0])?.state_space()?;
+//! let response = open.frequency_response(0, 0, &open.natural_frequencies(300)?)?;
+//! let svg = picture::bode(&response)?;
+//! assert!(svg.starts_with("<svg") && svg.contains("phase, deg"));
+//! assert!(picture::root_locus(&open.root_locus(&open.locus_gains()?)?)?.contains("imaginary part"));
+//! # Ok::<(), linkwork_design::Error>(())
+//! ```
+
+use crate::matrices::C;
+use crate::{Error, FrequencyResponse, Response, RootLocus, StateSpace};
+use panel::{Curve, Mark, Panel};
+use std::f64::consts::TAU;
+
+mod modes;
+mod panel;
+
+pub use modes::modes;
+
+fn title(response: &FrequencyResponse) -> String {
+    format!("from {} to {}", response.input.name, response.output.name)
+}
+
+/// Bode's diagram: magnitude in decibels and continuous phase in degrees over the frequency on a logarithmic scale.
+///
+/// # Errors
+///
+/// [`Error::Picture`] for values that are not finite, or none.
+pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
+    let over = |values: Vec<f64>| -> Vec<(f64, f64)> {
+        let points = response.frequencies.iter().copied().zip(values);
+        points.filter(|(w, _)| *w > 0.0).map(|(w, y)| (w.log10(), y)).collect()
+    };
+    let panel = |heading: String, y: &str, values: Vec<f64>| Panel {
+        title: heading,
+        x: "frequency, rad/s".into(),
+        y: y.into(),
+        logarithmic: true,
+        curves: vec![Curve { name: String::new(), points: over(values) }],
+        ..Panel::default()
+    };
+    let above = panel(format!("Bode diagram, {}", title(response)), "magnitude, dB", response.decibels());
+    panel::draw(&[above, panel(String::new(), "phase, deg", response.degrees())], (720, 560))
+}
+
+/// Nyquist's diagram: the response in the complex plane, with its mirror image for negative frequencies, and −1. Beyond ten times
+/// the distance of what is near, curves leave the picture.
+///
+/// # Errors
+///
+/// [`Error::Picture`] for values that are not finite, or none.
+pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
+    let mut sizes: Vec<f64> = response.values.iter().map(|x| x.norm()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);
+    let within = |x: &&C| x.norm() <= 10.0 * typical;
+    let curve = |sign: f64| response.values.iter().filter(within).map(|x| (x.re, sign * x.im)).collect();
+    let panel = Panel {
+        title: format!("Nyquist diagram, {}", title(response)),
+        x: "real part".into(),
+        y: "imaginary part".into(),
+        equal: true,
+        curves: vec![
+            Curve { name: "ω > 0".into(), points: curve(1.0) },
+            Curve { name: "ω < 0".into(), points: curve(-1.0) },
+        ],
+        marks: vec![(Mark::Cross, -1.0, 0.0)],
+        ..Panel::default()
+    };
+    panel::draw(&[panel], (640, 640))
+}
+
+/// The border of stability: the imaginary axis or the unit circle.
+fn border(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
+    match period {
+        Some(_) => (0..=180).map(|k| (TAU * f64::from(k) / 180.0).sin_cos()).collect(),
+        None => vec![(0.0, -reach), (0.0, reach)],
+    }
+}
+
+fn marks(mark: Mark, roots: &[C]) -> impl Iterator<Item = (Mark, f64, f64)> {
+    roots.iter().map(move |x| (mark, x.re, x.im))
+}
+
+fn reach(roots: &[C]) -> f64 {
+    1.3 * roots.iter().map(|x| x.norm()).fold(0.0, f64::max).max(1e-3)
+}
+
+fn plane(heading: &str, period: Option<f64>) -> Panel {
+    let unit = if period.is_some() { "" } else { ", 1/s" };
+    Panel {
+        title: heading.into(),
+        x: format!("real part{unit}"),
+        y: format!("imaginary part{unit}"),
+        equal: true,
+        ..Panel::default()
+    }
+}
+
+/// Poles (crosses) and zeros (circles) with the border of stability.
+///
+/// # Errors
+///
+/// [`Error::Picture`], [`Error::NotConverged`].
+pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
+    let (poles, zeros) = (system.poles()?, system.zeros()?);
+    let all = [poles.clone(), zeros.clone()].concat();
+    let panel = Panel {
+        lines: vec![border(system.period(), reach(&all))],
+        marks: marks(Mark::Cross, &poles).chain(marks(Mark::Circle, &zeros)).collect(),
+        ..plane("Poles and zeros", system.period())
+    };
+    panel::draw(&[panel], (640, 640))
+}
+
+/// A root locus: branches from poles (crosses) to zeros (circles), with the border of stability.
+///
+/// # Errors
+///
+/// [`Error::Picture`] for values that are not finite, or none.
+pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
+    let all = [locus.poles.clone(), locus.zeros.clone()].concat();
+    let far = 2.0 * reach(&all);
+    let curve = |branch: &Vec<C>| Curve {
+        name: String::new(),
+        points: branch.iter().take_while(|x| x.norm() <= far).map(|x| (x.re, x.im)).collect(),
+    };
+    let panel = Panel {
+        curves: locus.branches.iter().map(curve).collect(),
+        lines: vec![border(locus.period, reach(&all))],
+        marks: marks(Mark::Cross, &locus.poles).chain(marks(Mark::Circle, &locus.zeros)).collect(),
+        ..plane("Root locus", locus.period)
+    };
+    panel::draw(&[panel], (640, 640))
+}
+
+/// Outputs over time, a panel for each unit.
+///
+/// # Errors
+///
+/// [`Error::Picture`] for values that are not finite, or none.
+pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
+    let mut panels: Vec<(String, Panel)> = Vec::new();
+    for (k, signal) in response.output_signals.iter().enumerate() {
+        let points = response.times.iter().copied().zip(response.outputs.row(k).iter().copied()).collect();
+        let curve = Curve { name: signal.name.clone(), points };
+        match panels.iter_mut().find(|(unit, _)| *unit == signal.unit) {
+            Some((unit, panel)) => {
+                panel.y = unit.clone();
+                panel.curves.push(curve);
+            }
+            None => {
+                let title = if panels.is_empty() { heading.into() } else { String::new() };
+                let (x, y) = ("time, s".into(), signal.to_string());
+                panels.push((
+                    signal.unit.clone(),
+                    Panel { title, x, y, curves: vec![curve], ..Panel::default() },
+                ));
+            }
+        }
+    }
+    let panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
+    let height = 80 + 240 * u32::try_from(panels.len()).unwrap_or(1);
+    panel::draw(&panels, (720, height))
+}

@@ -1,0 +1,100 @@
+//! Modes as phasors that turn.
+
+use crate::polynomial::number;
+use crate::{Error, Mode};
+use std::fmt::Write;
+
+const COLOURS: [&str; 6] = ["#005aa0", "#d55e00", "#008c64", "#aa3c82", "#c89600", "#5a5a5a"];
+const ROW: f64 = 170.0;
+const RADIUS: f64 = 62.0;
+/// A turn on the screen takes this long where the motion's own is not between a half and twenty seconds, s.
+const TURN: f64 = 4.0;
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Modes, a row each: the parts of the states as phasors (of the largest, whatever their units), which turn and shrink or grow as
+/// the mode does where the viewer animates SVG, and the states that take part most.
+///
+/// # Errors
+///
+/// [`Error::Picture`] if there are none.
+pub fn modes(modes: &[Mode]) -> Result<String, Error> {
+    if modes.is_empty() {
+        return Err(Error::Picture("there are no modes".into()));
+    }
+    let height = ROW * modes.len() as f64 + 10.0;
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"{height}\" viewBox=\"0 0 720 {height}\" \
+         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"{height}\" fill=\"white\"/>\n"
+    );
+    for (k, mode) in modes.iter().enumerate() {
+        write_mode(&mut out, mode, ROW * (k as f64 + 0.5) + 5.0);
+    }
+    out.push_str("</svg>\n");
+    Ok(out)
+}
+
+fn write_mode(out: &mut String, mode: &Mode, y: f64) {
+    let x = 90.0;
+    let _ = writeln!(
+        out,
+        "<circle cx=\"{x}\" cy=\"{y}\" r=\"{RADIUS}\" fill=\"none\" stroke=\"#ccc\"/>\n<g transform=\"translate({x} {y})\"><g>"
+    );
+    let largest = mode.shape.iter().map(|s| s.norm()).fold(0.0, f64::max);
+    for (k, part) in mode.shape.iter().enumerate().filter(|_| largest > 0.0) {
+        let (px, py) = (RADIUS * part.re / largest, -RADIUS * part.im / largest);
+        let colour = COLOURS[k % COLOURS.len()];
+        let _ = writeln!(
+            out,
+            "<line x2=\"{px:.2}\" y2=\"{py:.2}\" stroke=\"{colour}\" stroke-width=\"3\" stroke-linecap=\"round\"/>"
+        );
+    }
+    write_motion(out, mode);
+    out.push_str("</g></g>\n");
+    let say = |out: &mut String, row: f64, colour: &str, words: &str| {
+        let place = y - 45.0 + 19.0 * row;
+        let _ = writeln!(out, "<text x=\"180\" y=\"{place:.1}\" fill=\"{colour}\">{}</text>", escaped(words));
+    };
+    let text = mode.to_string();
+    let heading = text.rsplit_once(": ").map_or(text.as_str(), |(heading, _)| heading);
+    say(out, 0.0, "#000", heading);
+    for (row, (name, part)) in mode.participants().into_iter().take(5).enumerate() {
+        let place = mode.place_of(name);
+        let shape = mode.shape.get(place).copied().unwrap_or_default();
+        let words = format!(
+            "{name}: takes part {:.1} %, phasor {} at {:.0}°",
+            100.0 * part,
+            number(shape.norm()),
+            shape.arg().to_degrees()
+        );
+        say(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
+    }
+}
+
+/// A turn, or a decay, in the mode's own time where that can be watched.
+fn write_motion(out: &mut String, mode: &Mode) {
+    match mode.period() {
+        Some(period) => {
+            let time = if (0.5..20.0).contains(&period) { period } else { TURN };
+            let _ = writeln!(
+                out,
+                "<animateTransform attributeName=\"transform\" type=\"rotate\" from=\"0\" to=\"-360\" dur=\"{time:.3}s\" \
+                 repeatCount=\"indefinite\"/>"
+            );
+        }
+        None => {
+            let sizes: Vec<String> =
+                (0..=12).map(|k| format!("{:.3}", (-0.25 * f64::from(k)).exp())).collect();
+            let ordered: Vec<String> =
+                if mode.is_stable() { sizes } else { sizes.into_iter().rev().collect() };
+            let _ = writeln!(
+                out,
+                "<animateTransform attributeName=\"transform\" type=\"scale\" values=\"{}\" dur=\"{TURN}s\" \
+                 repeatCount=\"indefinite\"/>",
+                ordered.join(";")
+            );
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Motion over time: steps, impulses, initial states, given inputs.
+
+use crate::{Error, Hold, Port, Signal, StateSpace};
+use nalgebra::{DMatrix, DVector};
+
+/// A motion at equally spaced instants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Instants, s.
+    pub times: Vec<f64>,
+    /// A row an output, a column an instant.
+    pub outputs: DMatrix<f64>,
+    /// A row a state, a column an instant.
+    pub states: DMatrix<f64>,
+    /// Names and units of the outputs.
+    pub output_signals: Vec<Signal>,
+    /// Names and units of the states.
+    pub state_signals: Vec<Signal>,
+}
+
+impl Response {
+    /// One output over time.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn output<'a>(&self, output: impl Into<Port<'a>>) -> Result<Vec<f64>, Error> {
+        let port = output.into();
+        let found = match port {
+            Port::At(k) => Some(k).filter(|k| *k < self.outputs.nrows()),
+            Port::Named(name) => self.output_signals.iter().position(|s| s.name == name),
+        };
+        let row = found.ok_or_else(|| Error::Unknown {
+            kind: "output",
+            name: format!("{port:?}"),
+            known: self.output_signals.iter().map(|s| s.name.clone()).collect(),
+        })?;
+        Ok(self.outputs.row(row).iter().copied().collect())
+    }
+}
+
+impl StateSpace {
+    /// Instants that show a response: until the slowest pole has settled or some periods of what does not decay are over, s.
+    /// A discrete system has its own.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`].
+    pub fn natural_times(&self) -> Result<Vec<f64>, Error> {
+        let mut end = 0.0_f64;
+        let mut fastest = 0.0_f64;
+        for pole in self.poles()? {
+            let s = self.period.map_or(pole, |h| pole.ln() / h);
+            if !s.norm().is_finite() || s.norm() < 1e-9 {
+                continue;
+            }
+            fastest = fastest.max(s.norm());
+            let ratio = s.re.abs() / s.norm();
+            let wanted = if ratio > 1e-3 { 5.0 / s.re.abs() } else { 60.0 / s.norm() };
+            end = end.max(if s.re > 0.0 { wanted.min(4.0 / s.re) } else { wanted });
+        }
+        if end == 0.0 {
+            end = self.period.map_or(10.0, |h| 20.0 * h);
+        }
+        let points = match self.period {
+            Some(h) => ((end / h).ceil() as usize).clamp(10, 20_000) + 1,
+            None => ((end * fastest * 2.0).ceil() as usize).clamp(400, 8000) + 1,
+        };
+        let step = self.period.unwrap_or(end / (points - 1) as f64);
+        Ok((0..points).map(|k| step * k as f64).collect())
+    }
+
+    /// `count` instants from zero to `end`, s; of a discrete system those of its period up to `end`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] unless the end is positive and finite.
+    pub fn times(&self, end: f64, count: usize) -> Result<Vec<f64>, Error> {
+        if !(end > 0.0 && end.is_finite()) {
+            return Err(Error::Range { what: "an end", value: end });
+        }
+        let (step, count) = match self.period {
+            Some(h) => (h, (end / h + 1e-9).floor() as usize + 1),
+            None => (end / count.max(2).saturating_sub(1) as f64, count.max(2)),
+        };
+        Ok((0..count).map(|k| step * k as f64).collect())
+    }
+
+    /// The outputs while one input is one from the instant zero on, from rest; exact at each instant.
+    ///
+    /// ```
+    /// use linkwork_design::TransferFunction;
+    ///
+    /// let lag = TransferFunction::new([1.0], [1.0, 1.0])?.state_space()?;
+    /// let response = lag.step_response(0, &lag.times(2.0, 101)?)?;
+    /// assert!((response.outputs[(0, 50)] - (1.0 - (-1.0_f64).exp())).abs() < 1e-14);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero on.
+    pub fn step_response<'a>(&self, input: impl Into<Port<'a>>, times: &[f64]) -> Result<Response, Error> {
+        let column = self.input_index(input)?;
+        let inputs = DMatrix::from_fn(self.inputs.len(), times.len(), |i, _| f64::from(i == column));
+        self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
+    }
+
+    /// The outputs after an impulse of one of an input (of a discrete system one divided by the period), from rest. What passes
+    /// directly to outputs is left out of a continuous response, where it is infinite.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero on.
+    pub fn impulse_response<'a>(&self, input: impl Into<Port<'a>>, times: &[f64]) -> Result<Response, Error> {
+        let column = self.input_index(input)?;
+        let mut inputs = DMatrix::zeros(self.inputs.len(), times.len());
+        match self.period {
+            Some(h) => {
+                if !times.is_empty() {
+                    inputs[(column, 0)] = 1.0 / h;
+                }
+                self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
+            }
+            None => self.motion(times, &inputs, &self.b.column(column).into_owned(), Hold::Zero),
+        }
+    }
+
+    /// The outputs from an initial state without inputs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for another number of states, [`Error::Range`] for instants that are not equally spaced from zero on.
+    pub fn initial_response(&self, state: &[f64], times: &[f64]) -> Result<Response, Error> {
+        let inputs = DMatrix::zeros(self.inputs.len(), times.len());
+        self.motion(times, &inputs, &DVector::from_column_slice(state), Hold::Zero)
+    }
+
+    /// The outputs under given inputs (a row an input, a column an instant) from an initial state: exact for inputs that are
+    /// constant ([`Hold::Zero`]) or straight ([`Hold::First`]) from one instant to the next.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] of the inputs, [`Error::Count`] of the states, [`Error::Range`] for instants that are not equally spaced
+    /// from zero on (of a discrete system by its period).
+    pub fn forced_response(
+        &self,
+        inputs: &DMatrix<f64>,
+        state: &[f64],
+        times: &[f64],
+        hold: Hold,
+    ) -> Result<Response, Error> {
+        self.motion(times, inputs, &DVector::from_column_slice(state), hold)
+    }
+
+    fn motion(
+        &self,
+        times: &[f64],
+        inputs: &DMatrix<f64>,
+        state: &DVector<f64>,
+        hold: Hold,
+    ) -> Result<Response, Error> {
+        let (n, count) = (self.order(), times.len());
+        crate::matrices::check("the inputs", inputs, self.inputs.len(), count)?;
+        if state.len() != n {
+            return Err(Error::Count { what: "initial states", expected: n, found: state.len() });
+        }
+        if !state.iter().all(|x| x.is_finite()) {
+            return Err(Error::NotFinite { what: "the initial state" });
+        }
+        let step = check_times(times, self.period)?;
+        // x⁺ = A x + B₀ u + B₁ u⁺.
+        let (a, b, next) = match (self.period, hold) {
+            (Some(_), _) => (self.a.clone(), self.b.clone(), None),
+            (None, Hold::First) => {
+                let held = Self {
+                    c: DMatrix::identity(n, n),
+                    d: DMatrix::zeros(n, self.inputs.len()),
+                    outputs: self.states.clone(),
+                    ..self.clone()
+                };
+                let held = held.discretize(step, Hold::First)?;
+                // The states of the triangle hold are x − D u; its B is that of both ends.
+                let before = &held.b - &held.a * &held.d;
+                (held.a, before, Some(held.d))
+            }
+            (None, _) => {
+                let held = self.discretize(step, Hold::Zero)?;
+                (held.a, held.b, None)
+            }
+        };
+        let mut states = DMatrix::zeros(n, count);
+        let mut x = state.clone();
+        for k in 0..count {
+            states.set_column(k, &x);
+            if k + 1 < count {
+                x = &a * x + &b * inputs.column(k);
+                if let Some(next) = &next {
+                    x += next * inputs.column(k + 1);
+                }
+            }
+        }
+        let outputs = &self.c * &states + &self.d * inputs;
+        Ok(Response {
+            times: times.to_vec(),
+            outputs,
+            states,
+            output_signals: self.outputs.clone(),
+            state_signals: self.states.clone(),
+        })
+    }
+}
+
+/// The distance of instants, which begin at zero.
+fn check_times(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return Ok(period.unwrap_or(1.0));
+    };
+    if *first != 0.0 {
+        return Err(Error::Range { what: "a first instant", value: *first });
+    }
+    if times.len() == 1 {
+        return Ok(period.unwrap_or(1.0));
+    }
+    let step = last / (times.len() - 1) as f64;
+    if !(step > 0.0 && step.is_finite()) {
+        return Err(Error::Range { what: "a distance of instants", value: step });
+    }
+    for (k, t) in times.iter().enumerate() {
+        let off = (t - step * k as f64).abs();
+        if off.is_nan() || off > 1e-9 * last {
+            return Err(Error::Range { what: "an instant that is not equally spaced", value: *t });
+        }
+    }
+    match period {
+        Some(h) if (h - step).abs() > 1e-9 * h => Err(Error::Period { period: step }),
+        _ => Ok(step),
+    }
+}

@@ -1,0 +1,102 @@
+//! Root loci: closed-loop poles over a gain.
+
+use crate::matrices::C;
+use crate::{Error, StateSpace};
+use nalgebra::DMatrix;
+
+/// The poles of a negative feedback with the gains `k`: branch by branch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RootLocus {
+    /// The gains, from low to high.
+    pub gains: Vec<f64>,
+    /// One branch a pole: its place at every gain.
+    pub branches: Vec<Vec<C>>,
+    /// The poles of the open loop, where branches begin.
+    pub poles: Vec<C>,
+    /// The zeros of the open loop, where branches end.
+    pub zeros: Vec<C>,
+    /// The period of a discrete system, s.
+    pub period: Option<f64>,
+}
+
+/// Poles in an order in which each is near its place before.
+fn follow(before: &[C], mut now: Vec<C>) -> Vec<C> {
+    let mut order = vec![C::new(0.0, 0.0); before.len()];
+    let mut free: Vec<usize> = (0..before.len()).collect();
+    // The nearest pair of all goes first, so that no branch takes the end of another.
+    while !free.is_empty() && !now.is_empty() {
+        let pairs = free
+            .iter()
+            .enumerate()
+            .flat_map(|(i, f)| now.iter().enumerate().map(move |(j, p)| (i, j, (before[*f] - p).norm())));
+        let Some((i, j, _)) = pairs.min_by(|a, b| a.2.total_cmp(&b.2)) else { break };
+        order[free.swap_remove(i)] = now.swap_remove(j);
+    }
+    order
+}
+
+impl StateSpace {
+    /// The poles under `u = r − k y` for these gains.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] unless there is one input and one output, [`Error::AlgebraicLoop`] at a gain of `−1 / D`.
+    pub fn root_locus(&self, gains: &[f64]) -> Result<RootLocus, Error> {
+        self.check_single()?;
+        let (poles, zeros) = (self.poles()?, self.zeros()?);
+        let mut branches: Vec<Vec<C>> = vec![Vec::new(); poles.len()];
+        let mut before = poles.clone();
+        for k in gains {
+            let closed = self.feedback_gain(&DMatrix::from_element(1, 1, *k))?;
+            before = follow(&before, closed.poles()?);
+            branches.iter_mut().zip(&before).for_each(|(branch, pole)| branch.push(*pole));
+        }
+        Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
+    }
+
+    /// Gains that show the locus: zero, then on a logarithmic scale from where poles begin to move to where they are near zeros or
+    /// far away, and refined where a pole moves by more than a fortieth of the picture.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`root_locus`](Self::root_locus).
+    pub fn locus_gains(&self) -> Result<Vec<f64>, Error> {
+        self.check_single()?;
+        let poles = self.poles()?;
+        let all = poles.iter().copied().chain(self.zeros()?);
+        let size = all.map(|x| x.norm()).fold(1e-6, f64::max);
+        let moved = |k: f64| -> Result<f64, Error> {
+            let closed = self.feedback_gain(&DMatrix::from_element(1, 1, k))?.poles()?;
+            Ok(follow(&poles, closed).iter().zip(&poles).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max))
+        };
+        let (mut low, mut high) = (1.0, 1.0);
+        for _ in 0..60 {
+            if moved(low)? <= 0.01 * size {
+                break;
+            }
+            low *= 0.4;
+        }
+        for _ in 0..60 {
+            if moved(high)? >= 4.0 * size {
+                break;
+            }
+            high *= 2.5;
+        }
+        // Where all branches end in zeros nothing goes far.
+        high = high.min(1e6 * low.max(1e-9)).max(10.0 * low);
+        let mut gains = vec![0.0];
+        gains.extend(crate::logarithmic(low, high, 80)?);
+        for _ in 0..6 {
+            let locus = self.root_locus(&gains)?;
+            let far = |k: usize| locus.branches.iter().any(|b| (b[k] - b[k - 1]).norm() > 0.025 * size);
+            let more: Vec<f64> =
+                (1..gains.len()).filter(|k| far(*k)).map(|k| 0.5 * (gains[k - 1] + gains[k])).collect();
+            if more.is_empty() || gains.len() > 1500 {
+                break;
+            }
+            gains.extend(more);
+            gains.sort_by(f64::total_cmp);
+        }
+        Ok(gains)
+    }
+}

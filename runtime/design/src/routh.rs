@@ -1,0 +1,202 @@
+//! Routh's table, with its special cases.
+
+use crate::matrices::C;
+use crate::{Error, Polynomial};
+
+/// What happened in a row of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Special {
+    /// Nothing.
+    Regular,
+    /// The row began with zeros but was not zero: the row, shifted to its first entry and with the sign of the shift, was added
+    /// (Benidir and Picinbono, *Extended table for eliminating the singularities in Routh's array*, 1990), which needs no ε.
+    LeadingZero,
+    /// The row was zero: roots lie symmetric to the origin. The derivative of the polynomial of the row before takes its place.
+    ZeroRow,
+}
+
+/// Routh's table of a polynomial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Routh {
+    /// The rows, as they are used.
+    pub rows: Vec<Vec<f64>>,
+    /// What happened in each row.
+    pub special: Vec<Special>,
+    /// Roots with positive real part: sign changes in the first column.
+    pub right: usize,
+    /// Roots on the imaginary axis.
+    pub imaginary: usize,
+}
+
+/// Beside the terms that it comes from an entry below this is zero.
+const ZERO: f64 = 1e-12;
+
+impl Polynomial {
+    /// Routh's table.
+    ///
+    /// ```
+    /// use linkwork_design::Polynomial;
+    ///
+    /// // s³ + 2 s² + 3 s + 4 + K with K = 2: two roots on the axis, at ±i√3.
+    /// let table = Polynomial::new([1.0, 2.0, 3.0, 6.0]).routh()?;
+    /// assert_eq!((table.right, table.imaginary), (0, 2));
+    /// assert!(!table.is_stable());
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] for the polynomial zero, [`Error::NotFinite`].
+    pub fn routh(&self) -> Result<Routh, Error> {
+        if self.is_zero() {
+            return Err(Error::Range { what: "a table of the polynomial", value: 0.0 });
+        }
+        if !self.coefficients().iter().all(|c| c.is_finite()) {
+            return Err(Error::NotFinite { what: "the polynomial" });
+        }
+        let n = self.degree();
+        let c = self.coefficients();
+        let mut rows: Vec<Vec<f64>> = vec![c.iter().step_by(2).copied().collect()];
+        let mut special = vec![Special::Regular];
+        let mut symmetric_from = None;
+        for k in 1..=n {
+            let length = (n - k) / 2 + 1;
+            let above = rows[k - 1].clone();
+            let (mut row, sizes) = match k {
+                1 => {
+                    let row: Vec<f64> = c.iter().skip(1).step_by(2).copied().collect();
+                    let size = c.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    (row, vec![size; length])
+                }
+                _ => cross(&rows[k - 2], &above, length),
+            };
+            row.resize(length, 0.0);
+            for (x, size) in row.iter_mut().zip(sizes) {
+                if x.abs() <= ZERO * size && k > 1 {
+                    *x = 0.0;
+                }
+            }
+            let mut what = Special::Regular;
+            if row.iter().all(|x| *x == 0.0) {
+                // The row above is a polynomial of degree n − k + 1 in even or odd powers.
+                what = Special::ZeroRow;
+                symmetric_from.get_or_insert(k);
+                let degree = n - k + 1;
+                let slope = |(j, x): (usize, &f64)| x * degree.saturating_sub(2 * j) as f64;
+                row = above.iter().enumerate().map(slope).take(length).collect();
+            }
+            if row[0] == 0.0 {
+                what = if what == Special::Regular { Special::LeadingZero } else { what };
+                let zeros = row.iter().take_while(|x| **x == 0.0).count();
+                let sign = if zeros.is_multiple_of(2) { 1.0 } else { -1.0 };
+                let shifted: Vec<f64> = row.iter().skip(zeros).map(|x| sign * x).collect();
+                row.iter_mut().zip(shifted).for_each(|(x, s)| *x += s);
+            }
+            rows.push(row);
+            special.push(what);
+        }
+        let changes = |from: usize| {
+            let first: Vec<f64> = rows.iter().skip(from).map(|r| r[0]).collect();
+            first.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
+        };
+        let right = changes(0);
+        // Of the factor with symmetric roots as many are left as right; the others are on the axis.
+        let imaginary = symmetric_from.map_or(0, |k| (n + 1 - k) - 2 * changes(k - 1));
+        Ok(Routh { rows, special, right, imaginary })
+    }
+}
+
+fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
+    let of = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
+    let ratio = of(two, 0) / of(one, 0);
+    let terms = (0..length).map(|j| (of(two, j + 1), ratio * of(one, j + 1)));
+    terms.map(|(a, b)| (a - b, a.abs().max(b.abs()))).unzip()
+}
+
+impl Routh {
+    /// Whether all roots have negative real parts.
+    pub fn is_stable(&self) -> bool {
+        self.right == 0 && self.imaginary == 0
+    }
+}
+
+/// An open interval of gains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainRange {
+    /// Its lower end; may be minus infinity.
+    pub low: f64,
+    /// Its upper end; may be infinity.
+    pub high: f64,
+}
+
+impl Polynomial {
+    /// The gains `k` for which this polynomial plus `k` times another has roots with negative real parts alone, as intervals.
+    ///
+    /// ```
+    /// use linkwork_design::Polynomial;
+    ///
+    /// let ranges = Polynomial::new([1.0, 2.0, 3.0, 4.0]).stable_gains(&Polynomial::constant(1.0))?;
+    /// assert!((ranges[0].low + 4.0).abs() < 1e-12 && (ranges[0].high - 2.0).abs() < 1e-12);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`].
+    pub fn stable_gains(&self, other: &Self) -> Result<Vec<GainRange>, Error> {
+        let mut critical = self.critical_gains(other)?;
+        critical.sort_by(f64::total_cmp);
+        critical.dedup_by(|a, b| (*a - *b).abs() <= 1e-10 * (1.0 + b.abs()));
+        let mut ends = vec![f64::NEG_INFINITY];
+        ends.extend(critical);
+        ends.push(f64::INFINITY);
+        let mut ranges: Vec<GainRange> = Vec::new();
+        for pair in ends.windows(2) {
+            let (low, high) = (pair[0], pair[1]);
+            let inside = match (low.is_finite(), high.is_finite()) {
+                (true, true) => 0.5 * (low + high),
+                (true, false) => low + 1.0 + low.abs(),
+                (false, true) => high - 1.0 - high.abs(),
+                (false, false) => 0.0,
+            };
+            let polynomial = self + &other.scaled(inside);
+            if !polynomial.is_zero() && polynomial.routh()?.is_stable() {
+                ranges.push(GainRange { low, high });
+            }
+        }
+        Ok(ranges)
+    }
+
+    /// Gains at which a root is on the imaginary axis, or a leading coefficient vanishes: with `p(iω) q(−iω)` real.
+    fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
+        let mut found = Vec::new();
+        let mirrored = |p: &Self| {
+            let n = p.degree();
+            Self::new(
+                p.coefficients()
+                    .iter()
+                    .enumerate()
+                    .map(|(k, c)| if (n - k).is_multiple_of(2) { *c } else { -c }),
+            )
+        };
+        // Odd part of p(s) q(−s): zero on the axis where the quotient is real.
+        let (one, two) = (self * &mirrored(other), &mirrored(self) * other);
+        let odd = &one - &two;
+        let mut at = vec![C::new(0.0, 0.0)];
+        if !odd.is_zero() {
+            let size = odd.roots()?.iter().map(|r| r.norm()).fold(0.0, f64::max);
+            at.extend(odd.roots()?.into_iter().filter(|r| r.re.abs() <= 1e-6 * size && r.im > 0.0));
+        }
+        for s in at {
+            let s = C::new(0.0, s.im);
+            let k = -self.at(s) / other.at(s);
+            if k.re.is_finite() {
+                found.push(k.re);
+            }
+        }
+        if other.degree() >= self.degree() {
+            found.push(-self.coefficient(other.degree()) / other.leading());
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,326 @@
+//! Linear systems by their matrices.
+
+use crate::Error;
+use crate::matrices::{C, check, check_square, eigenvalues};
+use nalgebra::DMatrix;
+use std::fmt;
+
+/// A state, input or output: its name and unit.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Signal {
+    /// What it is called.
+    pub name: String,
+    /// Its unit; empty where none was said.
+    pub unit: String,
+}
+
+impl Signal {
+    /// A name with a unit.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
+    }
+}
+
+impl From<&str> for Signal {
+    fn from(name: &str) -> Self {
+        Self::new(name, "")
+    }
+}
+
+impl From<String> for Signal {
+    fn from(name: String) -> Self {
+        Self::new(name, "")
+    }
+}
+
+impl From<(&str, &str)> for Signal {
+    fn from((name, unit): (&str, &str)) -> Self {
+        Self::new(name, unit)
+    }
+}
+
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)?;
+        if self.unit.is_empty() { Ok(()) } else { write!(f, ", {}", self.unit) }
+    }
+}
+
+/// Which input or output is meant: by its place or by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port<'a> {
+    /// Counted from zero.
+    At(usize),
+    /// By name.
+    Named(&'a str),
+}
+
+impl From<usize> for Port<'_> {
+    fn from(at: usize) -> Self {
+        Self::At(at)
+    }
+}
+
+impl<'a> From<&'a str> for Port<'a> {
+    fn from(name: &'a str) -> Self {
+        Self::Named(name)
+    }
+}
+
+/// A linear system `ẋ = A x + B u`, `y = C x + D u`, or `x⁺ = A x + B u` from one period to the next, with the names and units of
+/// its states, inputs and outputs.
+///
+/// ```
+/// use linkwork_design::StateSpace;
+/// use nalgebra::dmatrix;
+///
+/// // A mass of 2 kg on a spring of 8 N/m.
+/// let oscillator = StateSpace::new(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 0.5], dmatrix![1.0, 0.0], dmatrix![0.0])?
+///     .with_states([("position", "m"), ("velocity", "m/s")])?
+///     .with_inputs([("push", "N")])?
+///     .with_outputs([("position", "m")])?;
+/// assert!((oscillator.poles()?[0].norm() - 2.0).abs() < 1e-15);
+/// assert!((oscillator.gain_at_rest()?[(0, 0)] - 1.0 / 8.0).abs() < 1e-15);
+/// # Ok::<(), linkwork_design::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateSpace {
+    pub(crate) a: DMatrix<f64>,
+    pub(crate) b: DMatrix<f64>,
+    pub(crate) c: DMatrix<f64>,
+    pub(crate) d: DMatrix<f64>,
+    pub(crate) states: Vec<Signal>,
+    pub(crate) inputs: Vec<Signal>,
+    pub(crate) outputs: Vec<Signal>,
+    pub(crate) period: Option<f64>,
+}
+
+fn numbered(letter: char, n: usize) -> Vec<Signal> {
+    (1..=n).map(|k| Signal::from(format!("{letter}{k}"))).collect()
+}
+
+impl StateSpace {
+    /// A continuous system of four matrices. Its signals are called x1, u1, y1 and so on.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] and [`Error::NotFinite`] name the matrix.
+    pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, Error> {
+        let n = check_square("A", &a)?;
+        check("B", &b, n, b.ncols())?;
+        check("C", &c, c.nrows(), n)?;
+        check("D", &d, c.nrows(), b.ncols())?;
+        let (states, inputs, outputs) =
+            (numbered('x', n), numbered('u', b.ncols()), numbered('y', c.nrows()));
+        Ok(Self { a, b, c, d, states, inputs, outputs, period: None })
+    }
+
+    /// A system without states: `y = D u`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`].
+    pub fn gain(d: DMatrix<f64>) -> Result<Self, Error> {
+        let (p, m) = d.shape();
+        Self::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, m), DMatrix::zeros(p, 0), d)
+    }
+
+    /// Discrete, with a period in s: `A` leads from one instant to the next.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Period`] unless it is positive and finite.
+    pub fn with_period(mut self, period: f64) -> Result<Self, Error> {
+        if !(period > 0.0 && period.is_finite()) {
+            return Err(Error::Period { period });
+        }
+        self.period = Some(period);
+        Ok(self)
+    }
+
+    /// Names (and units) of the states.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for another number of them.
+    pub fn with_states<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
+        self.states = named("states", self.a.nrows(), names)?;
+        Ok(self)
+    }
+
+    /// Names (and units) of the inputs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for another number of them.
+    pub fn with_inputs<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
+        self.inputs = named("inputs", self.b.ncols(), names)?;
+        Ok(self)
+    }
+
+    /// Names (and units) of the outputs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Count`] for another number of them.
+    pub fn with_outputs<S: Into<Signal>>(
+        mut self,
+        names: impl IntoIterator<Item = S>,
+    ) -> Result<Self, Error> {
+        self.outputs = named("outputs", self.c.nrows(), names)?;
+        Ok(self)
+    }
+
+    /// `A`.
+    pub fn a(&self) -> &DMatrix<f64> {
+        &self.a
+    }
+
+    /// `B`.
+    pub fn b(&self) -> &DMatrix<f64> {
+        &self.b
+    }
+
+    /// `C`.
+    pub fn c(&self) -> &DMatrix<f64> {
+        &self.c
+    }
+
+    /// `D`.
+    pub fn d(&self) -> &DMatrix<f64> {
+        &self.d
+    }
+
+    /// The states in order.
+    pub fn states(&self) -> &[Signal] {
+        &self.states
+    }
+
+    /// The inputs in order.
+    pub fn inputs(&self) -> &[Signal] {
+        &self.inputs
+    }
+
+    /// The outputs in order.
+    pub fn outputs(&self) -> &[Signal] {
+        &self.outputs
+    }
+
+    /// The period of a discrete system, s; `None` of a continuous one.
+    pub fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// How many states there are.
+    pub fn order(&self) -> usize {
+        self.a.nrows()
+    }
+
+    /// The eigenvalues of `A`, sorted by real part, in conjugate pairs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`] if the QR algorithm does not settle.
+    pub fn poles(&self) -> Result<Vec<C>, Error> {
+        eigenvalues(&self.a)
+    }
+
+    /// Whether every pole is left of the imaginary axis, or inside the unit circle of a discrete system.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`poles`](Self::poles).
+    pub fn is_stable(&self) -> Result<bool, Error> {
+        Ok(self.unstable_pole()?.is_none())
+    }
+
+    /// The pole farthest from stability, if one is not stable.
+    pub(crate) fn unstable_pole(&self) -> Result<Option<C>, Error> {
+        let excess = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
+        let worst = self.poles()?.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)));
+        Ok(worst.filter(|p| excess(p) >= 0.0))
+    }
+
+    /// Refuses a system that is not stable.
+    pub(crate) fn check_stable(&self) -> Result<(), Error> {
+        self.unstable_pole()?.map_or(Ok(()), |pole| Err(Error::Unstable { pole }))
+    }
+
+    /// What constant inputs lead to: `D − C A⁻¹ B`, or `D + C (I − A)⁻¹ B`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] with a pole at rest.
+    pub fn gain_at_rest(&self) -> Result<DMatrix<f64>, Error> {
+        let n = self.order();
+        let left = match self.period {
+            Some(_) => DMatrix::identity(n, n) - &self.a,
+            None => -&self.a,
+        };
+        let what = "A at rest";
+        let x = crate::matrices::solve(what, &left, &self.b)?;
+        if crate::matrices::rank(&left, 0.0)? < n {
+            return Err(Error::Singular { what });
+        }
+        Ok(&self.d + &self.c * x)
+    }
+
+    /// The place of an input.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn input_index<'a>(&self, input: impl Into<Port<'a>>) -> Result<usize, Error> {
+        place("input", &self.inputs, input.into())
+    }
+
+    /// The place of an output.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn output_index<'a>(&self, output: impl Into<Port<'a>>) -> Result<usize, Error> {
+        place("output", &self.outputs, output.into())
+    }
+}
+
+fn named<S: Into<Signal>>(
+    what: &'static str,
+    expected: usize,
+    names: impl IntoIterator<Item = S>,
+) -> Result<Vec<Signal>, Error> {
+    let signals: Vec<Signal> = names.into_iter().map(Into::into).collect();
+    if signals.len() == expected {
+        Ok(signals)
+    } else {
+        Err(Error::Count { what, expected, found: signals.len() })
+    }
+}
+
+fn place(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Result<usize, Error> {
+    let (found, name) = match port {
+        Port::At(k) => (Some(k).filter(|k| *k < signals.len()), k.to_string()),
+        Port::Named(name) => (signals.iter().position(|s| s.name == name), name.to_owned()),
+    };
+    found.ok_or_else(|| {
+        let known = signals.iter().map(|s| s.name.clone()).collect();
+        Error::Unknown { kind, name, known }
+    })
+}
+
+impl fmt::Display for StateSpace {
+    /// The matrices with the names of their rows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |signals: &[Signal]| signals.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(", ");
+        match self.period {
+            Some(period) => writeln!(f, "x⁺ = A x + B u, y = C x + D u, every {period} s")?,
+            None => writeln!(f, "ẋ = A x + B u, y = C x + D u")?,
+        }
+        writeln!(f, "x: {}\nu: {}\ny: {}", list(&self.states), list(&self.inputs), list(&self.outputs))?;
+        let matrices = [("A", &self.a), ("B", &self.b), ("C", &self.c), ("D", &self.d)];
+        for (name, matrix) in matrices.into_iter().filter(|(_, m)| !m.is_empty()) {
+            write!(f, "{name} ={matrix}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,382 @@
+//! Equations of a steady state: unknowns, conditions, and their derivatives.
+
+use super::Trim;
+use crate::Error;
+use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+
+/// Constraints and their derivatives.
+pub struct Bounds {
+    pub names: &'static [&'static str],
+    /// `φ`, of the first rows.
+    pub residuals: DVector<f64>,
+    /// `J v + …`, of all rows.
+    pub rates: DVector<f64>,
+    /// `J`.
+    pub jacobian: DMatrix<f64>,
+    /// Derivatives of the rates by the configuration.
+    pub rates_by_q: DMatrix<f64>,
+}
+
+/// Outputs and their derivatives by configuration, velocity, acceleration and inputs.
+pub struct Measured {
+    pub names: Vec<&'static str>,
+    pub values: DVector<f64>,
+    pub by_q: DMatrix<f64>,
+    pub by_v: DMatrix<f64>,
+    pub by_a: DMatrix<f64>,
+    pub by_u: DMatrix<f64>,
+}
+
+/// A step of central differences: what rounding and curvature make of the slope is least there.
+const STEP: f64 = 6e-6;
+
+pub fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
+    DMatrix::from_column_slice(R, C, m.as_slice())
+}
+
+fn vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
+    DVector::from_column_slice(x.as_slice())
+}
+
+pub fn unit<const N: usize>(k: usize, size: f64) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| if i == k { size } else { 0.0 })
+}
+
+/// The constraints of a mechanism. How rates change with the configuration, is not generated for them one by one: central
+/// differences, which cost Newton's method no digits.
+pub fn bounds<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    t: f64,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+) -> Bounds
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
+{
+    let mut rates_by_q = DMatrix::zeros(NC, NV);
+    for j in 0..NV {
+        let at = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
+        rates_by_q.set_column(j, &vector(&((at(STEP) - at(-STEP)) / (2.0 * STEP))));
+    }
+    Bounds {
+        names: &const { M::CONSTRAINTS },
+        residuals: vector(&m.constraint_residuals(t, q)),
+        rates: vector(&m.constraint_rates(t, q, v)),
+        jacobian: dynamic(&m.constraint_jacobian(t, q)),
+        rates_by_q,
+    }
+}
+
+pub fn measured<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(
+    m: &M,
+    t: f64,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    a: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) -> Measured
+where
+    M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+{
+    let by = m.output_derivatives(t, q, v, a, u);
+    Measured {
+        names: M::OUTPUTS.to_vec(),
+        values: vector(&m.outputs(t, q, v, a, u)),
+        by_q: dynamic(&by.by_q),
+        by_v: dynamic(&by.by_v),
+        by_a: dynamic(&by.by_a),
+        by_u: dynamic(&by.by_u),
+    }
+}
+
+/// One number of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    Coordinate(usize),
+    Speed(usize),
+    Input(usize),
+    /// The force that holds a coordinate.
+    Holding(usize),
+    Parameter(usize),
+}
+
+/// A state, with the forces that hold coordinates.
+#[derive(Clone, Debug)]
+pub struct Place<const NQ: usize, const NV: usize, const NU: usize> {
+    pub q: SVector<f64, NQ>,
+    pub v: SVector<f64, NV>,
+    pub u: SVector<f64, NU>,
+    pub holding: SVector<f64, NV>,
+    pub parameters: Vec<f64>,
+}
+
+/// Accelerations at a place, and their derivatives; those by `q` and `v` are with inputs held.
+pub struct Accelerated<const NV: usize, const NU: usize> {
+    pub tau: SVector<f64, NV>,
+    pub value: SVector<f64, NV>,
+    pub by_q: SMatrix<f64, NV, NV>,
+    pub by_v: SMatrix<f64, NV, NV>,
+    pub by_force: SMatrix<f64, NV, NV>,
+    pub by_u: SMatrix<f64, NV, NU>,
+    /// How large changes of accelerations are that count, beside which others are rounding: of the accelerations that constraints
+    /// take away, and of the largest change.
+    scale: f64,
+}
+
+/// Conditions at a place.
+pub struct Equations {
+    /// What is left of them.
+    pub residuals: DVector<f64>,
+    /// How that changes with the unknowns.
+    pub jacobian: DMatrix<f64>,
+    /// How much each would have to change with an unknown to be told from rounding.
+    pub floors: Vec<f64>,
+}
+
+/// The part of accelerations that constraints take away, as a change by one radian.
+const TAKEN: f64 = 1e-3;
+
+/// The part of other changes.
+const BESIDE: f64 = 1e-6;
+
+/// Names as indices.
+pub struct Problem<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> {
+    pub trim: &'a Trim<'m, M, NQ, NV, NU>,
+    pub unknowns: Vec<Unknown>,
+    pub held: Vec<usize>,
+    /// Entries of the acceleration with their values; none where they are open.
+    targets: Vec<Option<f64>>,
+    /// Entries of the outputs with their values.
+    outputs: Vec<(usize, f64)>,
+}
+
+fn index(kind: &'static str, name: &str, known: &[&str]) -> Result<usize, Error> {
+    known.iter().position(|k| *k == name).ok_or_else(|| Error::Unknown {
+        kind,
+        name: name.to_string(),
+        known: known.iter().map(ToString::to_string).collect(),
+    })
+}
+
+fn indices(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<usize>, Error> {
+    names.iter().map(|name| index(kind, name, known)).collect()
+}
+
+impl<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> Problem<'a, 'm, M, NQ, NV, NU>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
+        let held = indices("coordinate", &trim.held, &M::VELOCITIES)?;
+        let fixed = indices("coordinate", &trim.fixed, &M::VELOCITIES)?;
+        let among = match &trim.coordinates {
+            Some(names) => indices("coordinate", names, &M::VELOCITIES)?,
+            None => (0..NV).collect(),
+        };
+        let is_free = |k: &usize| !held.contains(k) && !fixed.contains(k);
+        let first_order = NV.saturating_sub(M::FIRST_ORDER)..NV;
+        let places = 0..first_order.start;
+        let mut unknowns: Vec<Unknown> =
+            places.filter(|k| among.contains(k) && is_free(k)).map(Unknown::Coordinate).collect();
+        let mut speeds = indices("speed", &trim.speeds, &M::VELOCITIES)?;
+        let states = first_order.filter(|k| is_free(k) && !speeds.contains(k)).collect::<Vec<_>>();
+        speeds.extend(states);
+        unknowns.extend(speeds.into_iter().map(Unknown::Speed));
+        unknowns.extend(indices("input", &trim.inputs, &M::INPUTS)?.into_iter().map(Unknown::Input));
+        unknowns.extend(held.iter().copied().map(Unknown::Holding));
+        unknowns.extend((0..trim.parameters.len()).map(Unknown::Parameter));
+        let mut targets = vec![Some(0.0); NV];
+        for (name, value) in &trim.accelerations {
+            targets[index("velocity", name, &M::VELOCITIES)?] = *value;
+        }
+        let mut problem = Self { trim, unknowns, held, targets, outputs: Vec::new() };
+        if let Some(outputs) = trim.outputs {
+            let start = problem.start();
+            let zero = SVector::zeros();
+            let seen =
+                trim.with(&start.parameters, |m| outputs(m, trim.t, &start.q, &start.v, &zero, &start.u));
+            for (name, value) in &trim.conditions {
+                problem.outputs.push((index("output", name, &seen.names)?, *value));
+            }
+        }
+        Ok(problem)
+    }
+
+    pub fn start(&self) -> Place<NQ, NV, NU> {
+        let Trim { q, v, u, parameters, .. } = self.trim;
+        let parameters = parameters.iter().map(|(_, guess)| *guess).collect();
+        Place { q: *q, v: *v, u: *u, holding: SVector::zeros(), parameters }
+    }
+
+    /// The place that a change of the unknowns leads to.
+    pub fn moved(&self, from: &Place<NQ, NV, NU>, by: &DVector<f64>) -> Place<NQ, NV, NU> {
+        let (mut to, mut dq) = (from.clone(), SVector::zeros());
+        for (unknown, by) in self.unknowns.iter().zip(by.iter()) {
+            match *unknown {
+                Unknown::Coordinate(k) => dq[k] = *by,
+                Unknown::Speed(k) => to.v[k] += by,
+                Unknown::Input(k) => to.u[k] += by,
+                Unknown::Holding(k) => to.holding[k] += by,
+                Unknown::Parameter(k) => to.parameters[k] += by,
+            }
+        }
+        to.q = self.trim.with(&to.parameters, |m| m.integrate(&from.q, &dq));
+        to
+    }
+
+    /// What is an unknown's size where it counts as large.
+    pub fn size(&self, place: &Place<NQ, NV, NU>, unknown: Unknown) -> f64 {
+        match unknown {
+            Unknown::Coordinate(_) => 1.0,
+            Unknown::Speed(k) => place.v[k].abs().max(1.0),
+            Unknown::Input(k) => place.u[k].abs().max(1.0),
+            Unknown::Holding(k) => place.holding[k].abs().max(1.0),
+            Unknown::Parameter(k) => place.parameters[k].abs().max(f64::MIN_POSITIVE),
+        }
+    }
+
+    pub fn name(&self, unknown: Unknown) -> String {
+        match unknown {
+            Unknown::Coordinate(k) => M::VELOCITIES[k].to_string(),
+            Unknown::Speed(k) => format!("{}'", M::VELOCITIES[k]),
+            Unknown::Input(k) => M::INPUTS[k].to_string(),
+            Unknown::Holding(k) => format!("the force that holds {}", M::VELOCITIES[k]),
+            Unknown::Parameter(k) => self.trim.parameters[k].0.clone(),
+        }
+    }
+
+    /// Names of the conditions, in the order of [`equations`](Self::equations).
+    pub fn conditions(&self, place: &Place<NQ, NV, NU>) -> Vec<String> {
+        let wanted = (0..NV).filter(|k| self.targets[*k].is_some());
+        let mut names: Vec<String> = wanted.map(|k| format!("{}''", M::VELOCITIES[k])).collect();
+        if let Some(bounds) = self.bounds(place) {
+            names.extend(bounds.names.iter().take(bounds.residuals.len()).map(ToString::to_string));
+            names.extend(bounds.names.iter().map(|name| format!("{name}'")));
+        }
+        names.extend(self.trim.conditions.iter().map(|(name, _)| name.clone()));
+        names
+    }
+
+    pub fn bounds(&self, place: &Place<NQ, NV, NU>) -> Option<Bounds> {
+        let (bounds, _) = self.trim.constraints?;
+        Some(self.trim.with(&place.parameters, |m| bounds(m, self.trim.t, &place.q, &place.v)))
+    }
+
+    pub fn motion(&self, place: &Place<NQ, NV, NU>) -> Result<Accelerated<NV, NU>, Error> {
+        let (t, Place { q, v, u, holding, parameters }) = (self.trim.t, place);
+        self.trim.with(parameters, |m| {
+            let tau = Rheonomic::generalized_forces(m, t, q, v, u) + holding;
+            let value = Rheonomic::try_forward_dynamics(m, t, q, v, &tau)?;
+            let (by_q, by_v, by_force) = RheonomicDerivatives::forward_dynamics_derivatives(m, t, q, v, &tau);
+            let (force_by_q, force_by_v, force_by_u) =
+                RheonomicDerivatives::generalized_forces_derivatives(m, t, q, v, u);
+            let (by_q, by_v) = (by_q + by_force * force_by_q, by_v + by_force * force_by_v);
+            let by_u = by_force * force_by_u;
+            // The accelerations without constraints; none are taken where bodies without mass need them.
+            let push = vector(&(tau - Rheonomic::bias_forces(m, t, q, v)));
+            let free =
+                dynamic(&Rheonomic::mass_matrix(m, t, q)).cholesky().map_or(0.0, |c| c.solve(&push).amax());
+            let free = if M::CONSTRAINED && free.is_finite() { free } else { 0.0 };
+            let scale = TAKEN * free + BESIDE * by_q.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            Ok(Accelerated { tau, value, by_q, by_v, by_force, by_u, scale })
+        })
+    }
+
+    /// What is left of the conditions, and how it changes with the unknowns.
+    pub fn equations(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
+        let mut equations = self.generated(place)?;
+        for (j, unknown) in self.unknowns.iter().enumerate() {
+            let Unknown::Parameter(k) = *unknown else { continue };
+            let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
+            let at = |h: f64| {
+                let mut place = place.clone();
+                place.parameters[k] += h;
+                Ok::<_, Error>(self.generated(&place)?.residuals)
+            };
+            equations.jacobian.set_column(j, &((at(step)? - at(-step)?) / (2.0 * step)));
+        }
+        Ok(equations)
+    }
+
+    /// Without the columns of parameters.
+    fn generated(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
+        let motion = self.motion(place)?;
+        let mut rows: Vec<Row> = Vec::new();
+        for (i, target) in self.targets.iter().enumerate() {
+            let Some(target) = target else { continue };
+            let by = self.row(|unknown| entry(&motion, i, unknown));
+            rows.push(Row { residual: motion.value[i] - target, by, floor: motion.scale });
+        }
+        if let Some(bounds) = self.bounds(place) {
+            self.push_bounds(&bounds, &mut rows);
+        }
+        if let Some(outputs) = self.trim.outputs {
+            let Place { q, v, u, parameters, .. } = place;
+            let seen = self.trim.with(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
+            self.push_outputs(&motion, &seen, &mut rows);
+        }
+        let jacobian = DMatrix::from_fn(rows.len(), self.unknowns.len(), |i, j| rows[i].by[j]);
+        let residuals = DVector::from_fn(rows.len(), |i, _| rows[i].residual);
+        Ok(Equations { residuals, jacobian, floors: rows.iter().map(|row| row.floor).collect() })
+    }
+
+    fn push_bounds(&self, bounds: &Bounds, rows: &mut Vec<Row>) {
+        let floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
+        for (i, residual) in bounds.residuals.iter().enumerate() {
+            let by = |unknown| match unknown {
+                Unknown::Coordinate(k) => bounds.jacobian[(i, k)],
+                _ => 0.0,
+            };
+            rows.push(Row { residual: *residual, by: self.row(by), floor: floor(i) });
+        }
+        for (i, rate) in bounds.rates.iter().enumerate() {
+            let by = |unknown| match unknown {
+                Unknown::Coordinate(k) => bounds.rates_by_q[(i, k)],
+                Unknown::Speed(k) => bounds.jacobian[(i, k)],
+                _ => 0.0,
+            };
+            rows.push(Row { residual: *rate, by: self.row(by), floor: floor(i) });
+        }
+    }
+
+    fn push_outputs(&self, motion: &Accelerated<NV, NU>, seen: &Measured, rows: &mut Vec<Row>) {
+        for (i, value) in &self.outputs {
+            let by = |unknown| {
+                let direct = match unknown {
+                    Unknown::Coordinate(k) => seen.by_q[(*i, k)],
+                    Unknown::Speed(k) => seen.by_v[(*i, k)],
+                    Unknown::Input(k) => seen.by_u[(*i, k)],
+                    Unknown::Holding(_) | Unknown::Parameter(_) => 0.0,
+                };
+                (0..NV).fold(direct, |sum, a| sum + seen.by_a[(*i, a)] * entry(motion, a, unknown))
+            };
+            let all = [&seen.by_q, &seen.by_v, &seen.by_u].map(|by| by.row(*i).norm());
+            let floor = BESIDE * all.into_iter().fold(0.0, f64::max);
+            rows.push(Row { residual: seen.values[*i] - value, by: self.row(by), floor });
+        }
+    }
+
+    fn row(&self, by: impl Fn(Unknown) -> f64) -> Vec<f64> {
+        self.unknowns.iter().map(|unknown| by(*unknown)).collect()
+    }
+}
+
+/// A condition.
+struct Row {
+    residual: f64,
+    /// How it changes with the unknowns.
+    by: Vec<f64>,
+    floor: f64,
+}
+
+/// How an acceleration changes with an unknown.
+fn entry<const NV: usize, const NU: usize>(motion: &Accelerated<NV, NU>, i: usize, unknown: Unknown) -> f64 {
+    match unknown {
+        Unknown::Coordinate(k) => motion.by_q[(i, k)],
+        Unknown::Speed(k) => motion.by_v[(i, k)],
+        Unknown::Input(k) => motion.by_u[(i, k)],
+        Unknown::Holding(k) => motion.by_force[(i, k)],
+        Unknown::Parameter(_) => 0.0,
+    }
+}

@@ -1,0 +1,222 @@
+//! Levenberg–Marquardt steps on the tangent space.
+
+use super::problem::{Equations, Place, Problem, Unknown};
+use super::{SteadyState, Trim};
+use crate::Error;
+use linkwork::{Rheonomic, RheonomicDerivatives};
+use nalgebra::{DMatrix, DVector};
+
+/// Steps of unknowns below this, beside their size, are rounding.
+const ENOUGH: f64 = 1e-14;
+
+/// What may be left of conditions, by what they change with unknowns of size one.
+const LEFT: f64 = 1e-9;
+
+/// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a double root the place
+/// is known to half of the digits.
+const SINGULAR: f64 = 1e-7;
+
+/// Unknowns whose changes count for less than this, beside others, have no influence but rounding.
+const WITHOUT_INFLUENCE: f64 = 1e-8;
+
+/// The longest step of a coordinate, rad or m: an angle that goes farther has lost its guess.
+const LONGEST: f64 = 1.0;
+
+/// Damping that leaves no step.
+const DAMPED: f64 = 1e20;
+
+/// Scales of conditions and unknowns: the largest norms that rows and columns have had.
+struct Scales {
+    rows: Vec<f64>,
+    columns: Vec<f64>,
+}
+
+impl Scales {
+    fn update(&mut self, equations: &Equations, sizes: &[f64]) {
+        let Equations { jacobian, floors, .. } = equations;
+        for ((scale, row), floor) in self.rows.iter_mut().zip(jacobian.row_iter()).zip(floors) {
+            let norm = row.iter().zip(sizes).map(|(x, size)| (x * size).powi(2)).sum::<f64>().sqrt();
+            *scale = scale.max(norm).max(*floor);
+        }
+        let weights: Vec<f64> = (0..self.rows.len()).map(|k| self.weight(k)).collect();
+        for (scale, column) in self.columns.iter_mut().zip(jacobian.column_iter()) {
+            let norm = column.iter().zip(&weights).map(|(x, w)| (x * w).powi(2)).sum::<f64>().sqrt();
+            *scale = scale.max(norm);
+        }
+        let most = self.columns.iter().zip(sizes).map(|(norm, size)| norm * size).fold(0.0, f64::max);
+        for (scale, size) in self.columns.iter_mut().zip(sizes) {
+            *scale = scale.max(WITHOUT_INFLUENCE * most / size);
+        }
+    }
+
+    /// What a condition is multiplied by.
+    fn weight(&self, row: usize) -> f64 {
+        if self.rows[row] > 0.0 { 1.0 / self.rows[row] } else { 1.0 }
+    }
+
+    fn weighted(&self, residuals: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(residuals.len(), |i, _| residuals[i] * self.weight(i))
+    }
+
+    /// The matrix for weighted conditions and unknowns in units of their columns.
+    fn scaled(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+            jacobian[(i, j)] * self.weight(i) / self.column(j)
+        })
+    }
+
+    fn column(&self, j: usize) -> f64 {
+        if self.columns[j] > 0.0 { self.columns[j] } else { 1.0 }
+    }
+}
+
+/// The step of least squares `|A x + r|² + μ |x|²`.
+fn damped(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
+    let (rows, columns) = a.shape();
+    let mut stacked = DMatrix::zeros(rows + columns, columns);
+    stacked.view_mut((0, 0), (rows, columns)).copy_from(a);
+    stacked.view_mut((rows, 0), (columns, columns)).fill_diagonal(mu.sqrt());
+    let mut right = DVector::zeros(rows + columns);
+    right.rows_mut(0, rows).copy_from(&-r);
+    let qr = stacked.qr();
+    qr.r().solve_upper_triangular(&(qr.q().transpose() * right)).filter(|x| x.iter().all(|x| x.is_finite()))
+}
+
+/// Where the iteration has ended.
+struct Ended<const NQ: usize, const NV: usize, const NU: usize> {
+    place: Place<NQ, NV, NU>,
+    scales: Scales,
+    equations: Equations,
+    iterations: usize,
+}
+
+pub fn find<M, const NQ: usize, const NV: usize, const NU: usize>(
+    trim: &Trim<'_, M, NQ, NV, NU>,
+) -> Result<SteadyState<NQ, NV, NU>, Error>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let problem = Problem::new(trim)?;
+    let ended = descend(&problem)?;
+    let Ended { place, scales, equations: Equations { residuals, jacobian, .. }, iterations } = &ended;
+    let left = scales.weighted(residuals);
+    let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((row, _)) = worst.filter(|(_, left)| left.abs() > LEFT) {
+        return Err(Error::NoSteadyState {
+            condition: problem.conditions(place).swap_remove(row),
+            residual: residuals[row],
+            conditions: residuals.len(),
+            unknowns: problem.unknowns.len(),
+            place: named(&problem, place),
+        });
+    }
+    let open = open_directions(&problem, &scales.scaled(jacobian));
+    if !trim.nearest && !open.is_empty() {
+        return Err(Error::Undetermined { unknowns: open, place: named(&problem, place) });
+    }
+    let motion = problem.motion(place)?;
+    let multipliers = trim.constraints.map_or(Vec::new(), |(_, multipliers)| {
+        trim.with(&place.parameters, |m| multipliers(m, trim.t, &place.q, &place.v, &motion.tau))
+    });
+    let Place { q, v, u, holding, parameters } = ended.place.clone();
+    let holding = problem.held.iter().map(|k| (M::VELOCITIES[*k].to_string(), holding[*k])).collect();
+    let (acceleration, iterations) = (motion.value, *iterations);
+    let residual = left.amax();
+    Ok(SteadyState { q, v, u, acceleration, parameters, holding, multipliers, iterations, residual })
+}
+
+fn named<M, const NQ: usize, const NV: usize, const NU: usize>(
+    problem: &Problem<'_, '_, M, NQ, NV, NU>,
+    place: &Place<NQ, NV, NU>,
+) -> Vec<(String, f64)>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let mut all: Vec<(String, f64)> =
+        M::CONFIGURATION.iter().zip(place.q.iter()).map(|(name, x)| (name.to_string(), *x)).collect();
+    for unknown in &problem.unknowns {
+        let value = match *unknown {
+            Unknown::Coordinate(_) => continue,
+            Unknown::Speed(k) => place.v[k],
+            Unknown::Input(k) => place.u[k],
+            Unknown::Holding(k) => place.holding[k],
+            Unknown::Parameter(k) => place.parameters[k],
+        };
+        all.push((problem.name(*unknown), value));
+    }
+    all
+}
+
+fn descend<M, const NQ: usize, const NV: usize, const NU: usize>(
+    problem: &Problem<'_, '_, M, NQ, NV, NU>,
+) -> Result<Ended<NQ, NV, NU>, Error>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let mut place = problem.start();
+    let mut equations = problem.equations(&place)?;
+    let is_finite = equations.residuals.iter().chain(equations.jacobian.iter()).all(|x| x.is_finite());
+    if !is_finite {
+        return Err(Error::NotFinite { what: "the motion at the guess" });
+    }
+    let (rows, columns) = equations.jacobian.shape();
+    let mut scales = Scales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
+    let (mut mu, mut iterations) = (1e-4, 0);
+    while iterations < problem.trim.iterations && mu < DAMPED {
+        iterations += 1;
+        let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
+        scales.update(&equations, &sizes);
+        let (a, r) = (scales.scaled(&equations.jacobian), scales.weighted(&equations.residuals));
+        let Some(step) = damped(&a, &r, mu) else { break };
+        let mut change = DVector::from_fn(step.len(), |j, _| step[j] / scales.column(j));
+        let is_rounding = change.iter().zip(&sizes).all(|(x, size)| x.abs() <= ENOUGH * size);
+        if is_rounding {
+            break;
+        }
+        let longest = problem.unknowns.iter().zip(change.iter());
+        let longest = longest.filter(|(u, _)| matches!(u, Unknown::Coordinate(_)));
+        let longest = longest.map(|(_, x)| x.abs()).fold(0.0, f64::max);
+        let part = if longest > LONGEST { LONGEST / longest } else { 1.0 };
+        change *= part;
+        let next = problem.moved(&place, &change);
+        // Where friction jams or nothing finite follows, the step was too long.
+        let trial = problem.equations(&next).ok();
+        let size = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();
+        let better =
+            trial.map(|trial| (r.norm_squared() - size(&trial), trial)).filter(|(gained, _)| *gained > 0.0);
+        let Some((gained, trial)) = better else {
+            mu = (mu * 10.0).max(1e-12);
+            continue;
+        };
+        let foreseen = r.norm_squared() - (&a * &step * part + &r).norm_squared();
+        (place, equations) = (next, trial);
+        if gained > 0.75 * foreseen {
+            mu = (mu * 0.1).max(f64::MIN_POSITIVE);
+        } else if gained < 0.25 * foreseen {
+            mu *= 4.0;
+        }
+    }
+    let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
+    scales.update(&equations, &sizes);
+    Ok(Ended { place, scales, equations, iterations })
+}
+
+/// Names of the unknowns that can change together while all conditions hold.
+fn open_directions<M, const NQ: usize, const NV: usize, const NU: usize>(
+    problem: &Problem<'_, '_, M, NQ, NV, NU>,
+    scaled: &DMatrix<f64>,
+) -> Vec<String>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    /// Parts of a direction that count.
+    const PART: f64 = 0.1;
+    let (rows, columns) = scaled.shape();
+    // With as many rows as columns, so that no direction is missing.
+    let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
+    let svd = square.svd(false, true);
+    let Some(directions) = svd.v_t else { return Vec::new() };
+    let open = |k: &usize| svd.singular_values[*k] <= SINGULAR;
+    let takes_part = |j: &usize| (0..columns).filter(open).any(|k| directions[(k, *j)].abs() > PART);
+    (0..columns).filter(takes_part).map(|j| problem.name(problem.unknowns[j])).collect()
+}

@@ -1,0 +1,104 @@
+//! Stability by energy.
+
+use super::linear::{Linear, linear};
+use super::{SteadyState, Trim};
+use crate::Error;
+use crate::matrices::symmetric;
+use linkwork::{Rheonomic, RheonomicDerivatives};
+use nalgebra::DMatrix;
+
+/// Curvatures below this part of the largest count as zero.
+const FLAT: f64 = 1e-9;
+
+/// A skew part above this part of the stiffness is not rounding.
+const SKEW: f64 = 1e-7;
+
+/// How forces change about an equilibrium: the Hessian of the potential on the constraints, in independent coordinates.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Stiffness {
+    /// `K`: N/m, N·m/rad, N, by two displacements.
+    pub matrix: DMatrix<f64>,
+    /// The independent coordinates, by the names of their velocities.
+    pub coordinates: Vec<&'static str>,
+    /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², least first: squares of natural frequencies without damping.
+    pub curvatures: Vec<f64>,
+    /// The largest entry of the skew part of `K`, beside its largest entry: rounding where forces have a potential.
+    pub asymmetry: f64,
+}
+
+/// What the theorem of Lagrange and Dirichlet says of an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Verdict {
+    /// The potential has a minimum: stable, and with dissipation all the more.
+    Stable,
+    /// The potential falls in some direction: unstable without gyroscopic forces, and with complete dissipation whatever they are
+    /// (Kelvin and Chetaev).
+    Unstable,
+    /// The potential is flat in some direction: terms of higher order decide.
+    Undecided,
+    /// The forces have no potential: [modes](Trim::linear_system) decide.
+    NotConservative,
+}
+
+impl Stiffness {
+    /// The verdict. It holds if forces that depend on velocities take energy away or do no work (Merkin, *Introduction to the
+    /// Theory of Stability*, 1997, ch. 3 and 6).
+    pub fn verdict(&self) -> Verdict {
+        let most = self.curvatures.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let least = self.curvatures.first().copied().unwrap_or(f64::INFINITY);
+        if self.asymmetry > SKEW {
+            Verdict::NotConservative
+        } else if least > FLAT * most {
+            Verdict::Stable
+        } else if least < -FLAT * most {
+            Verdict::Unstable
+        } else {
+            Verdict::Undecided
+        }
+    }
+}
+
+impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, NU>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    /// The stiffness about an equilibrium, with inputs that stay: whether it is stable by its energy. Of a mechanism that turns
+    /// steadily, driven in time, it is that of the amended potential `U − T₀` (Meirovitch, *Methods of Analytical Dynamics*, 1970,
+    /// § 6.7).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoPotential`] in motion, and where velocities alone are constrained (rolling);
+    /// [`linear_system`](Trim::linear_system) decides there. [`Error::Indefinite`] where the mass matrix is not positive.
+    pub fn stiffness(&self, found: &SteadyState<NQ, NV, NU>) -> Result<Stiffness, Error> {
+        let Linear { coordinates, shape, by_q, mass, is_holonomic, .. } = linear(self, found)?;
+        if found.v.amax() > 0.0 {
+            return Err(Error::NoPotential { why: "the mechanism moves" });
+        }
+        if !is_holonomic {
+            return Err(Error::NoPotential { why: "velocities alone are constrained" });
+        }
+        // Zᵀ M P = Zᵀ for the accelerations P by forces, so that multipliers drop out.
+        let matrix = -(shape.transpose() * &mass * by_q * &shape);
+        let own = symmetric(&(shape.transpose() * mass * &shape));
+        let lower = own.cholesky().ok_or(Error::Indefinite { matrix: "M" })?.l();
+        let curvatures = curvatures(&lower, &matrix)?;
+        let size = matrix.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let skew = (&matrix - matrix.transpose()).iter().fold(0.0, |most: f64, x| most.max(x.abs())) / 2.0;
+        let asymmetry = if size > 0.0 { skew / size } else { 0.0 };
+        let coordinates = coordinates.iter().map(|k| M::VELOCITIES[*k]).collect();
+        Ok(Stiffness { matrix, coordinates, curvatures, asymmetry })
+    }
+}
+
+/// Eigenvalues of `L⁻¹ K L⁻ᵀ`, least first.
+fn curvatures(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
+    let singular = Error::Indefinite { matrix: "M" };
+    let half = lower.solve_lower_triangular(&symmetric(matrix)).ok_or(singular.clone())?;
+    let whole = lower.solve_lower_triangular(&half.transpose()).ok_or(singular)?;
+    let mut all: Vec<f64> = symmetric(&whole).symmetric_eigenvalues().iter().copied().collect();
+    all.sort_by(f64::total_cmp);
+    Ok(all)
+}

@@ -1,0 +1,203 @@
+//! Flight, lags, rotors and satellites from mechanisms to modes, against closed forms.
+
+use linkwork::prelude::*;
+use linkwork_design::StateSpace;
+use linkwork_design::mechanism::linear_system;
+use linkwork_design::steady::equilibrium;
+use nalgebra::Complex;
+
+#[track_caller]
+fn close(found: f64, expected: f64, relative: f64) {
+    let allowed = relative * expected.abs().max(1e-3);
+    assert!((found - expected).abs() <= allowed, "expected {expected}, found {found}");
+}
+
+#[track_caller]
+fn contains(system: &StateSpace, re: f64, im: f64) {
+    let (all, expected) = (system.poles().unwrap(), Complex::new(re, im));
+    assert!(
+        all.iter().any(|pole| (pole - expected).norm() <= 1e-10 * expected.norm()),
+        "expected {expected} among {all:?}"
+    );
+}
+
+/// A craft whose lift stands upright on its velocity, `k V²`, without drag (Lanchester 1908).
+#[mechanism(gravity = -g * y, derivatives)]
+struct Lanchester {
+    g: f64,
+    mass: f64,
+    k: f64,
+    #[joint(ground -> craft, along = (x, y))]
+    place: Stage,
+    #[particle(mass = mass)]
+    craft: Particle,
+    #[define(v(craft / ground / ground))]
+    velocity: Vector,
+    #[acts(on = craft, value = k * norm(velocity) * cross(ground.z, velocity))]
+    lift: Force,
+}
+
+#[test]
+fn phugoid_of_lanchester() {
+    let (g, u0, mass) = (9.81, 235.9, 2.9e5);
+    let craft = Lanchester { g, mass, k: mass * g / (u0 * u0) };
+    let system = linear_system(&craft, &[0.0, 0.0].into(), &[u0, 0.0].into(), &[].into()).unwrap();
+    let modes = system.modes().unwrap();
+    let phugoid = modes.iter().find(|mode| mode.pole.im > 0.0).unwrap();
+    let period = std::f64::consts::TAU / phugoid.damped_frequency();
+    close(period, 106.8375214181, 1e-11);
+    close(period, std::f64::consts::PI * 2.0_f64.sqrt() * u0 / g, 1e-13);
+    assert!(phugoid.pole.re.abs() < 1e-12);
+}
+
+/// A boat whose propeller follows the throttle late.
+#[mechanism(derivatives)]
+struct Boat {
+    mass: f64,
+    drag: f64,
+    lag: f64,
+    throttle: Input,
+    #[state(rate = (throttle - thrust) / lag)]
+    thrust: State,
+    #[body(mass = mass)]
+    hull: Body,
+    #[joint(ground -> hull, along = x)]
+    way: Sleeve,
+    #[acts(on = way, value = thrust - drag * rate(way) * rate(way))]
+    propeller: Force,
+}
+
+#[test]
+fn trim_finds_states_of_first_order() {
+    let boat = Boat { mass: 800.0, drag: 20.0, lag: 2.0, thrust: 0.0 };
+    let whole = boat.extended();
+    // At 5 m/s the drag is 500 N, which thrust and throttle have to be.
+    let trim = equilibrium(&whole).moving([5.0, 0.0].into()).fix(["way"]).inputs(["throttle"]);
+    let found = trim.find().unwrap();
+    close(found.v[1], 500.0, 1e-12);
+    close(found.u[0], 500.0, 1e-12);
+    let system = trim.linear_system(&found).unwrap();
+    let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
+    assert_eq!(names, ["way", "way'", "thrust"]);
+    let mut poles: Vec<f64> = system.poles().unwrap().iter().map(|pole| pole.re).collect();
+    poles.sort_by(f64::total_cmp);
+    // The lag, 2 k v / m of the drag, and the place, on which nothing depends.
+    close(poles[0], -0.5, 1e-12);
+    close(poles[1], -0.25, 1e-12);
+    assert!(poles[2].abs() < 1e-12);
+    let whole = linear_system(&at(&whole, 0.0), &found.q, &found.v, &found.u).unwrap();
+    assert!((whole.a() - system.a()).norm() < 1e-12 && (whole.b() - system.b()).norm() < 1e-12);
+}
+
+/// A disk on an elastic shaft that turns, with damping outside and within the shaft, which turns along.
+#[mechanism(derivatives)]
+struct DampedRotor {
+    mass: f64,
+    stiffness: f64,
+    outside: f64,
+    within: f64,
+    spin: f64,
+    #[joint(ground -> disk, along = (x, y))]
+    bow: Stage,
+    #[particle(mass = mass)]
+    disk: Particle,
+    #[define(r(disk / ground))]
+    place: Vector,
+    #[define(v(disk / ground / ground))]
+    velocity: Vector,
+    #[acts(on = disk, value = -stiffness * place - outside * velocity)]
+    shaft: Force,
+    #[acts(on = disk, value = -within * (velocity - cross(spin * ground.z, place)))]
+    friction: Force,
+}
+
+/// With `z = x + i y`: `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` (Genta, *Dynamics of Rotating Systems*, 2005, § 2.6); it whirls
+/// by itself above the rate `ω (1 + cₑ / cᵢ)`.
+#[test]
+fn rotor_with_internal_damping() {
+    let rotor = |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
+    let at = |spin| linear_system(&rotor(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap();
+    for spin in [0.0, 15.0, 40.0] {
+        let (m, c) = (3.0, 7.0);
+        let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
+        for pole in [(root - c) / (2.0 * m), (-root - c) / (2.0 * m)] {
+            contains(&at(spin), pole.re, pole.im);
+            contains(&at(spin), pole.re, -pole.im);
+        }
+    }
+    let threshold = (1200.0_f64 / 3.0).sqrt() * (1.0 + 2.0 / 5.0);
+    assert!(at(threshold * (1.0 - 1e-6)).is_stable().unwrap());
+    assert!(!at(threshold * (1.0 + 1e-6)).is_stable().unwrap());
+}
+
+/// A balanced rotor in gimbals.
+#[mechanism(derivatives)]
+struct Rotor {
+    axial: f64,
+    across: f64,
+    #[body]
+    outer: Body,
+    #[body]
+    inner: Body,
+    #[body(mass = 1, inertia = diagonal(across, across, axial))]
+    rotor: Body,
+    #[joint(ground -> outer, about = z)]
+    precession: Pin,
+    #[joint(outer -> inner, about = x)]
+    nutation: Pin,
+    #[joint(inner -> rotor, about = z)]
+    spin: Pin,
+}
+
+/// It nutates at `C n / A` (Magnus, *Kreisel*, 1971).
+#[test]
+fn gyroscope_nutates() {
+    let (rotor, n) = (Rotor { axial: 0.03, across: 0.02 }, 70.0);
+    let q = [0.0, std::f64::consts::FRAC_PI_2, 0.0].into();
+    let system = linear_system(&rotor, &q, &[0.0, 0.0, n].into(), &[].into()).unwrap();
+    contains(&system, 0.0, rotor.axial * n / rotor.across);
+    let other = system.poles().unwrap();
+    assert_eq!(other.iter().filter(|pole| pole.norm() < 1e-6).count(), 4);
+}
+
+/// A satellite on a circular orbit: x up, y forward, z across the orbit.
+#[mechanism(derivatives)]
+struct Satellite {
+    mu: f64,
+    radius: f64,
+    rate: f64,
+    ixx: f64,
+    iyy: f64,
+    izz: f64,
+    #[frame(ground, z(rate * t))]
+    orbit: Frame,
+    #[body(at = radius * orbit.x, frame = orbit)]
+    place: Body,
+    #[body(mass = 1, inertia = diagonal(ixx, iyy, izz))]
+    satellite: Body,
+    #[joint(place -> satellite)]
+    attitude: Ball,
+    #[acts(between = (ground, satellite), mu = mu)]
+    gravity: Gravity,
+}
+
+/// Pitch by `Ω √(3 (I_roll − I_yaw) / I_pitch)`, roll and yaw by the roots of `s⁴ + (1 + 3 k₁ + k₁ k₃) Ω² s² + 4 k₁ k₃ Ω⁴` with
+/// `k₁ = (I_pitch − I_yaw) / I_roll` and `k₃ = (I_pitch − I_roll) / I_yaw` (Hughes, *Spacecraft Attitude Dynamics*, 1986, § 9.2).
+#[test]
+fn gravity_holds_a_satellite() {
+    let (mu, radius) = (3.986004418e14_f64, 7.0e6_f64);
+    let rate = (mu / radius.powi(3)).sqrt();
+    let (yaw, roll, pitch) = (100.0, 420.0, 500.0);
+    let satellite = Satellite { mu, radius, rate, ixx: yaw, iyy: roll, izz: pitch };
+    for t in [0.0, 1234.5] {
+        let now = at(&satellite, t);
+        let system = linear_system(&now, &now.neutral(), &SVector::zeros(), &[].into()).unwrap();
+        contains(&system, 0.0, rate * (3.0 * (roll - yaw) / pitch).sqrt());
+        let (k1, k3) = ((pitch - yaw) / roll, (pitch - roll) / yaw);
+        let b = 1.0 + 3.0 * k1 + k1 * k3;
+        for sign in [1.0, -1.0] {
+            let squared = (b + sign * (b * b - 16.0 * k1 * k3).sqrt()) / 2.0;
+            contains(&system, 0.0, rate * squared.sqrt());
+        }
+    }
+}

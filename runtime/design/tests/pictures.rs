@@ -1,0 +1,53 @@
+//! Pictures are SVG that is well formed and says names and units; `PICTURES=folder` keeps them to be looked at.
+
+use linkwork_design::{StateSpace, TransferFunction, picture};
+use nalgebra::{DMatrix, dmatrix};
+
+fn keep(name: &str, svg: &str) {
+    if let Ok(folder) = std::env::var("PICTURES") {
+        std::fs::write(format!("{folder}/{name}.svg"), svg).unwrap();
+    }
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+}
+
+#[test]
+fn every_picture() {
+    let a = dmatrix![
+        -0.0558, -0.9968, 0.0802, 0.0415;
+        0.598, -0.115, -0.0318, 0.0;
+        -3.05, 0.388, -0.4650, 0.0;
+        0.0, 0.0805, 1.0, 0.0
+    ];
+    let b = dmatrix![0.00729, 0.0; -0.475, 0.00775; 0.153, 0.143; 0.0, 0.0];
+    let c = dmatrix![0.0, 1.0, 0.0, 0.0; 0.0, 0.0, 0.0, 1.0];
+    let names = [("sideslip", "rad"), ("yaw rate", "rad/s"), ("roll rate", "rad/s"), ("bank", "rad")];
+    let transport = StateSpace::new(a, b, c, DMatrix::zeros(2, 2)).unwrap().with_states(names).unwrap();
+    let transport = transport.with_inputs([("rudder", "rad"), ("aileron", "rad")]).unwrap();
+    let transport = transport.with_outputs([("yaw rate", "rad/s"), ("bank", "rad")]).unwrap();
+    let yaw = transport.channel("yaw rate", "rudder").unwrap();
+    let grid = yaw.natural_frequencies(400).unwrap();
+    let response = yaw.frequency_response("yaw rate", "rudder", &grid).unwrap();
+    let bode = picture::bode(&response).unwrap();
+    keep("bode", &bode);
+    for words in ["from rudder to yaw rate", "frequency, rad/s", "magnitude, dB", "phase, deg"] {
+        assert!(bode.contains(words), "{words}");
+    }
+    let open = TransferFunction::new([6.0], [1.0, 2.0, 3.0, 4.0]).unwrap().state_space().unwrap();
+    let response = open.frequency_response(0, 0, &open.natural_frequencies(400).unwrap()).unwrap();
+    keep("nyquist", &picture::nyquist(&response).unwrap());
+    let turned = yaw.series(&StateSpace::gain(dmatrix![-1.0]).unwrap()).unwrap();
+    let locus = turned.root_locus(&turned.locus_gains().unwrap()).unwrap();
+    keep("root_locus", &picture::root_locus(&locus).unwrap());
+    keep("poles_and_zeros", &picture::poles_and_zeros(&yaw).unwrap());
+    let held = yaw.discretize(0.5, linkwork_design::Hold::Zero).unwrap();
+    keep("poles_and_zeros_discrete", &picture::poles_and_zeros(&held).unwrap());
+    let motion =
+        transport.initial_response(&[0.05, 0.0, 0.0, 0.0], &transport.times(60.0, 601).unwrap()).unwrap();
+    let history = picture::history(&motion, "After a sideslip of 0.05 rad").unwrap();
+    assert!(history.contains("bank, rad"));
+    keep("history", &history);
+    let modes = picture::modes(&transport.modes().unwrap()).unwrap();
+    assert!(modes.contains("bank: takes part") && modes.contains("animateTransform"));
+    keep("modes", &modes);
+}

@@ -1,0 +1,512 @@
+//! Equilibria and steady motions against closed forms.
+
+use linkwork::prelude::*;
+use linkwork_design::Error;
+use linkwork_design::steady::{Verdict, constrained_equilibrium, equilibrium};
+use nalgebra::{DMatrix, DVector, Isometry3, Point3, UnitQuaternion, Vector3, vector};
+use std::f64::consts::PI;
+
+#[track_caller]
+fn close(found: f64, expected: f64, relative: f64) {
+    assert!(
+        (found - expected).abs() <= relative * expected.abs().max(1e-3),
+        "expected {expected}, found {found}"
+    );
+}
+
+/// A root between two places.
+fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let side = f(low) > 0.0;
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if (f(middle) > 0.0) == side { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Six links between two nails.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Chain {
+    span: f64,
+    #[body(mass = 0.3, com = 0.1 * x, inertia = rod(0.3, 0.2, x))]
+    link: [Body; 6],
+    #[joint(ground -> link[0], about = z)]
+    first: Pin,
+    #[joint(link[i].at(0.2 * x) -> link[i + 1], about = z)]
+    hinge: [Pin; 5],
+    #[joint(link[5].at(0.2 * x) -> ground.at(span * x), about = z)]
+    last: Pin,
+}
+
+/// The slopes of a chain of heavy links are `tan φₖ = (k − 5/2) w / H`, with the weight `w` of a link and such a pull `H` that
+/// the links reach from nail to nail.
+#[test]
+fn a_chain_hangs_in_its_catenary() {
+    let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
+    let slope = |pull: f64, k: usize| ((k as f64 - 2.5) * weight / pull).atan();
+    let reach = |pull: f64| (0..6).map(|k| 0.2 * slope(pull, k).cos()).sum::<f64>() - 0.9;
+    let pull = root(reach, 0.1, 100.0);
+    let problem = constrained_equilibrium(&chain).from([-1.0, 0.3, 0.3, 0.3, 0.3, 0.3].into());
+    let found = problem.find().unwrap();
+    let mut angle = 0.0;
+    for k in 0..6 {
+        angle += found.q[k];
+        close(angle, slope(pull, k), 1e-10);
+    }
+    let [(x, horizontal), (y, vertical)] = found.multipliers[..] else { panic!("two multipliers") };
+    assert_eq!((x, y), ("last.x", "last.y"));
+    close(horizontal.abs(), pull, 1e-10);
+    close(vertical.abs(), 3.0 * weight, 1e-10);
+    let stiffness = problem.stiffness(&found).unwrap();
+    assert_eq!((stiffness.verdict(), stiffness.curvatures.len()), (Verdict::Stable, 4));
+    let system = problem.linear_system(&found).unwrap();
+    for (curvature, mode) in stiffness.curvatures.iter().zip(system.modes().unwrap()) {
+        close(mode.frequency(), curvature.sqrt(), 1e-6);
+    }
+    // The arch is an equilibrium, too.
+    let arch = problem.from([1.0, -0.3, -0.3, -0.3, -0.3, -0.3].into());
+    let standing = arch.find().unwrap();
+    assert!((standing.q + found.q).amax() < 1e-9, "{} {}", standing.q, found.q);
+    assert_eq!(arch.stiffness(&standing).unwrap().verdict(), Verdict::Unstable);
+}
+
+/// Watt's governor: two balls on arms that hang from a turning shaft.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Governor {
+    #[body(mass = 1, inertia = diagonal(0.1, 0.1, 0.1))]
+    shaft: Body,
+    #[body]
+    left: Body,
+    #[body]
+    right: Body,
+    #[joint(ground -> shaft, about = z)]
+    turn: Pin,
+    #[joint(shaft -> left, about = y)]
+    hinge: Pin,
+    #[joint(shaft -> right, about = -y)]
+    other: Pin,
+    #[particle(mass = 2, at = left.at(-0.4 * z))]
+    ball: Particle,
+    #[particle(mass = 2, at = right.at(-0.4 * z))]
+    other_ball: Particle,
+}
+
+#[test]
+fn a_governor_opens_with_its_speed() {
+    let speed = 7.0_f64;
+    let lifted = (9.81 / (speed * speed * 0.4)).acos();
+    let problem = equilibrium(&Governor {}).fix(["turn"]).moving(vector![speed, 0.0, 0.0]);
+    let found = problem.from(vector![0.0, -0.8, -0.8]).find().unwrap();
+    close(found.q[1], -lifted, 1e-12);
+    close(found.q[2], -lifted, 1e-12);
+    // The other way round: at which speed are the arms lifted by one radian?
+    let problem = equilibrium(&Governor {}).from(vector![0.0, 1.0, 1.0]).coordinates([] as [&str; 0]);
+    let problem = problem.moving(vector![5.0, 0.0, 0.0]).speeds(["turn"]);
+    close(problem.find().unwrap().v[0], (9.81 / (0.4 * 1.0_f64.cos())).sqrt(), 1e-12);
+    assert!(matches!(problem.stiffness(&problem.find().unwrap()), Err(Error::NoPotential { .. })));
+}
+
+/// A bead on a hoop that is kept turning.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Hoop {
+    spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t))]
+    hoop: Frame,
+    #[particle(mass = 0.2, at = 0.5 * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
+    bead: Particle,
+}
+
+#[test]
+fn a_bead_on_a_hoop_has_four_equilibria() {
+    let hoop = Hoop { spin: 6.0 };
+    let lifted = (9.81 / (36.0 * 0.5_f64)).acos();
+    let guesses = [-3.0, -2.5, -1.2, -0.3, 0.1, 0.2, 0.9, 1.1, 3.1].map(|x| vector![x]);
+    let mut problem = equilibrium(&hoop);
+    let mut all = problem.find_all(guesses).unwrap();
+    all.sort_by(|a, b| a.q[0].total_cmp(&b.q[0]));
+    let expected = [
+        (-PI, Verdict::Unstable),
+        (-lifted, Verdict::Stable),
+        (0.0, Verdict::Unstable),
+        (lifted, Verdict::Stable),
+        (PI, Verdict::Unstable),
+    ];
+    assert_eq!(all.len(), expected.len());
+    for (found, (theta, verdict)) in all.iter().zip(expected) {
+        assert!((found.q[0] - theta).abs() < 1e-12, "{theta}: {}", found.q[0]);
+        assert_eq!(problem.stiffness(found).unwrap().verdict(), verdict, "at {theta}");
+    }
+    let mode = &problem.linear_system(&all[3]).unwrap().modes().unwrap()[0];
+    close(mode.frequency(), 6.0 * lifted.sin(), 1e-12);
+}
+
+/// Two links with springs in their hinges under a load: Euler's column of two parts.
+#[mechanism(derivatives)]
+struct Column {
+    load: f64,
+    #[body(mass = 0.1, com = 0.25 * y, inertia = rod(0.1, 0.5, y))]
+    lower: Body,
+    #[body(mass = 0.1, com = 0.25 * y, inertia = rod(0.1, 0.5, y))]
+    upper: Body,
+    #[joint(ground -> lower, about = z)]
+    foot: Pin,
+    #[joint(lower.at(0.5 * y) -> upper, about = z)]
+    knee: Pin,
+    #[acts(on = foot, stiffness = 20)]
+    foot_spring: Spring,
+    #[acts(on = knee, stiffness = 20)]
+    knee_spring: Spring,
+    #[acts(on = upper.at(0.5 * y), value = -load * ground.y)]
+    weight: Force,
+}
+
+/// Critical load of links of length `l` and springs `k`: `(3 − √5) / 2 · k / l`.
+#[test]
+fn a_column_buckles_at_eulers_load() {
+    let critical = (3.0 - 5.0_f64.sqrt()) / 2.0 * 20.0 / 0.5;
+    for (part, verdict) in [(0.999, Verdict::Stable), (1.001, Verdict::Unstable)] {
+        let column = Column { load: part * critical };
+        let problem = equilibrium(&column);
+        let upright = problem.find().unwrap();
+        assert!(upright.q.amax() < 1e-15);
+        assert_eq!(problem.stiffness(&upright).unwrap().verdict(), verdict);
+        let stable = problem.linear_system(&upright).unwrap().poles().unwrap();
+        let fastest = stable.iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(fastest > 1e-3, verdict == Verdict::Unstable, "{stable:?}");
+    }
+    // At the load itself the equations are singular, and the error names both hinges.
+    let column = Column { load: critical };
+    let Err(Error::Undetermined { unknowns, .. }) = equilibrium(&column).find() else { panic!("singular") };
+    assert_eq!(unknowns, ["foot", "knee"]);
+    // Beyond it the column stands bent, on either side.
+    let column = Column { load: 1.2 * critical };
+    let mut problem = equilibrium(&column);
+    let bent = problem.find_all([vector![0.5, 0.5], vector![-0.5, -0.5], vector![0.01, -0.01]]).unwrap();
+    for found in &bent[..2] {
+        let (first, second) = (found.q[0], found.q[0] + found.q[1]);
+        let moment = |angle: f64| 1.2 * critical * 0.5 * angle.sin();
+        close(20.0 * (second - first), moment(second), 1e-10);
+        close(20.0 * first - 20.0 * (second - first), moment(first), 1e-10);
+        assert!(first.abs() > 0.3);
+        assert_eq!(problem.stiffness(found).unwrap().verdict(), Verdict::Stable);
+    }
+    assert!((bent[0].q + bent[1].q).amax() < 1e-10);
+    // Which load bends the foot by a hundredth of a radian? Beside the critical one it is larger by the square of the angle.
+    let found = equilibrium(&column).from(vector![0.01, 0.006]).fix(["foot"]);
+    let found = found.parameters([("load", 10.0)], |p| Column { load: p[0] }).find().unwrap();
+    let more = found.parameters[0] / critical - 1.0;
+    assert!(more > 0.0 && more < 1e-4, "{more}");
+}
+
+/// A table on three legs, with something on it.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Table {
+    px: f64,
+    py: f64,
+    #[body(mass = 12, inertia = cuboid(12, 1.6, 1, 0.04))]
+    board: Body,
+    #[particle(mass = 5, at = board.at(px * x + py * y))]
+    load: Particle,
+    #[joint(ground -> board)]
+    pose: Free,
+    #[constraint(dot(r(board.at(-0.7 * x - 0.4 * y) / ground), ground.z) == 0.7)]
+    left: Holonomic,
+    #[constraint(dot(r(board.at(0.7 * x - 0.4 * y) / ground), ground.z) == 0.7)]
+    right: Holonomic,
+    #[constraint(dot(r(board.at(0.4 * y) / ground), ground.z) == 0.7)]
+    middle: Holonomic,
+}
+
+#[test]
+fn three_legs_share_what_stands_on_a_table() {
+    let table = Table { px: 0.2, py: -0.1 };
+    let problem = constrained_equilibrium(&table).fix(["pose.vx", "pose.vy", "pose.wz"]);
+    let found = problem.find().unwrap();
+    assert!((found.q[2] - 0.7).abs() < 1e-12);
+    // Moments: about the front edge, and about the line through the middle leg.
+    let weight = 9.81 * 17.0;
+    let middle = 9.81 * (12.0 * 0.4 + 5.0 * 0.3) / 0.8;
+    let twist = 9.81 * 5.0 * 0.2 / 0.7;
+    let expected = [(weight - middle - twist) / 2.0, (weight - middle + twist) / 2.0, middle];
+    for ((name, force), expected) in found.multipliers.iter().zip(expected) {
+        assert!((force.abs() - expected).abs() < 1e-10, "{name} {force} {expected}");
+    }
+    // Where it stands on the floor and how it is turned is nowhere said.
+    let error = constrained_equilibrium(&table).find().unwrap_err();
+    let Error::Undetermined { unknowns, .. } = &error else { panic!("{error}") };
+    assert_eq!(unknowns[..], ["pose.vx", "pose.vy", "pose.wz"]);
+    let place = constrained_equilibrium(&table)
+        .from(table.integrate(&table.neutral(), &vector![3.0, 1.0, 0.5, 0.0, 0.0, 0.3]));
+    let nearest = place.nearest().find().unwrap();
+    assert!((nearest.q[2] - 0.7).abs() < 1e-12 && nearest.q[0] > 2.0);
+}
+
+/// A platform on six legs, whose lengths forces control.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Platform {
+    #[body(mass = 30, com = 0.05 * x + 0.1 * z, inertia = diagonal(1.5, 1.5, 2.5))]
+    platform: Body,
+    #[joint(ground -> platform)]
+    pose: Free,
+    #[body(mass = 2, com = 0.3 * z, inertia = rod(2, 0.6, z))]
+    lower: [Body; 6],
+    #[body(mass = 2, com = -0.3 * z, inertia = rod(2, 0.6, z))]
+    upper: [Body; 6],
+    #[joint(ground.at(0.8 * (cos(pi / 3 * i) * x + sin(pi / 3 * i) * y)) -> lower[i], about = (x, y))]
+    foot: [Universal; 6],
+    #[joint(lower[i] -> upper[i], along = z)]
+    slide: [Sleeve; 6],
+    #[joint(upper[i] -> platform.at(0.5 * (cos(pi / 3 * i + 0.35 * cos(pi * i)) * x + sin(pi / 3 * i + 0.35 * cos(pi * i)) * y)))]
+    head: [Ball; 6],
+    #[acts(on = slide[i])]
+    drive: [Force; 6],
+}
+
+/// Each leg turns its two weights about its foot; what its head carries along the leg, and the weight of the upper half, the
+/// drive holds.
+#[test]
+fn six_legs_hold_a_platform() {
+    let pose = Isometry3::from_parts(
+        Vector3::new(0.1, -0.05, 0.9).into(),
+        UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
+    );
+    let weight = |mass: f64| Vector3::new(0.0, 0.0, -9.81 * mass);
+    let platform = Platform {};
+    let mut q = platform.neutral();
+    q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
+    q.fixed_rows_mut::<4>(3).copy_from(&pose.rotation.coords);
+    let mut axial = DMatrix::zeros(6, 6);
+    let com = pose.rotation * Vector3::new(0.05, 0.0, 0.1);
+    let mut load = DVector::zeros(6);
+    load.rows_mut(0, 3).copy_from(&weight(30.0));
+    load.rows_mut(3, 3).copy_from(&com.cross(&weight(30.0)));
+    let mut legs = Vec::new();
+    for k in 0..6 {
+        let angle = PI / 3.0 * k as f64;
+        let turned = angle + 0.35 * (PI * k as f64).cos();
+        let foot = Vector3::new(angle.cos(), angle.sin(), 0.0) * 0.8;
+        let head = pose * Point3::new(0.5 * turned.cos(), 0.5 * turned.sin(), 0.0);
+        let leg = head.coords - foot;
+        let (n, length) = (leg.normalize(), leg.norm());
+        legs.push((n, length, head.coords - pose.translation.vector));
+        let arm = legs[k].2;
+        axial.view_mut((0, k), (3, 1)).copy_from(&n);
+        axial.view_mut((3, k), (3, 1)).copy_from(&arm.cross(&n));
+        // Across: what the platform carries of the leg's weights, by moments about the foot.
+        let across = |w: Vector3<f64>| w - n * n.dot(&w);
+        let carried = across(weight(2.0)) * ((0.3 + length - 0.3) / length);
+        let mut view = load.rows_mut(0, 3);
+        view += carried;
+        let mut view = load.rows_mut(3, 3);
+        view += arm.cross(&carried);
+    }
+    let along = axial.lu().solve(&-load).unwrap();
+    // The guess is a little off.
+    let place = |name: &str| Platform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
+    for (k, (n, length, _)) in legs.iter().enumerate() {
+        q[place(&format!("foot_{k}.first"))] = (-n.y).atan2(n.z) + 0.02;
+        q[place(&format!("foot_{k}.second"))] = n.x.asin() - 0.03;
+        q[place(&format!("slide_{k}"))] = length + 0.01;
+    }
+    let drives: Vec<String> = (0..6).map(|k| format!("drive_{k}")).collect();
+    let fixed = ["vx", "vy", "vz", "wx", "wy", "wz"].map(|axis| format!("pose.{axis}"));
+    let found = constrained_equilibrium(&platform).from(q).fix(fixed).inputs(drives).find().unwrap();
+    for (k, (n, length, _)) in legs.iter().enumerate() {
+        close(found.q[place(&format!("slide_{k}"))], *length, 1e-12);
+        close(found.u[k], along[k] - n.dot(&weight(2.0)), 1e-9);
+    }
+}
+
+/// A top in gimbals without mass.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Top {
+    #[body]
+    turned: Body,
+    #[body]
+    tilted: Body,
+    #[body(mass = 0.3, com = 0.05 * z, inertia = diagonal(1.8e-4, 1.8e-4, 2.4e-4))]
+    top: Body,
+    #[joint(ground -> turned, about = z)]
+    precession: Pin,
+    #[joint(turned -> tilted, about = x)]
+    nutation: Pin,
+    #[joint(tilted -> top, about = z)]
+    spin: Pin,
+    #[output(dot(omega(top / ground), top.z))]
+    axial_rate: Scalar,
+}
+
+/// `A Ω² cos θ − C n Ω + m g h = 0`, slow and fast; nutations about it have `ω² = Ω² − 2 κ cos θ + κ² / Ω²` with `κ = m g h / A`
+/// (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 5.7; Routh, *Advanced Rigid Dynamics*, 1905, § 207).
+#[test]
+fn a_top_precesses_slowly_or_fast() {
+    let (theta, n) = (0.5_f64, 150.0_f64);
+    let (a, c, moment) = (1.8e-4 + 0.3 * 0.05 * 0.05, 2.4e-4, 0.3 * 9.81 * 0.05);
+    let discriminant = ((c * n).powi(2) - 4.0 * a * theta.cos() * moment).sqrt();
+    for (guess, rate) in [
+        (1.0, 2.0 * moment / (c * n + discriminant)),
+        (100.0, (c * n + discriminant) / (2.0 * a * theta.cos())),
+    ] {
+        let problem = equilibrium(&Top {})
+            .from(vector![0.0, theta, 0.0])
+            .coordinates([] as [&str; 0])
+            .moving(vector![guess, 0.0, n])
+            .speeds(["precession", "spin"])
+            .output("axial_rate", n);
+        let found = problem.find().unwrap();
+        close(found.v[0], rate, 1e-12);
+        close(found.v[2] + found.v[0] * theta.cos(), n, 1e-12);
+        let kappa = moment / a;
+        let expected = (rate * rate - 2.0 * kappa * theta.cos() + (kappa / rate).powi(2)).sqrt();
+        let modes = problem.linear_system(&found).unwrap().modes().unwrap();
+        close(modes.last().unwrap().frequency(), expected, 1e-6);
+    }
+    // A top that spins too slowly cannot precess at this inclination.
+    let slow = equilibrium(&Top {})
+        .from(vector![0.0, theta, 0.0])
+        .coordinates([] as [&str; 0])
+        .moving(vector![10.0, 0.0, 50.0])
+        .speeds(["precession", "spin"])
+        .output("axial_rate", 50.0);
+    let error = slow.find().unwrap_err();
+    let Error::NoSteadyState { condition, unknowns: 2, .. } = &error else { panic!("{error}") };
+    assert_eq!(condition, "nutation''");
+}
+
+/// A cart on rails with a pole that leans.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct CartPole {
+    #[body(mass = 2)]
+    cart: Body,
+    #[body(mass = 0.3, com = 0.5 * y, inertia = rod(0.3, 1, y))]
+    pole: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> pole, about = z)]
+    hinge: Pin,
+    #[acts(on = cart, along = x)]
+    push: Force,
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let cart = CartPole {};
+    // The cart may stand anywhere.
+    let error = equilibrium(&cart).find().unwrap_err();
+    assert!(matches!(&error, Error::Undetermined { unknowns, .. } if unknowns == &["rail"]), "{error}");
+    assert!(equilibrium(&cart).nearest().find().is_ok());
+    // It is pushed, and nothing holds it.
+    let error = equilibrium(&cart).fix(["rail"]).with_inputs(vector![5.0]).find().unwrap_err();
+    let Error::NoSteadyState { conditions: 2, unknowns: 1, residual, place, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(residual.abs() > 0.1 && place[1].0 == "hinge", "{error}");
+    // An angle that the pole keeps while the cart is pushed: the acceleration is g tan of it.
+    let leaning =
+        equilibrium(&cart).coordinates(["hinge"]).acceleration("rail", 2.0).inputs(["push"]).find().unwrap();
+    close(leaning.q[1], -(2.0 / 9.81_f64).atan(), 1e-12);
+    close(leaning.u[0], 2.3 * 2.0, 1e-12);
+    // A held cart: the pole falls by itself, and the locked system has one degree of freedom.
+    let held = equilibrium(&cart).hold(["rail"]);
+    let upright = held.find().unwrap();
+    let system = held.linear_system(&upright).unwrap();
+    assert_eq!(system.states()[0].name, "hinge");
+    let poles = system.poles().unwrap();
+    close(poles.iter().map(|pole| pole.re).fold(0.0, f64::max), (1.5_f64 * 9.81).sqrt(), 1e-12);
+    assert_eq!(held.stiffness(&upright).unwrap().verdict(), Verdict::Unstable);
+    let error = equilibrium(&cart).fix(["hinges"]).find().unwrap_err();
+    assert_eq!(error.to_string(), "no coordinate `hinges`, perhaps `hinge`; there are rail, hinge");
+    let error = equilibrium(&cart).find_all([]).unwrap_err();
+    assert!(matches!(error, Error::Count { what: "guesses", .. }));
+    let error = equilibrium(&cart).from(vector![f64::NAN, f64::NAN]).find().unwrap_err();
+    assert!(matches!(error, Error::NotFinite { .. }), "{error}");
+}
+
+/// An aircraft with lift, drag and moments in pitch; aileron and rudder are moments.
+#[mechanism(gravity = 9.81 * z, derivatives)]
+struct Aircraft {
+    elevator: Input,
+    aileron: Input,
+    rudder: Input,
+    #[body(mass = 1050, inertia = [[1290, 0, -40], [0, 1830, 0], [-40, 0, 2670]])]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(omega(airframe / ground))]
+    turning: Vector,
+    #[define(atan2(dot(velocity, airframe.z), dot(velocity, airframe.x)))]
+    attack: Scalar,
+    #[define(1.225 / 2 * 16.2 * dot(velocity, velocity))]
+    load: Scalar,
+    #[define(0.3 + 4.6 * attack)]
+    cl: Scalar,
+    #[acts(on = airframe, value = load * cl * (sin(attack) * airframe.x - cos(attack) * airframe.z))]
+    lift: Force,
+    #[acts(on = airframe, value = -load * (0.03 + 0.05 * cl * cl) * (cos(attack) * airframe.x + sin(attack) * airframe.z))]
+    drag: Force,
+    #[acts(on = airframe, value = load * 1.5 * (0.02 - 0.9 * attack - 1.3 * elevator - 9 * dot(turning, airframe.y) / norm(velocity)) * airframe.y)]
+    pitch: Torque,
+    #[acts(on = airframe, along = airframe.x)]
+    thrust: Force,
+    #[acts(on = airframe, value = aileron * airframe.x + rudder * airframe.z)]
+    controls: Torque,
+    #[output(norm(velocity))]
+    airspeed: Scalar,
+    #[output(attack)]
+    angle_of_attack: Scalar,
+    #[output(dot(velocity, airframe.y))]
+    slip: Scalar,
+    #[output(-dot(velocity, ground.z))]
+    climb: Scalar,
+    #[output(turning, resolved_in = ground)]
+    turn: Vector,
+    #[output(dot(airframe.y, ground.z))]
+    bank: Scalar,
+}
+
+/// Climbing straight on, and turning level: forces along and across the path, and `tan φ = V Ω / g`.
+#[test]
+fn an_aircraft_climbs_and_turns() {
+    let aircraft = Aircraft {};
+    let (speed, mass, g) = (50.0, 1050.0, 9.81);
+    for (climb, rate) in [(0.0, 0.0), (4.0, 0.0), (0.0, 0.15), (-2.0, 0.1)] {
+        let problem = equilibrium(&aircraft)
+            .coordinates(["flight.wx", "flight.wy"])
+            .moving(vector![speed, 0.0, 0.0, 0.0, 0.0, 0.0])
+            .speeds(Aircraft::VELOCITIES)
+            .inputs(Aircraft::INPUTS)
+            .output("airspeed", speed)
+            .output("slip", 0.0)
+            .output("climb", climb)
+            .output("turn.x", 0.0)
+            .output("turn.y", 0.0)
+            .output("turn.z", rate);
+        let found = problem.find().unwrap();
+        assert!(found.acceleration.amax() < 1e-9 && found.iterations < 20, "{found:?}");
+        let alpha: f64 = aircraft.angle_of_attack(&found.q, &found.v);
+        let pressure = 1.225 / 2.0 * 16.2 * speed * speed;
+        let cl = 0.3 + 4.6 * alpha;
+        let drag = pressure * (0.03 + 0.05 * cl * cl);
+        let thrust = found.u[Aircraft::INPUTS.iter().position(|n| *n == "thrust").unwrap()];
+        let slope = (climb / speed).asin();
+        close(thrust * alpha.cos(), drag + mass * g * slope.sin(), 1e-9);
+        // Across the path: the weight, and what turns it.
+        let across = pressure * cl + thrust * alpha.sin();
+        let turned = mass * speed * slope.cos() * rate;
+        close(across, (mass * g * slope.cos()).hypot(turned), 1e-9);
+        if climb == 0.0 {
+            close(aircraft.bank(&found.q), (speed * rate / g).atan().sin(), 1e-9);
+        }
+        // Two inputs too few.
+        let short = problem.inputs([] as [&str; 0]).coordinates(["flight.wy"]);
+        if rate > 0.0 {
+            assert!(matches!(short.find(), Err(Error::NoSteadyState { .. })));
+        }
+    }
+    let system = equilibrium(&aircraft);
+    let system = system.output("climbs", 0.0).find().unwrap_err().to_string();
+    assert!(system.starts_with("no output `climbs`, perhaps `climb`; there are airspeed"), "{system}");
+}
