@@ -1,0 +1,93 @@
+//! The grammar of the command line.
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use std::path::PathBuf;
+
+/// `linkwork` with its commands.
+pub fn command() -> Command {
+    Command::new("linkwork")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Checks, shows and exports mechanisms")
+        .after_help("Exit status: 0 done, 1 the mechanism has mistakes, 2 the command cannot be carried out.")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(with_input(Command::new("check").about("Lists every mistake with its place")).arg(json()))
+        .subcommand(
+            with_input(
+                Command::new("show")
+                    .about("Prints coordinates, units, structure, equations and operation counts"),
+            )
+            .arg(json()),
+        )
+        .subcommand(
+            Command::new("export")
+                .about("Writes a mechanism's functions")
+                .subcommand_required(true)
+                .arg_required_else_help(true)
+                .subcommand(
+                    with_input(
+                        Command::new("c").about("C99: a source file and a header that need libm alone"),
+                    )
+                    .arg(
+                        text("out", "FOLDER", "Where the two files go")
+                            .short('o')
+                            .default_value(".")
+                            .value_parser(value_parser!(PathBuf)),
+                    )
+                    .arg(text(
+                        "prefix",
+                        "NAME",
+                        "What names and files begin with [default: the mechanism's name]",
+                    ))
+                    .arg(
+                        text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
+                            .value_parser(["double", "float"]),
+                    )
+                    .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics")),
+                )
+                .subcommand(
+                    with_input(Command::new("rust").about("What the attribute generates, for reading"))
+                        .arg(out_file()),
+                ),
+        )
+}
+
+fn with_input(command: Command) -> Command {
+    command
+        .arg(
+            Arg::new("file")
+                .value_name("FILE")
+                .help("A robot file (.urdf), or a Rust file with structs that have `#[mechanism]`")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(text("struct", "NAME", "The struct in a Rust file that has several"))
+        .arg(text(
+            "with",
+            "OPTIONS",
+            "Further arguments of the attribute, as in `base = free, inertia = trust`",
+        ))
+}
+
+fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).help(help)
+}
+
+fn switch(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
+}
+
+fn json() -> Arg {
+    switch("json", "Prints JSON for other programs")
+}
+
+fn out_file() -> Arg {
+    text("out", "FILE", "Where it goes [default: standard output]")
+        .short('o')
+        .value_parser(value_parser!(PathBuf))
+}
+
+/// A text that was given.
+pub fn given<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
+    matches.get_one::<String>(name).map(String::as_str)
+}

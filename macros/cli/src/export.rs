@@ -1,0 +1,70 @@
+//! `linkwork export`: a mechanism's functions in C, and in Rust for reading.
+
+use crate::Stop;
+use crate::commands::given;
+use crate::input::Input;
+use clap::ArgMatches;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::export::c::Options;
+use linkwork_compiler::syntax::{Inertias, ScalarType};
+use linkwork_compiler::{expand, export_c};
+use std::path::{Path, PathBuf};
+
+/// A source file and a header.
+pub fn c(matches: &ArgMatches) -> Result<(), Stop> {
+    let input = Input::one(matches)?;
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let mut source = input.checked(source, cx)?;
+    let description = &source.mechanism.description;
+    let single = match given(matches, "scalar") {
+        Some(scalar) => scalar == "float",
+        None => description.scalar == ScalarType::F32,
+    };
+    let kinematic = description.inertias == Inertias::None;
+    source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
+    let prefix = given(matches, "prefix").unwrap_or_default().to_string();
+    let files = export_c(&source, &Options { prefix, single }, cx);
+    let files = input.checked(files, cx)?;
+    let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
+    std::fs::create_dir_all(&folder)
+        .map_err(|error| Stop::Failure(format!("cannot make the folder {}: {error}", folder.display())))?;
+    for (end, text) in [("h", &files.header), ("c", &files.source)] {
+        let path = folder.join(format!("{}.{end}", files.prefix));
+        write(&path, text)?;
+        println!("{}", path.display());
+    }
+    for line in &files.left_out {
+        eprintln!("linkwork: not in C: {line}");
+    }
+    Ok(())
+}
+
+/// The generated Rust, formatted.
+pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
+    let input = Input::one(matches)?;
+    let cx = &mut Diagnostics::new();
+    if let Some(source) = input.read(cx) {
+        linkwork_compiler::compile(&source, &linkwork_compiler::expr::Graph::new(), cx);
+    }
+    input.checked(Some(()), cx)?;
+    let tokens = expand(input.arguments.clone(), input.item.clone(), &input.folder).into_tokens()?;
+    let text = prettyplease::unparse(&syn::parse2(tokens)?);
+    put(matches, &text)
+}
+
+/// Writes a text where `--out` says, or to standard output.
+pub fn put(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
+    match matches.get_one::<PathBuf>("out") {
+        Some(path) => write(path, text),
+        None => {
+            print!("{text}");
+            Ok(())
+        }
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Stop> {
+    std::fs::write(path, text)
+        .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
+}

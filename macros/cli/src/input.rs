@@ -1,0 +1,234 @@
+//! Files → what the attribute is given.
+
+use crate::Stop;
+use crate::commands::given;
+use clap::ArgMatches;
+use linkwork_compiler::diag::{Diagnostic, Diagnostics};
+use linkwork_compiler::import;
+use linkwork_compiler::{Source, read};
+use proc_macro2::{Span, TokenStream};
+use quote::ToTokens;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+/// What `#[mechanism]` is given, and where it stands.
+pub struct Input {
+    /// The file as it was named.
+    pub file: PathBuf,
+    /// Arguments of the attribute.
+    pub arguments: TokenStream,
+    /// The struct.
+    pub item: TokenStream,
+    /// The struct's name.
+    pub name: String,
+    /// Where paths begin.
+    pub folder: PathBuf,
+    /// A robot file, not one of Rust.
+    pub is_robot: bool,
+}
+
+impl Input {
+    /// The mechanism that is named on the command line; the only one of its file, or the one that `--struct` names.
+    pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
+        let mut all = Input::all(matches)?;
+        if all.len() > 1 {
+            let names: Vec<&str> = all.iter().map(|input| input.name.as_str()).collect();
+            return Err(Stop::Failure(format!(
+                "{} has several mechanisms: choose one with `--struct NAME`: {}",
+                all[0].file.display(),
+                names.join(", ")
+            )));
+        }
+        all.pop().ok_or_else(|| Stop::Failure("there is no mechanism".to_string()))
+    }
+
+    /// All mechanisms of the file, or the one that `--struct` names.
+    pub fn all(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
+        let file: &PathBuf =
+            matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
+        let more: TokenStream = given(matches, "with")
+            .unwrap_or_default()
+            .parse()
+            .map_err(|error| Stop::Failure(format!("`--with`: {error}")))?;
+        let is_rust = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
+        let mut found = if is_rust { from_rust(file)? } else { vec![from_robot(file)?] };
+        if let Some(name) = given(matches, "struct") {
+            let names: Vec<String> = found.iter().map(|input| input.name.clone()).collect();
+            found.retain(|input| input.name == name);
+            if found.is_empty() {
+                let names = names.join(", ");
+                return Err(Stop::Failure(format!(
+                    "{} has no mechanism `{name}`, but {names}",
+                    file.display()
+                )));
+            }
+        }
+        for input in &mut found {
+            input.add(more.clone());
+        }
+        Ok(found)
+    }
+
+    fn add(&mut self, more: TokenStream) {
+        if more.is_empty() {
+            return;
+        }
+        let ends = self.arguments.clone().into_iter().last().is_none_or(|last| last.to_string() == ",");
+        if !ends {
+            self.arguments.extend(",".parse::<TokenStream>().unwrap_or_default());
+        }
+        self.arguments.extend(more);
+    }
+
+    /// What the user wrote. Mistakes are in `cx`.
+    pub fn read(&self, cx: &mut Diagnostics) -> Option<Source> {
+        read(self.arguments.clone(), self.item.clone(), &self.folder, cx)
+    }
+
+    /// Prints the mistakes, if there are any.
+    pub fn report(&self, cx: &Diagnostics) -> Stop {
+        for one in cx.distinct() {
+            eprintln!("{}", self.shown(one));
+        }
+        Stop::Mistakes
+    }
+
+    /// What was made without mistakes; else these are printed.
+    pub fn checked<T>(&self, made: Option<T>, cx: &Diagnostics) -> Result<T, Stop> {
+        match made {
+            Some(made) if cx.is_empty() => Ok(made),
+            _ => Err(self.report(cx)),
+        }
+    }
+
+    /// File, line and column of a mistake.
+    pub fn position(&self, one: &Diagnostic) -> (String, usize, usize) {
+        match &one.place().file {
+            Some(at) => (at.file.to_string(), at.line as usize, at.column as usize),
+            None => {
+                let start = one.place().span.start();
+                (self.file.display().to_string(), start.line, start.column + 1)
+            }
+        }
+    }
+
+    /// A mistake as compilers print it.
+    fn shown(&self, one: &Diagnostic) -> String {
+        let (file, line, column) = self.position(one);
+        let place = match self.is_robot && one.place().file.is_none() {
+            true => file,
+            false => format!("{file}:{line}:{column}"),
+        };
+        let mut text = format!("{place}: error: {}", one.message());
+        let lines = one.notes().iter().map(|line| ("note", line));
+        for (word, line) in lines.chain(one.helps().iter().map(|line| ("help", line))) {
+            text.push_str(&format!("\n  = {word}: {line}"));
+        }
+        text
+    }
+}
+
+/// The text of a file of the user's.
+fn text_of(path: &Path) -> Result<String, Stop> {
+    let fail = |why: String| Stop::Failure(format!("{}: {why}", path.display()));
+    let about = std::fs::metadata(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => fail("there is no such file".to_string()),
+        _ => fail(error.to_string()),
+    })?;
+    if !about.is_file() {
+        return Err(fail("expected a file".to_string()));
+    }
+    let mut bytes = Vec::new();
+    let most = import::LARGEST_FILE as u64;
+    std::fs::File::open(path)?
+        .take(most + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| fail(error.to_string()))?;
+    if bytes.len() as u64 > most {
+        return Err(fail(format!("is larger than {} MiB", most >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|_| fail("is not UTF-8 text".to_string()))
+}
+
+fn is_mechanism(attribute: &syn::Attribute) -> bool {
+    attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
+}
+
+/// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the package.
+fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
+    let text = text_of(path)?;
+    let parsed = syn::parse_file(&text).map_err(|error| {
+        let start = error.span().start();
+        Stop::Failure(format!("{}:{}:{}: {error}", path.display(), start.line, start.column + 1))
+    })?;
+    let whole = path.canonicalize()?;
+    let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
+    let folder = package.or(whole.parent()).unwrap_or(&whole).to_path_buf();
+    let mut found = Vec::new();
+    let mut todo = parsed.items;
+    while !todo.is_empty() {
+        for item in std::mem::take(&mut todo) {
+            match item {
+                syn::Item::Struct(mut item) if item.attrs.iter().any(is_mechanism) => {
+                    let mut arguments = TokenStream::new();
+                    for attribute in item.attrs.iter().filter(|a| is_mechanism(a)) {
+                        if let syn::Meta::List(list) = &attribute.meta {
+                            arguments = list.tokens.clone();
+                        }
+                    }
+                    item.attrs.retain(|attribute| !is_mechanism(attribute));
+                    found.push(Input {
+                        file: path.to_path_buf(),
+                        arguments,
+                        name: item.ident.to_string(),
+                        item: item.to_token_stream(),
+                        folder: folder.clone(),
+                        is_robot: false,
+                    });
+                }
+                syn::Item::Mod(module) => {
+                    todo.extend(module.content.into_iter().flat_map(|(_, items)| items))
+                }
+                _ => {}
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(Stop::Failure(format!("{}: there is no struct with `#[mechanism]`", path.display())));
+    }
+    Ok(found)
+}
+
+/// A struct without fields of its own, which names a robot file.
+fn from_robot(path: &Path) -> Result<Input, Stop> {
+    text_of(path)?;
+    let name = type_name(path);
+    let ident = syn::Ident::new(&name, Span::call_site());
+    let written = path.to_string_lossy().into_owned();
+    // As it is named, so that messages say it so; found from where the command runs.
+    let arguments = quote::quote!(urdf = #written);
+    let folder = std::env::current_dir()?;
+    Ok(Input {
+        file: path.to_path_buf(),
+        arguments,
+        item: quote::quote!(pub struct #ident;),
+        name,
+        folder,
+        is_robot: true,
+    })
+}
+
+/// A type's name after a file's: `simple_humanoid.urdf` is `SimpleHumanoid`.
+pub fn type_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let capital = |word: &str| {
+        let (first, rest) = word.split_at(1);
+        format!("{}{rest}", first.to_ascii_uppercase())
+    };
+    let name: String = words.map(capital).collect();
+    match name.starts_with(|c: char| c.is_ascii_alphabetic()) && name != "Self" {
+        true => name,
+        false => format!("Robot{name}"),
+    }
+}

@@ -1,0 +1,45 @@
+#![doc = include_str!("../README.md")]
+
+mod check;
+mod commands;
+mod export;
+mod input;
+mod show;
+
+use std::process::ExitCode;
+
+/// Why a command stops.
+enum Stop {
+    /// The mechanism has mistakes, which were printed.
+    Mistakes,
+    /// It cannot be carried out.
+    Failure(String),
+}
+
+impl<E: std::error::Error> From<E> for Stop {
+    fn from(error: E) -> Stop {
+        Stop::Failure(error.to_string())
+    }
+}
+
+fn main() -> ExitCode {
+    let matches = commands::command().get_matches();
+    let done = match matches.subcommand() {
+        Some(("check", given)) => check::run(given),
+        Some(("show", given)) => show::run(given),
+        Some(("export", given)) => match given.subcommand() {
+            Some(("c", given)) => export::c(given),
+            Some(("rust", given)) => export::rust(given),
+            _ => Err(Stop::Failure("expected `c` or `rust`".to_string())),
+        },
+        _ => Err(Stop::Failure("expected a command".to_string())),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Stop::Mistakes) => ExitCode::from(1),
+        Err(Stop::Failure(why)) => {
+            eprintln!("linkwork: {why}");
+            ExitCode::from(2)
+        }
+    }
+}

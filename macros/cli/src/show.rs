@@ -1,0 +1,138 @@
+//! `linkwork show`: what the compiler made of a mechanism.
+
+use crate::Stop;
+use crate::input::Input;
+use clap::ArgMatches;
+use linkwork_compiler::compile;
+use linkwork_compiler::derive::Output;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::Model;
+use serde_json::{Value, json};
+
+pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let as_json = matches.get_flag("json");
+    let mut all = Vec::new();
+    for input in &Input::all(matches)? {
+        let cx = &mut Diagnostics::new();
+        let source = input.read(cx);
+        let source = input.checked(source, cx)?;
+        let graph = Graph::new();
+        let made = compile(&source, &graph, cx);
+        let (model, output) = input.checked(made, cx)?;
+        let shown = Shown { model: &model, output: &output, structure: source.structure() };
+        match as_json {
+            true => all.push(shown.json()),
+            false => print!("{}", shown.text()),
+        }
+    }
+    if as_json {
+        println!("{:#}", json!({ "mechanisms": all }));
+    }
+    Ok(())
+}
+
+struct Shown<'a, 'g> {
+    model: &'a Model<'g>,
+    output: &'a Output,
+    structure: Vec<String>,
+}
+
+/// Title, key, names and units of a list.
+type List<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
+
+impl Shown<'_, '_> {
+    fn lists(&self) -> Vec<List<'_>> {
+        let m = self.model;
+        fn plain(list: &[String]) -> Vec<&str> {
+            list.iter().map(String::as_str).collect()
+        }
+        vec![
+            ("Parameters", "parameters", plain(&m.parameters), &m.units.parameters),
+            ("Configuration q", "configuration", plain(&m.configuration), &m.units.configuration),
+            (
+                "Velocity v",
+                "velocity",
+                m.velocities.iter().map(|(name, _)| name.as_str()).collect(),
+                &m.units.velocities,
+            ),
+            ("Inputs u", "inputs", m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
+            (
+                "Outputs",
+                "outputs",
+                m.outputs.iter().map(|output| output.name.as_str()).collect(),
+                &m.units.outputs,
+            ),
+        ]
+    }
+
+    fn text(&self) -> String {
+        let m = self.model;
+        let mut text = format!("{}: NQ = {}, NV = {}, NU = {}\n", m.name, m.nq(), m.nv(), m.nu());
+        for (title, _, names, units) in self.lists() {
+            if names.is_empty() {
+                continue;
+            }
+            text.push_str(&format!("\n{title}\n"));
+            let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+            for (k, name) in names.iter().enumerate() {
+                let unit = units.get(k).map_or("", String::as_str);
+                text.push_str(format!("{k:5}  {name:width$}  {unit}").trim_end());
+                text.push('\n');
+            }
+        }
+        let frames: Vec<&str> = m.frames.iter().map(|frame| frame.name.as_str()).collect();
+        if !frames.is_empty() {
+            text.push_str(&format!("\nFrames\n       {}\n", frames.join(", ")));
+        }
+        if !self.structure.is_empty() {
+            text.push_str("\nJoints\n");
+            self.structure
+                .iter()
+                .for_each(|line| text.push_str(&format!("       {}\n", line.replace('`', ""))));
+        }
+        let equations = self.output.equations.plain.trim_end();
+        if !equations.is_empty() {
+            text.push_str("\nEquations of motion\n");
+            equations.lines().for_each(|line| text.push_str(&format!("       {line}\n")));
+        }
+        text.push_str(&format!("\n{:38}{:>8}{:>8}{:>8}{:>8}\n", "Operations", "mul", "add", "div", "calls"));
+        for f in self.output.functions.iter().filter(|f| !f.is_hidden()) {
+            let c = f.program.counts;
+            text.push_str(&format!("  {:36}{:>8}{:>8}{:>8}{:>8}\n", f.name, c.mul, c.add, c.div, c.calls));
+        }
+        text
+    }
+
+    fn json(&self) -> Value {
+        let m = self.model;
+        let mut all = json!({
+            "name": m.name,
+            "nq": m.nq(),
+            "nv": m.nv(),
+            "nu": m.nu(),
+            "constraints": m.constraints.len(),
+            "degrees_of_freedom": m.freedom[1],
+            "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
+            "joints": self.structure,
+            "equations": self.output.equations.plain,
+            "operations": self.output.functions.iter().filter(|f| !f.is_hidden()).map(|f| {
+                let c = f.program.counts;
+                json!({
+                    "function": f.name,
+                    "multiplications": c.mul,
+                    "additions": c.add,
+                    "divisions": c.div,
+                    "functions": c.calls,
+                })
+            }).collect::<Vec<_>>(),
+        });
+        for (_, key, names, units) in self.lists() {
+            let unit = |k: usize| units.get(k).map_or("", String::as_str);
+            let list: Vec<Value> =
+                names.iter().enumerate().map(|(k, name)| json!({ "name": name, "unit": unit(k) })).collect();
+            all[key] = list.into();
+        }
+        all
+    }
+}

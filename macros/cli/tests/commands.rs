@@ -1,0 +1,114 @@
+//! What the command prints, and how it ends.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of a test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+const PENDULUM: &str = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Pendulum {
+    pub length: f64,
+    #[particle(mass = 1, at = length * (sin(theta) * x - cos(theta) * y))]
+    bob: Particle,
+    theta: Coordinate,
+}
+";
+
+#[test]
+fn good_mechanisms_are_in_order() {
+    let here = folder("good");
+    std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
+    assert_eq!(
+        linkwork(&here, &["check", "pendulum.rs"]),
+        (0, "pendulum.rs: `Pendulum` is in order\n".to_string(), String::new())
+    );
+    let (status, shown, _) = linkwork(&here, &["show", "pendulum.rs"]);
+    assert!(status == 0 && shown.contains("theta") && shown.contains("sin(theta)"), "{shown}");
+    let (status, json, _) = linkwork(&here, &["show", "pendulum.rs", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(status == 0 && json.to_string().contains("\"theta\""), "{json}");
+}
+
+#[test]
+fn mistakes_are_listed_with_their_places() {
+    let here = folder("mistakes");
+    let text = PENDULUM.replace("cos(theta)", "cos(thta)").replace("mass = 1", "mass = -1");
+    std::fs::write(here.join("bad.rs"), &text).unwrap();
+    let (status, _, told) = linkwork(&here, &["check", "bad.rs"]);
+    assert_eq!(status, 1);
+    let line = 1 + text.lines().position(|line| line.contains("thta")).unwrap();
+    let column = 1 + text.lines().find_map(|line| line.find("thta")).unwrap();
+    assert!(told.contains(&format!("bad.rs:{line}:{column}: error:")), "{told}");
+    assert!(told.contains("did you mean `theta`?") && told.contains("mass"), "{told}");
+    let (status, json, _) = linkwork(&here, &["check", "bad.rs", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let places: Vec<_> = json["messages"].as_array().unwrap().iter().map(|m| m["line"].as_u64()).collect();
+    assert_eq!((status, places), (1, vec![Some(line as u64); 2]));
+    // Nothing is written of what has mistakes.
+    let (status, ..) = linkwork(&here, &["export", "c", "bad.rs"]);
+    assert!(status == 1 && !here.join("pendulum.c").exists());
+}
+
+#[test]
+fn what_cannot_be_done_is_said() {
+    let here = folder("failures");
+    std::fs::write(here.join("mujoco.urdf"), "<mujoco><worldbody/></mujoco>").unwrap();
+    std::fs::write(here.join("nothing.rs"), "pub struct Plain;").unwrap();
+    std::fs::write(here.join("broken.rs"), "pub struct {").unwrap();
+    std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
+    std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
+        .unwrap();
+    for (arguments, status, told) in [
+        (&["check", "robot.urdf"][..], 2, "there is no such file"),
+        (&["check", "mujoco.urdf"], 1, "mujoco"),
+        (&["check", "nothing.rs"], 2, "no struct with `#[mechanism]`"),
+        (&["check", "broken.rs"], 2, "broken.rs:1:"),
+        (&["check", "pendulum.rs", "--struct", "Pendulm"], 2, "no mechanism `Pendulm`, but Pendulum"),
+        (&["export", "c", "two.rs"], 2, "several mechanisms"),
+        (&["chekc", "pendulum.rs"], 2, "check"),
+        (&["check"], 2, "FILE"),
+        (&["check", "pendulum.rs", "--with", "gravity = ("], 2, "--with"),
+        (&["export", "c", "pendulum.rs", "--out", "pendulum.rs"], 2, "pendulum.rs"),
+    ] {
+        let (found, _, error) = linkwork(&here, arguments);
+        assert!(found == status && error.contains(told), "{arguments:?}: {found}, {error}");
+    }
+}
+
+/// The text of the first block of a language in the guide.
+fn block(language: &str) -> String {
+    let guide = include_str!("../README.md");
+    let (_, rest) = guide.split_once(&format!("```{language}\n")).unwrap();
+    rest.split_once("```").unwrap().0.to_string()
+}
+
+/// The example of the guide does what it says, in C.
+#[test]
+fn the_guide_runs() {
+    let here = folder("guide");
+    std::fs::write(here.join("pendulum.rs"), block("rust,ignore")).unwrap();
+    std::fs::write(here.join("main.c"), block("c")).unwrap();
+    let (status, _, error) = linkwork(&here, &["export", "c", "pendulum.rs"]);
+    assert_eq!((status, error.as_str()), (0, ""));
+    let flags =
+        ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "main.c", "pendulum.c", "-lm"];
+    let Ok(built) = Command::new("cc").current_dir(&here).args(flags).args(["-o", "main"]).status() else {
+        println!("skipped: there is no C compiler");
+        return;
+    };
+    assert!(built.success());
+    assert!(Command::new(here.join("main")).status().unwrap().success());
+}

@@ -1,0 +1,233 @@
+//! The straight-line body of a function: values with one use stand where they are used, the others are constants of their own.
+//! All arguments are read before the first result is written, so that results may go where arguments came from.
+
+use super::pieces::{Piece, Statement};
+use super::scalar::constant;
+use super::support::Support;
+use crate::catalogue::Argument;
+use crate::expr::{Extreme, Function as Elementary};
+use crate::lower::{Angles, Op, Operand, Program};
+use crate::mechanism::Quantity;
+use std::fmt::Write;
+
+/// Longest expression that is not bound.
+const LINE: usize = 72;
+/// How many angles are evaluated side by side.
+const TOGETHER: usize = 4;
+
+/// Where results go: the place of each, nothing for those that go nowhere.
+pub type Places<'a> = &'a dyn Fn(usize) -> Option<String>;
+
+/// What a body may name.
+pub struct Scope<'a> {
+    /// The arguments, and what is called before.
+    pub arguments: &'a [Argument],
+    /// The members of the struct of parameters.
+    pub parameters: &'a [String],
+}
+
+struct Writer<'a> {
+    program: &'a Program,
+    scope: &'a Scope<'a>,
+    statements: Vec<Statement>,
+    /// By value: its text if it is not bound.
+    pieces: Vec<Option<Piece>>,
+    support: &'a mut Support,
+}
+
+/// Writes a program: what it reads, its values, and its results to their places. The text of the first result comes back, for
+/// functions that return it.
+pub fn write_program(
+    out: &mut String,
+    program: &Program,
+    scope: &Scope<'_>,
+    places: Places<'_>,
+    support: &mut Support,
+) -> String {
+    write_inputs(out, program, scope);
+    let pieces = vec![None; program.instructions.len()];
+    let mut w = Writer { program, scope, statements: Vec::new(), pieces, support };
+    w.write_instructions();
+    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand(*o)).collect();
+    write_statements(out, &w.statements, &outputs, places);
+    outputs.into_iter().next().unwrap_or_default().text
+}
+
+/// Arguments and parameters that are used, as numbers with names.
+fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
+    for quantity in program.symbols().into_iter().map(Quantity::of) {
+        match (quantity, named(quantity, scope)) {
+            (Quantity::Time, _) => {}
+            (Quantity::Parameter(k), Some(name)) => {
+                let _ = writeln!(out, "    const double {name} = self->{};", member(scope, k));
+            }
+            (_, Some(name)) => {
+                let found = scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.name(), k)));
+                if let Some((argument, k)) = found {
+                    let _ = writeln!(out, "    const double {name} = {argument}[{k}];");
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn member<'a>(scope: &'a Scope<'_>, k: usize) -> &'a str {
+    scope.parameters.get(k).map_or("missing", String::as_str)
+}
+
+/// The name of the number that a quantity is read into.
+fn named(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
+    match quantity {
+        Quantity::Time => Some("t".to_string()),
+        Quantity::Parameter(k) => Some(format!("p_{}", member(scope, k))),
+        _ => scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name()))),
+    }
+}
+
+impl Writer<'_> {
+    fn write_instructions(&mut self) {
+        let angles = Angles::find(self.program);
+        for k in (0..self.program.instructions.len()).filter(|k| angles.before[*k]) {
+            self.write_instruction(k);
+        }
+        self.write_angles(&angles);
+        for k in 0..self.program.instructions.len() {
+            if !angles.before[k] && !angles.covered[k] {
+                self.write_instruction(k);
+            }
+        }
+    }
+
+    fn write_instruction(&mut self, k: usize) {
+        let piece = self.instruction(self.program.instructions[k]);
+        if self.program.uses[k] == 1 && piece.text.len() <= LINE {
+            self.pieces[k] = Some(piece);
+        } else {
+            let text = format!("    const double t{k} = {};\n", piece.text);
+            self.statements.push(Statement { names: vec![k], text });
+        }
+    }
+
+    /// The sines and cosines of all angles that are known from the start, four at a time.
+    fn write_angles(&mut self, angles: &Angles) {
+        let count = angles.list.len();
+        if count == 0 {
+            return;
+        }
+        let list = angles.widest_first(self.program, |_| 1);
+        let padded = if count > 2 { count.next_multiple_of(TOGETHER) } else { count };
+        let mut texts: Vec<String> = list.iter().map(|angle| self.operand(angle.angle).text).collect();
+        texts.resize(padded, "0.0".to_string());
+        let function = self.support.angles(if count > 2 { TOGETHER } else { 1 });
+        let mut text = format!("    double sine[{padded}], cosine[{padded}];\n");
+        if count > 2 {
+            let _ = writeln!(text, "    const double angle[{padded}] = {{{}}};", texts.join(", "));
+            for first in (0..padded).step_by(TOGETHER) {
+                let at = if first == 0 { String::new() } else { format!(" + {first}") };
+                let _ = writeln!(text, "    {function}(angle{at}, sine{at}, cosine{at});");
+            }
+        } else {
+            for (k, angle) in texts.iter().enumerate() {
+                let _ = writeln!(text, "    {function}({angle}, &sine[{k}], &cosine[{k}]);");
+            }
+        }
+        let mut names = Vec::new();
+        for (at, angle) in list.iter().enumerate() {
+            for (value, array) in [(angle.sine, "sine"), (angle.cosine, "cosine")] {
+                let Some(k) = value else { continue };
+                let _ = writeln!(text, "    const double t{k} = {array}[{at}];");
+                names.push(k);
+            }
+        }
+        self.statements.push(Statement { names, text });
+    }
+
+    fn operand(&mut self, o: Operand) -> Piece {
+        match o {
+            Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
+            Operand::Const(c) => Piece::plain(constant(c)),
+            Operand::Symbol(s) => {
+                Piece::plain(named(Quantity::of(s), self.scope).unwrap_or_else(|| "missing".to_string()))
+            }
+            // Programs without lanes have neither.
+            Operand::Tuple(_) | Operand::Gather(_) => Piece::plain("missing".to_string()),
+            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
+                text: format!("t{k}"),
+                needs: vec![k],
+                level: 3,
+            }),
+        }
+    }
+
+    fn instruction(&mut self, op: Op) -> Piece {
+        match op {
+            Op::Neg(a) => {
+                let a = self.operand(a);
+                Piece { text: format!("-{}", a.wrapped(3)), level: 2, needs: a.needs }
+            }
+            Op::Add(a, b) => self.infix([a, b], "+", (1, 2)),
+            Op::Sub(a, b) => self.infix([a, b], "-", (1, 2)),
+            Op::Mul(a, b) => self.infix([a, b], "*", (2, 3)),
+            Op::Div(a, b) => self.infix([a, b], "/", (2, 3)),
+            Op::MulAdd(a, b, c) => self.call(Support::MUL_ADD, &[a, b, c]),
+            Op::MulSub(a, b, c) => self.call(Support::MUL_SUB, &[a, b, c]),
+            Op::NegMulAdd(a, b, c) => self.call(Support::NEG_MUL_ADD, &[a, b, c]),
+            Op::Call(f, a) => {
+                let name = self.elementary(f);
+                self.call(&name, &[a])
+            }
+            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
+            Op::Pow(a, b) => self.call("pow", &[a, b]),
+            Op::Extreme(Extreme::Min, a, b) => self.call("fmin", &[a, b]),
+            Op::Extreme(Extreme::Max, a, b) => self.call("fmax", &[a, b]),
+            // Refused before, as are lanes.
+            Op::Table(..) | Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain("missing".to_string()),
+        }
+    }
+
+    fn elementary(&mut self, f: Elementary) -> String {
+        match f {
+            Elementary::Ln => "log".to_string(),
+            Elementary::Abs => "fabs".to_string(),
+            Elementary::Signum => self.support.signum(),
+            Elementary::IsaTemperature | Elementary::IsaLapseRate | Elementary::IsaPressure => {
+                self.support.atmosphere(f.name())
+            }
+            other => other.name().to_string(),
+        }
+    }
+
+    fn infix(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> Piece {
+        let (a, b) = (self.operand(a), self.operand(b));
+        let text = format!("{} {sign} {}", a.wrapped(level), b.wrapped(right));
+        Piece { text, needs: [a.needs, b.needs].concat(), level }
+    }
+
+    fn call(&mut self, function: &str, arguments: &[Operand]) -> Piece {
+        let pieces: Vec<Piece> = arguments.iter().map(|o| self.operand(*o)).collect();
+        let list: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
+        let text = format!("{function}({})", list.join(", "));
+        Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
+    }
+}
+
+/// The statements, with every result right after the last one that it needs.
+fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece], places: Places<'_>) {
+    let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
+    let mut bound_by = vec![0; size];
+    for (k, statement) in statements.iter().enumerate() {
+        statement.names.iter().for_each(|name| bound_by[*name] = k + 1);
+    }
+    let mut ready: Vec<String> = vec![String::new(); statements.len() + 1];
+    for (k, piece) in outputs.iter().enumerate() {
+        let Some(place) = places(k) else { continue };
+        let after = piece.needs.iter().filter_map(|need| bound_by.get(*need)).max().copied().unwrap_or(0);
+        let _ = writeln!(ready[after], "    {place} = {};", piece.text);
+    }
+    out.push_str(&ready[0]);
+    for (statement, ready) in statements.iter().zip(&ready[1..]) {
+        out.push_str(&statement.text);
+        out.push_str(ready);
+    }
+}

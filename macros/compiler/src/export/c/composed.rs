@@ -1,0 +1,262 @@
+//! Results of several matrices, and what is composed of them at run time by loops.
+
+use super::body::{Scope, write_program};
+use super::function::{Outline, is_zero, place};
+use super::support::Support;
+use crate::catalogue::{InverseForm, Shape};
+use crate::derive::Function;
+use std::fmt::Write;
+
+/// Writes a body.
+pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>, support: &mut Support) {
+    match f.shape {
+        Shape::Inverse(n) => {
+            let parts = Parts::of(f, n, 0);
+            parts.declare(body);
+            write_program(body, &f.program, scope, &|k| parts.place(k, "result", &[]), support);
+            parts.finish(body, "result", support);
+        }
+        Shape::Accelerated(n) => accelerated(body, f, n, scope, support),
+        Shape::Forward(n) => {
+            let parts = Parts::of(f, n, 2 * n * n);
+            parts.declare(body);
+            let forces = [("by_q", n, n), ("by_v", n, n)];
+            write_program(body, &f.program, scope, &|k| parts.place(k, "by_tau", &forces), support);
+            parts.finish(body, "by_tau", support);
+            solved(body, f, n, support);
+        }
+        Shape::CalledForward(n) => called_forward(body, f, n, scope, o, support),
+        Shape::Linear(n, m) => {
+            let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", at_least_one(n * n));
+            let parts = Parts::of(f, n, 2 * n * n);
+            parts.declare(body);
+            let rest = 3 * n * n + parts.count();
+            let forces = [("by_q", n, n), ("by_v", n, n)];
+            let places = |k: usize| match k < rest {
+                true => parts.place(k, "inverse", &forces),
+                false => assembled_place(n, m, k - rest),
+            };
+            write_program(body, &f.program, scope, &places, support);
+            parts.finish(body, "inverse", support);
+            products(body, n, "inverse", &[("by_q", n), ("by_v", n)], support);
+            assemble(body, n, m, support);
+        }
+        Shape::CalledLinear(n, m) => called_linear(body, f, (n, m), scope, o, support),
+        _ => {}
+    }
+}
+
+/// An array has a number at least.
+fn at_least_one(n: usize) -> usize {
+    n.max(1)
+}
+
+/// The inverse of a mass matrix among the outputs after the first so many.
+struct Parts<'a> {
+    form: &'a InverseForm,
+    n: usize,
+    first: usize,
+}
+
+impl<'a> Parts<'a> {
+    fn of(f: &'a Function, n: usize, first: usize) -> Parts<'a> {
+        Parts { form: &f.structure.inverse, n, first }
+    }
+
+    fn trunk(&self) -> &[usize] {
+        match self.form {
+            InverseForm::Explicit => &[],
+            InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk,
+        }
+    }
+
+    /// How many outputs stand beside the columns.
+    fn count(&self) -> usize {
+        self.n * self.trunk().len()
+    }
+
+    fn declare(&self, body: &mut String) {
+        let trunk: Vec<String> = self.trunk().iter().map(ToString::to_string).collect();
+        if trunk.is_empty() {
+            return;
+        }
+        let _ = writeln!(body, "    static const int trunk[{}] = {{{}}};", trunk.len(), trunk.join(", "));
+        if let InverseForm::BlockArrow { limbs, .. } = self.form {
+            let limb = |k: usize| {
+                limbs
+                    .iter()
+                    .position(|limb| limb.contains(&k))
+                    .map_or("-1".to_string(), |limb| limb.to_string())
+            };
+            let all: Vec<String> = (0..self.n).map(limb).collect();
+            let _ = writeln!(body, "    static const int limb[{}] = {{{}}};", self.n, all.join(", "));
+        }
+        let _ = writeln!(body, "    double beside[{}];", self.count());
+    }
+
+    /// Where an output goes: into what stands before, the inverse, or beside it.
+    fn place(&self, k: usize, inverse: &str, before: &[(&'static str, usize, usize)]) -> Option<String> {
+        if k < self.first {
+            return place(before, k);
+        }
+        let (k, square) = (k - self.first, self.n * self.n);
+        Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
+    }
+
+    /// Makes the inverse of its parts.
+    fn finish(&self, body: &mut String, inverse: &str, support: &mut Support) {
+        let (n, width) = (self.n, self.trunk().len());
+        let _ = match self.form {
+            InverseForm::Explicit => Ok(()),
+            InverseForm::LowRankUpdate(_) => {
+                support.completed |= width > 0;
+                match width {
+                    0 => Ok(()),
+                    _ => writeln!(body, "    complete({n}, {width}, {inverse}, trunk, beside);"),
+                }
+            }
+            InverseForm::BlockArrow { .. } => {
+                support.inverted = true;
+                writeln!(body, "    invert({n}, {width}, {inverse}, trunk, limb, beside);")
+            }
+        };
+    }
+}
+
+fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, support: &mut Support) {
+    let parts = Parts::of(f, n, n);
+    parts.declare(body);
+    let before = [("result", n, 1)];
+    write_program(body, &f.program, scope, &|k| parts.place(k, "inverse", &before), support);
+    parts.finish(body, "inverse", support);
+    if let InverseForm::BlockArrow { trunk, .. } = &f.structure.inverse {
+        support.solved = true;
+        let _ = writeln!(body, "    solve({n}, {}, inverse, trunk, limb, beside, result);", trunk.len());
+    }
+}
+
+/// Minus the products of the inverse with factors of so many columns, in their places.
+fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)], support: &mut Support) {
+    for (factor, columns) in factors.iter().filter(|(_, columns)| *columns > 0) {
+        support.products = true;
+        let _ = writeln!(body, "    minus_products({n}, {columns}, {inverse}, {factor});");
+    }
+}
+
+/// Derivatives of the accelerations in the place of those of the forces, but for the columns that are known.
+fn solved(body: &mut String, f: &Function, n: usize, support: &mut Support) {
+    for (matrix, known) in ["by_q", "by_v"].into_iter().zip(&f.structure.known) {
+        let mut first = 0;
+        while first < n {
+            let end = (first..n).find(|column| known.contains(column)).unwrap_or(n);
+            let from = if first == 0 { matrix.to_string() } else { format!("{matrix} + {}", first * n) };
+            products(body, n, "by_tau", &[(&from, end - first)], support);
+            first = end + 1;
+        }
+    }
+}
+
+fn called_forward(
+    body: &mut String,
+    f: &Function,
+    n: usize,
+    scope: &Scope<'_>,
+    o: &Outline<'_>,
+    support: &mut Support,
+) {
+    let _ = writeln!(
+        body,
+        "    double a[{}];\n    {};\n    {};",
+        at_least_one(n),
+        o.call("accelerations_and_inverse", &["q", "v", "tau"], &["a", "by_tau"]),
+        o.call("inverse_dynamics_derivatives", &["q", "v", "a"], &["by_q", "by_v"])
+    );
+    solved(body, f, n, support);
+    let columns = ["by_q", "by_v"].into_iter().zip(&f.structure.known);
+    let columns: Vec<(&str, usize)> =
+        columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, *column))).collect();
+    let place =
+        |k: usize| columns.get(k / n).map(|(matrix, column)| format!("{matrix}[{}]", column * n + k % n));
+    write_program(body, &f.program, scope, &place, support);
+}
+
+/// Where the derivatives by the inputs go, and after them what turns displacements.
+fn assembled_place(n: usize, m: usize, k: usize) -> Option<String> {
+    Some(match k < n * m {
+        true => format!("by_input[{}]", k / n * 2 * n + n + k % n),
+        false => format!("by_state[{}]", (k - n * m) / n * 2 * n + (k - n * m) % n),
+    })
+}
+
+/// Puts the system's matrices together: what the program left in them stays.
+fn assemble(body: &mut String, n: usize, m: usize, support: &mut Support) {
+    if n == 0 {
+        return;
+    }
+    let _ = writeln!(
+        body,
+        "    for (int j = 0; j < {n}; ++j) {{
+        for (int i = 0; i < {n}; ++i) {{
+            by_state[j * {twice} + {n} + i] = by_q[j * {n} + i];
+            by_state[({n} + j) * {twice} + i] = i == j ? 1.0 : 0.0;
+            by_state[({n} + j) * {twice} + {n} + i] = by_v[j * {n} + i];
+        }}
+    }}",
+        twice = 2 * n
+    );
+    if m > 0 {
+        support.products = true;
+        let _ = writeln!(
+            body,
+            "    double of_inputs[{}];
+    for (int j = 0; j < {m}; ++j) {{
+        for (int i = 0; i < {n}; ++i) {{
+            of_inputs[j * {n} + i] = by_input[j * {twice} + {n} + i];
+        }}
+    }}
+    minus_products({n}, {m}, inverse, of_inputs);
+    for (int j = 0; j < {m}; ++j) {{
+        for (int i = 0; i < {n}; ++i) {{
+            by_input[j * {twice} + i] = 0.0;
+            by_input[j * {twice} + {n} + i] = -of_inputs[j * {n} + i];
+        }}
+    }}",
+            n * m,
+            twice = 2 * n
+        );
+    }
+}
+
+/// The linear system by a call for the derivatives of forward dynamics.
+fn called_linear(
+    body: &mut String,
+    f: &Function,
+    (n, m): (usize, usize),
+    scope: &Scope<'_>,
+    o: &Outline<'_>,
+    support: &mut Support,
+) {
+    let _ = writeln!(
+        body,
+        "    double by_q[{0}], by_v[{0}], inverse[{0}], tau[{1}], more_by_q[{0}], more_by_v[{0}];",
+        at_least_one(n * n),
+        at_least_one(n)
+    );
+    let rest = n + 2 * n * n;
+    let before = [("tau", n, 1), ("more_by_q", n, n), ("more_by_v", n, n)];
+    let places = |k: usize| if k < rest { place(&before, k) } else { assembled_place(n, m, k - rest) };
+    write_program(body, &f.program, scope, &places, support);
+    let call = o.call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "inverse"]);
+    let _ = writeln!(body, "    {call};");
+    if (n..rest).any(|k| !is_zero(f, k)) {
+        products(body, n, "inverse", &[("more_by_q", n), ("more_by_v", n)], support);
+        let _ = writeln!(
+            body,
+            "    for (int k = 0; k < {}; ++k) {{\n        by_q[k] -= more_by_q[k];\n        by_v[k] -= more_by_v[k];\n    }}",
+            n * n
+        );
+    } else {
+        body.push_str("    (void)(more_by_q);\n    (void)(more_by_v);\n");
+    }
+    assemble(body, n, m, support);
+}

@@ -1,0 +1,112 @@
+//! Comments of the header.
+
+use super::function::{Given, Outline};
+use crate::catalogue::Argument;
+
+/// Width of lines.
+const WIDTH: usize = 100;
+
+/// Text that may stand in a comment: no end of it, no trigraphs, no control characters.
+pub fn safe(text: &str) -> String {
+    let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
+}
+
+/// Text without rustdoc's links.
+fn without_links(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find("](Self::") {
+        let (before, after) = rest.split_at(at);
+        match before.rfind('[') {
+            Some(open) => {
+                out.push_str(&before[..open]);
+                out.push_str(&before[open + 1..]);
+            }
+            None => out.push_str(before),
+        }
+        rest = after.find(')').map_or("", |end| &after[end + 1..]);
+    }
+    out + rest
+}
+
+/// A paragraph in lines that begin with so many characters.
+pub fn wrapped(text: &str, first: &str, others: &str) -> String {
+    let mut out = String::new();
+    let mut line = first.to_string();
+    let mut is_empty = true;
+    for word in safe(text).split_whitespace() {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            out.push_str(line.trim_end());
+            out.push('\n');
+            line = others.to_string();
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        is_empty = false;
+    }
+    out.push_str(line.trim_end());
+    out.push('\n');
+    out
+}
+
+/// What an argument is.
+fn argument(a: Argument) -> &'static str {
+    match a {
+        Argument::T => "time, s",
+        Argument::Q => "configuration",
+        Argument::V => "velocity",
+        Argument::A => "acceleration",
+        Argument::Tau => "generalized forces, N for translations, N m for rotations",
+        Argument::U => "inputs",
+        Argument::Standard(_) => "mass properties",
+        Argument::Factors(_) => "factors",
+        Argument::Momenta(_) => "generalized momenta, kg m/s for translations, kg m^2/s for rotations",
+        Argument::Given(..) | Argument::Into(..) | Argument::Called(_) => "numbers",
+    }
+}
+
+fn numbers(n: usize) -> String {
+    if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
+}
+
+/// The comment of a function: what it gives, then its arguments and results with their sizes.
+pub fn function(docs: &[String], arguments: &[Argument], results: &[Given], o: &Outline<'_>) -> String {
+    let mut text = String::new();
+    for (k, paragraph) in docs.iter().enumerate() {
+        let first = if k == 0 { "/* " } else { " * " };
+        text.push_str(&wrapped(&without_links(paragraph), first, " * "));
+    }
+    text.push_str(" *\n");
+    let sizes = |a: &Argument| match a {
+        Argument::T => String::new(),
+        a => format!(", {}", numbers(o.length(*a))),
+    };
+    for a in arguments.iter().filter(|a| !matches!(a, Argument::Into(..) | Argument::Called(_))) {
+        let line = format!("{}{}", argument(*a), sizes(a));
+        text.push_str(&wrapped(&line, &format!(" * {:9} ", a.name()), " *           "));
+    }
+    for (name, rows, columns) in results {
+        let line = match columns {
+            1 => format!("out: {}", numbers(*rows)),
+            _ => format!("out: {rows} by {columns}, column by column"),
+        };
+        text.push_str(&wrapped(&line, &format!(" * {name:9} "), " *           "));
+    }
+    text.push_str(" */\n");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comment_ends_where_it_should() {
+        assert_eq!(safe("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
+        assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
+    }
+}

@@ -1,0 +1,301 @@
+//! Frames: placements, velocities, accelerations and Jacobians of all of them by number. Links are gone through from the ground
+//! outwards, each by its own step.
+
+use super::body::{Scope, write_program};
+use super::docs;
+use super::function::Outline;
+use super::support::Support;
+use crate::catalogue::Argument;
+use crate::derive::{FrameSteps, LinkSteps, Output};
+use crate::lower::Program;
+use std::fmt::Write;
+
+const PLACED: Argument = Argument::Given("p", 0, 12);
+
+/// A function of frames: its name, arguments, result and documentation.
+struct Access {
+    name: &'static str,
+    arguments: &'static [Argument],
+    result: &'static str,
+    docs: &'static str,
+}
+
+const ACCESSES: [Access; 4] = [
+    Access {
+        name: "frame_placement",
+        arguments: &[Argument::Q],
+        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in those of the ground), then the position of its origin, m",
+        docs: "Placement of a frame in the ground.",
+    },
+    Access {
+        name: "frame_velocity",
+        arguments: &[Argument::Q, Argument::V],
+        result: "out: 6 numbers, m/s, then rad/s",
+        docs: "Velocity of a frame relative to the ground, in ground axes: of its origin, then angular.",
+    },
+    Access {
+        name: "frame_acceleration",
+        arguments: &[Argument::Q, Argument::V, Argument::A],
+        result: "out: 6 numbers, m/s^2, then rad/s^2",
+        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: of its origin, then angular.",
+    },
+    Access {
+        name: "frame_jacobian",
+        arguments: &[Argument::Q],
+        result: "out: 6 by NV, column by column",
+        docs: "Jacobian of a frame: its velocity is this times `v`.",
+    },
+];
+
+fn timed(o: &Outline<'_>, arguments: &[Argument]) -> Vec<Argument> {
+    o.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
+}
+
+fn signature(o: &Outline<'_>, access: &Access) -> String {
+    let spelled = o.spelled("int", access.name, &timed(o, access.arguments), &["result"]);
+    // The frame comes first, but for the parameters.
+    let open = spelled.find('(').map_or(0, |at| at + 1);
+    let at = if o.parameters.is_empty() { open } else { spelled.find(", ").map_or(open, |at| at + 2) };
+    format!("{}int frame, {}", &spelled[..at], &spelled[at..])
+}
+
+/// Declarations with the numbers of the frames.
+pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
+    let mut text = String::new();
+    if frames.is_empty() {
+        return text;
+    }
+    let upper = o.prefix.to_ascii_uppercase();
+    text.push_str("/* Frames by number. */\nenum {\n");
+    for (k, (name, says)) in frames.iter().enumerate() {
+        let comma = if k + 1 < frames.len() { "," } else { "" };
+        let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", docs::safe(says));
+    }
+    text.push_str("};\n\n");
+    for access in &ACCESSES {
+        text.push_str(&docs::wrapped(access.docs, "/* ", " * "));
+        text.push_str(" * Returns 0; 1 where there is no such frame.\n *\n");
+        text.push_str(&docs::wrapped(access.result, " * result    ", " *           "));
+        let _ = writeln!(text, " */\n{};\n", signature(o, access));
+    }
+    text
+}
+
+/// Definitions.
+pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
+    let (links, frames) = (&output.links, &output.frames);
+    if frames.is_empty() {
+        return String::new();
+    }
+    let mut text = String::new();
+    let most = links.iter().map(|link| link.velocities.len()).max();
+    if most.is_some() {
+        write_tables(&mut text, links, frames);
+        write_steps(&mut text, links, o, support);
+    }
+    write_frame_steps(&mut text, frames, o, support);
+    for access in &ACCESSES {
+        let body = access_body(access, o, most);
+        let unused = o.unused(&body, &timed(o, access.arguments), &["result"]);
+        let _ = writeln!(text, "{} {{\n{unused}{body}}}\n", signature(o, access));
+    }
+    text
+}
+
+/// What leads to each link and frame.
+fn write_tables(text: &mut String, links: &[LinkSteps], frames: &[FrameSteps]) {
+    let number = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
+    let parents: Vec<String> = links.iter().map(|link| number(link.parent)).collect();
+    let carriers: Vec<String> = frames.iter().map(|frame| number(frame.link)).collect();
+    let _ = writeln!(text, "static const int parent_of[{}] = {{{}}};", parents.len(), parents.join(", "));
+    let _ = writeln!(text, "static const int link_of[{}] = {{{}}};\n", carriers.len(), carriers.join(", "));
+    let _ = writeln!(
+        text,
+        "/* The links from the ground to a frame, the last one first. */
+static int path_to(int frame, int *path) {{
+    int count = 0;
+    for (int link = link_of[frame]; link >= 0; link = parent_of[link]) {{
+        path[count++] = link;
+    }}
+    return count;
+}}
+"
+    );
+}
+
+/// A step: a switch over links or frames.
+struct Step<'a> {
+    name: &'static str,
+    arguments: Vec<Argument>,
+    programs: Vec<(&'a Program, bool)>,
+}
+
+fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut Support) {
+    let mut body = String::new();
+    let scope = Scope { arguments: &step.arguments, parameters: o.parameters };
+    for (k, (program, is_copy)) in step.programs.iter().enumerate() {
+        let _ = writeln!(body, "    case {k}: {{");
+        if *is_copy {
+            body.push_str("    for (int k = 0; k < 12; ++k) {\n        result[k] = p[k];\n    }\n");
+        } else {
+            write_program(&mut body, program, &scope, &|k| Some(format!("result[{k}]")), support);
+        }
+        body.push_str("    break;\n    }\n");
+    }
+    let unused = o.unused(&body, &step.arguments, &["result"]);
+    let spelled = o.spelled("static void", step.name, &step.arguments, &["result"]);
+    let spelled =
+        spelled.replacen(&format!("{}_{}(", o.prefix, step.name), &format!("{}(int which, ", step.name), 1);
+    let _ = writeln!(
+        text,
+        "{spelled} {{\n{unused}    switch (which) {{\n{body}    default:\n        break;\n    }}\n}}\n"
+    );
+}
+
+fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support: &mut Support) {
+    use Argument::{A, Q, V};
+    let given = |n| Argument::Given("p", 0, n);
+    let of = |program: fn(&LinkSteps) -> &Program| links.iter().map(|link| (program(link), false)).collect();
+    let steps = [
+        Step {
+            name: "link_placement",
+            arguments: [timed(o, &[Q]), vec![PLACED]].concat(),
+            programs: of(|l| &l.placement),
+        },
+        Step {
+            name: "link_twist",
+            arguments: [timed(o, &[Q, V]), vec![given(6)]].concat(),
+            programs: of(|l| &l.twist),
+        },
+        Step {
+            name: "link_acceleration",
+            arguments: [timed(o, &[Q, V, A]), vec![given(12)]].concat(),
+            programs: of(|l| &l.acceleration),
+        },
+        Step {
+            name: "link_columns",
+            arguments: [timed(o, &[Q]), vec![PLACED, Argument::Given("o", 12, 3)]].concat(),
+            programs: of(|l| &l.columns),
+        },
+    ];
+    steps.iter().for_each(|step| write_step(text, step, o, support));
+    // Several coordinates that follow one another share a column.
+    let columns: Vec<&usize> = links.iter().flat_map(|link| &link.velocities).collect();
+    let mut firsts = Vec::new();
+    let mut next = 0;
+    for link in links {
+        firsts.push(next.to_string());
+        next += link.velocities.len();
+    }
+    firsts.push(next.to_string());
+    let columns: Vec<String> = match columns.is_empty() {
+        true => vec!["0".to_string()],
+        false => columns.iter().map(ToString::to_string).collect(),
+    };
+    let _ = writeln!(text, "static const int first_column[{}] = {{{}}};", firsts.len(), firsts.join(", "));
+    let _ = writeln!(text, "static const int column_of[{}] = {{{}}};\n", columns.len(), columns.join(", "));
+}
+
+fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, support: &mut Support) {
+    let given = |n| vec![Argument::Given("p", 0, n)];
+    let of =
+        |program: fn(&FrameSteps) -> &Program| frames.iter().map(|frame| (program(frame), false)).collect();
+    let placements =
+        frames.iter().map(|frame| (&frame.placement, frame.is_link && frame.link.is_some())).collect();
+    let steps = [
+        Step { name: "placement_on_link", arguments: given(12), programs: placements },
+        Step { name: "twist_on_link", arguments: given(18), programs: of(|f| &f.twist) },
+        Step { name: "acceleration_on_link", arguments: given(24), programs: of(|f| &f.acceleration) },
+    ];
+    steps.iter().for_each(|step| write_step(text, step, o, support));
+}
+
+/// The body of an access, with the most columns of a link, if there are any links.
+fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String {
+    let has_links = most.is_some();
+    let frames = format!("{}_FRAMES", o.prefix.to_ascii_uppercase());
+    let own = if o.parameters.is_empty() { "" } else { "self, " };
+    let time = if o.time { "t, " } else { "" };
+    let mut body = format!("    if (frame < 0 || frame >= {frames}) {{\n        return 1;\n    }}\n");
+    // Placement, twist and acceleration, one after another.
+    body.push_str("    double p[24] = {0.0};\n    p[0] = p[4] = p[8] = 1.0;\n");
+    let is_jacobian = access.name == "frame_jacobian";
+    let (twist, acceleration) = (access.name == "frame_velocity", access.name == "frame_acceleration");
+    if has_links {
+        let links = format!("{}_LINKS", o.prefix.to_ascii_uppercase());
+        if is_jacobian {
+            let _ = writeln!(body, "    double placements[12 * {links}];");
+        }
+        let _ = write!(
+            body,
+            "    int path[{links}];
+    const int count = path_to(frame, path);
+    for (int k = count - 1; k >= 0; --k) {{
+        double next[12];
+        link_placement(path[k], {own}{time}q, p, next);
+        memcpy(p, next, sizeof next);
+"
+        );
+        if is_jacobian {
+            body.push_str("        memcpy(placements + 12 * k, next, sizeof next);\n");
+        }
+        if acceleration {
+            let _ = write!(
+                body,
+                "        link_acceleration(path[k], {own}{time}q, v, a, p + 12, next + 6);\n        link_twist(path[k], {own}{time}q, v, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
+            );
+        }
+        if twist {
+            let _ = write!(
+                body,
+                "        link_twist(path[k], {own}{time}q, v, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
+            );
+        }
+        body.push_str("    }\n");
+    }
+    if is_jacobian {
+        let _ = write!(
+            body,
+            "    double placement[12];
+    placement_on_link(frame, {own}p, placement);
+    for (int k = 0; k < 6 * {}; ++k) {{
+        result[k] = 0.0;
+    }}
+",
+            o.nv
+        );
+        if has_links {
+            let _ = write!(
+                body,
+                "    for (int k = 0; k < count; ++k) {{
+        double columns[{}];
+        link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
+        for (int c = first_column[path[k]]; c < first_column[path[k] + 1]; ++c) {{
+            for (int i = 0; i < 6; ++i) {{
+                result[6 * column_of[c] + i] += columns[6 * (c - first_column[path[k]]) + i];
+            }}
+        }}
+    }}
+",
+                6 * most.unwrap_or(0).max(1)
+            );
+        }
+    } else {
+        let _ = match access.name {
+            // Steps have rotations row by row.
+            "frame_placement" => writeln!(
+                body,
+                "    double placed[12];
+    placement_on_link(frame, {own}p, placed);
+    for (int k = 0; k < 9; ++k) {{
+        result[k] = placed[3 * (k % 3) + k / 3];
+    }}
+    memcpy(result + 9, placed + 9, 3 * sizeof placed[0]);"
+            ),
+            "frame_velocity" => writeln!(body, "    twist_on_link(frame, {own}p, result);"),
+            _ => writeln!(body, "    acceleration_on_link(frame, {own}p, result);"),
+        };
+    }
+    body.push_str("    return 0;\n");
+    body
+}

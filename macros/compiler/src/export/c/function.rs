@@ -1,0 +1,210 @@
+//! Functions: their signatures, and where the outputs of their programs go.
+
+use super::body::{Scope, write_program};
+use super::composed;
+use super::docs;
+use super::names::letters;
+use super::support::Support;
+use crate::catalogue::{Argument, Called, Shape};
+use crate::derive::Function;
+use crate::lower::Operand;
+use crate::mechanism::Quantity;
+use std::fmt::Write;
+
+/// Sizes and names that functions share.
+pub struct Outline<'a> {
+    /// Before every name.
+    pub prefix: String,
+    /// The members of the struct of parameters, none if there are no parameters.
+    pub parameters: &'a [String],
+    /// `NQ`.
+    pub nq: usize,
+    /// `NV`.
+    pub nv: usize,
+    /// `NU`.
+    pub nu: usize,
+    /// Functions take time first.
+    pub time: bool,
+    /// How many passive forces others call for, and how many derivatives of them.
+    pub passive: [usize; 2],
+}
+
+/// A result: its name, rows and columns.
+pub type Given = (&'static str, usize, usize);
+
+/// The arrays that a function's results go into; none for one that returns a number.
+pub fn results(shape: Shape) -> Vec<Given> {
+    match shape {
+        Shape::Scalar | Shape::Record(_) | Shape::Symmetric(_) => Vec::new(),
+        Shape::Vector(n) | Shape::Array(n) => vec![("result", n, 1)],
+        Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],
+        Shape::Matrix(m, n) => vec![("result", m, n)],
+        Shape::Pair(n) => vec![("by_q", n, n), ("by_v", n, n)],
+        Shape::Forward(n) | Shape::CalledForward(n) => vec![("by_q", n, n), ("by_v", n, n), ("by_tau", n, n)],
+        Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
+            vec![("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]
+        }
+        Shape::Jacobians(rows, n, m) => {
+            vec![("by_q", rows, n), ("by_v", rows, n), ("by_a", rows, n), ("by_u", rows, m)]
+        }
+        Shape::Hessian(n) => vec![("by_qq", n, n), ("by_qv", n, n), ("by_vv", n, n), ("by_qa", n, n)],
+        Shape::InputHessian(n, m) => vec![
+            ("by_qq", n, n),
+            ("by_qv", n, n),
+            ("by_vv", n, n),
+            ("by_qu", n, m),
+            ("by_vu", n, m),
+            ("by_uu", m, m),
+        ],
+        Shape::Accelerated(n) => vec![("result", n, 1), ("inverse", n, n)],
+    }
+}
+
+impl Outline<'_> {
+    /// How many numbers an argument has.
+    pub fn length(&self, argument: Argument) -> usize {
+        match argument {
+            Argument::T => 1,
+            Argument::Q => self.nq,
+            Argument::V | Argument::A | Argument::Tau => self.nv,
+            Argument::U => self.nu,
+            Argument::Given(_, _, n)
+            | Argument::Standard(n)
+            | Argument::Factors(n)
+            | Argument::Momenta(n) => n,
+            Argument::Into(..) | Argument::Called(_) => 0,
+        }
+    }
+
+    /// A function's name with its type and what it takes.
+    pub fn signature(&self, name: &str, arguments: &[Argument], shape: Shape) -> String {
+        let kind = if shape == Shape::Scalar { "double" } else { "void" };
+        let given: Vec<&str> = results(shape).iter().map(|(name, ..)| *name).collect();
+        self.spelled(kind, name, arguments, &given)
+    }
+
+    /// The same with any results.
+    pub fn spelled(&self, kind: &str, name: &str, arguments: &[Argument], given: &[&str]) -> String {
+        let mut list: Vec<String> = Vec::new();
+        if !self.parameters.is_empty() {
+            list.push(format!("const {} *self", self.prefix));
+        }
+        list.extend(arguments.iter().filter(|a| is_passed(a)).map(|a| match a {
+            Argument::T => "double t".to_string(),
+            a => format!("const double *{}", a.name()),
+        }));
+        list.extend(given.iter().map(|name| format!("double *{name}")));
+        let list = if list.is_empty() { "void".to_string() } else { list.join(", ") };
+        format!("{kind} {}_{name}({list})", self.prefix)
+    }
+
+    /// A call of a function with the arguments by name, and what stands behind them.
+    pub fn call(&self, name: &str, arguments: &[&str], given: &[&str]) -> String {
+        let own = (!self.parameters.is_empty()).then_some("self");
+        let time = self.time.then_some("t");
+        let list: Vec<&str> = own
+            .into_iter()
+            .chain(time)
+            .chain(arguments.iter().copied())
+            .chain(given.iter().copied())
+            .collect();
+        format!("{}_{name}({})", self.prefix, list.join(", "))
+    }
+
+    /// Lines that keep compilers from saying that an argument, or an array for results, is not used.
+    pub fn unused(&self, body: &str, arguments: &[Argument], given: &[&str]) -> String {
+        let own = (!self.parameters.is_empty()).then_some("self");
+        let passed = arguments.iter().filter(|a| is_passed(a)).map(|a| a.name());
+        let names = own.into_iter().chain(passed).chain(given.iter().copied());
+        names.filter(|name| !mentions(body, name)).map(|name| format!("    (void)({name});\n")).collect()
+    }
+}
+
+fn is_passed(argument: &Argument) -> bool {
+    !matches!(argument, Argument::Into(..) | Argument::Called(_))
+}
+
+/// True where a word stands in a text.
+pub fn mentions(text: &str, word: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.match_indices(word).any(|(at, _)| {
+        let before = text.get(..at).and_then(|t| t.chars().next_back());
+        let after = text.get(at + word.len()..).and_then(|t| t.chars().next());
+        !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
+    })
+}
+
+/// The name without what marks functions that only others call, in letters of C.
+pub fn plain(name: &str) -> String {
+    letters(name.trim_start_matches('_'))
+}
+
+/// A definition, with its documentation if it is for others.
+pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
+    let mut body = String::new();
+    let scope_arguments: Vec<Argument> =
+        f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect();
+    let scope = Scope { arguments: &scope_arguments, parameters: o.parameters };
+    for called in Called::ALL {
+        write_call(&mut body, f, called, o);
+    }
+    match f.shape {
+        Shape::Scalar => {
+            let result = write_program(&mut body, &f.program, &scope, &|_| None, support);
+            let _ = writeln!(body, "    return {result};");
+        }
+        Shape::Inverse(_)
+        | Shape::Forward(_)
+        | Shape::Linear(..)
+        | Shape::Accelerated(_)
+        | Shape::CalledForward(_)
+        | Shape::CalledLinear(..) => composed::write(&mut body, f, &scope, o, support),
+        _ => {
+            let results = results(f.shape);
+            write_program(&mut body, &f.program, &scope, &|k| place(&results, k), support);
+        }
+    }
+    let given: Vec<&str> = results(f.shape).iter().map(|(name, ..)| *name).collect();
+    let unused = o.unused(&body, &f.arguments, &given);
+    let hidden = if f.is_hidden() { "static " } else { "" };
+    let signature = o.signature(&plain(&f.name), &f.arguments, f.shape);
+    format!("{hidden}{signature} {{\n{unused}{body}}}\n")
+}
+
+/// A declaration with its documentation.
+pub fn declare(f: &Function, o: &Outline<'_>) -> String {
+    let results = results(f.shape);
+    let docs = docs::function(&f.docs, &f.arguments, &results, o);
+    format!("{docs}{};\n", o.signature(&plain(&f.name), &f.arguments, f.shape))
+}
+
+/// Where an output stands among results that follow one another.
+pub fn place(results: &[Given], mut k: usize) -> Option<String> {
+    for (name, rows, columns) in results {
+        if k < rows * columns {
+            return Some(format!("{name}[{k}]"));
+        }
+        k -= rows * columns;
+    }
+    None
+}
+
+/// Calls a function whose results a program begins with, if it names any.
+fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) {
+    let argument = Argument::Called(called);
+    if !f.program.symbols().iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
+        return;
+    }
+    let (name, [forces, derivatives]) = (argument.name(), o.passive);
+    let length = if called == Called::PassiveForces { forces } else { derivatives };
+    let _ = writeln!(
+        body,
+        "    double {name}[{length}];\n    {};",
+        o.call(&plain(called.function()), &["q", "v"], &[name])
+    );
+}
+
+/// True for an output that is always zero.
+pub fn is_zero(f: &Function, k: usize) -> bool {
+    f.program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0))
+}

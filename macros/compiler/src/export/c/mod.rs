@@ -1,0 +1,18 @@
+//! C99: a source file and a header of a mechanism, which need nothing but the mathematical library.
+//!
+//! Vectors are plain arrays, matrices stand column by column. Functions keep nothing between calls and allocate nothing, so that
+//! any number of threads may call them.
+
+mod body;
+mod composed;
+mod docs;
+mod frames;
+mod function;
+mod names;
+mod pieces;
+mod scalar;
+mod source;
+mod support;
+
+pub use names::identifier;
+pub use source::{Files, Options, Unfit, write};

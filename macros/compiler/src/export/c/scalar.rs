@@ -1,0 +1,86 @@
+//! Numbers: everything is written for `double`, and turned into `float` word by word where that is asked for.
+
+/// Functions of `math.h` that are used.
+const FUNCTIONS: &[&str] = &[
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
+    "fabs", "copysign", "pow", "fmin", "fmax", "fma",
+];
+
+/// Other words that differ.
+const WORDS: &[(&str, &str)] = &[
+    ("double", "float"),
+    ("FP_FAST_FMA", "FP_FAST_FMAF"),
+    ("DBL_EPSILON", "FLT_EPSILON"),
+    ("HUGE_VAL", "HUGE_VALF"),
+];
+
+/// A number as C reads it.
+pub fn constant(c: f64) -> String {
+    format!("{c:?}")
+}
+
+/// Code for `double` as code for `float`. Comments stay.
+pub fn in_single_precision(code: &str) -> String {
+    let mut out = String::with_capacity(code.len());
+    let mut rest = code;
+    while let Some(first) = rest.chars().next() {
+        let length = match first {
+            '/' if rest.starts_with("/*") => rest.find("*/").map_or(rest.len(), |end| end + 2),
+            '"' => rest.get(1..).and_then(|r| r.find('"')).map_or(rest.len(), |end| end + 2),
+            c if c.is_ascii_digit() => number_length(rest),
+            c if c.is_ascii_alphabetic() || c == '_' => {
+                rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len())
+            }
+            c => c.len_utf8(),
+        };
+        let (word, after) = rest.split_at(length);
+        match first {
+            c if c.is_ascii_digit() => out.push_str(&number(word)),
+            _ => out.push_str(&self::word(word, after)),
+        }
+        rest = after;
+    }
+    out
+}
+
+fn word(word: &str, after: &str) -> String {
+    if let Some((_, single)) = WORDS.iter().find(|(double, _)| *double == word) {
+        return (*single).to_string();
+    }
+    let is_call = after.starts_with('(') && FUNCTIONS.contains(&word);
+    if is_call { format!("{word}f") } else { word.to_string() }
+}
+
+fn number_length(text: &str) -> usize {
+    let mut exponent = false;
+    text.find(|c: char| {
+        let goes_on = c.is_ascii_alphanumeric() || c == '.' || (exponent && matches!(c, '+' | '-'));
+        exponent = matches!(c, 'e' | 'E');
+        !goes_on
+    })
+    .unwrap_or(text.len())
+}
+
+/// A whole number as it is; another in single precision.
+fn number(text: &str) -> String {
+    let is_whole = !text.contains(['.', 'e', 'E']) || text.starts_with("0x");
+    match text.parse::<f64>() {
+        Ok(x) if !is_whole && (x as f32).is_finite() => format!("{:?}f", x as f32),
+        Ok(_) if !is_whole => "HUGE_VALF".to_string(),
+        _ => text.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_single_precision;
+
+    #[test]
+    fn words_and_numbers_become_single() {
+        let code = "/* 1.5 double */ double x[3] = {1.5, -2e-7, 1e300}; y = sqrt(x[0]) + my_sin(x) + self->sin + 0.1;";
+        assert_eq!(
+            in_single_precision(code),
+            "/* 1.5 double */ float x[3] = {1.5f, -2e-7f, HUGE_VALF}; y = sqrtf(x[0]) + my_sin(x) + self->sin + 0.1f;"
+        );
+    }
+}

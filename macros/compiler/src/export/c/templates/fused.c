@@ -1,0 +1,10 @@
+/* Products with sums: one instruction where the processor has it. */
+#ifdef FP_FAST_FMA
+#define mul_add(a, b, c) fma(a, b, c)
+#define mul_sub(a, b, c) fma(a, b, -(c))
+#define neg_mul_add(a, b, c) fma(-(a), b, c)
+#else
+#define mul_add(a, b, c) ((a) * (b) + (c))
+#define mul_sub(a, b, c) ((a) * (b) - (c))
+#define neg_mul_add(a, b, c) ((c) - (a) * (b))
+#endif
