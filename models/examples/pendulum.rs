@@ -61,3 +61,8 @@ fn main() -> Result<(), Error> {
     assert_eq!(samples, 11, "one every half second, from the beginning to the end");
     Ok(())
 }
+
+#[test]
+fn it_holds() -> Result<(), Error> {
+    main()
+}

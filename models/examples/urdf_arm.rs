@@ -56,3 +56,8 @@ fn main() {
     println!("check             {:.3?}", found.as_slice());
     assert!((found - a).amax() < 1e-10, "the elbow is accelerated, and nothing else");
 }
+
+#[test]
+fn it_holds() {
+    main();
+}

@@ -146,6 +146,53 @@
 //! | slipping pairs with friction (`Slipping`) | [`BowlingBall`], [`SlidingRod`] |
 //! | a base whose motion is prescribed (`massive`) | [`RateGyroscope`], [`BallOnTurntable`] |
 //! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
+//!
+//! # By topic of the textbook
+//!
+//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, in the order of the chapters on geometry, tensors, kinematics,
+//! frames, statics, dynamics, energy, and Lagrange's, Hamilton's, and Gibbs's, Appell's and Kane's equations; then aircraft,
+//! linearisation and flight modes, linear systems and frequency response. The last column names a mechanism, or a test by its file in
+//! `tests` (of `linkwork-design` where it says so) and its function.
+//!
+//! | topic | words | shown and proved by |
+//! | --- | --- | --- |
+//! | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `words_for_vectors` |
+//! | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
+//! | inertia of solids, parallel axes, rotated inertias; principal moments that a body can have | `inertia = …`, `validate()` | `validate.rs` |
+//! | tensors as matrices in a chosen frame, nonstandard and reciprocal frames | left out: components come in orthonormal frames (`resolved_in`) | |
+//! | position, velocity, acceleration, angular velocity and acceleration with respect to a frame | `r`, `v`, `a`, `omega`, `alpha` with slashes | [`RateGyroscope`]; `accelerations.rs` |
+//! | cylindrical and spherical coordinates | a chain of joints, or `Coordinate`s | [`SphericalPendulum`]; `spherical_pendulum_in_two_charts` |
+//! | frames along curves (Frenet and Serret) | left out as words; a place by an expression of a coordinate | `beads_on_wires` |
+//! | closed loops, rolling, sliding | `Pin` and others that close loops, `Rolling`, `Slipping` | [`FourBar`], [`RollingDisk`], [`BowlingBall`] |
+//! | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
+//! | equilibria with held coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
+//! | stability by energy and by eigenvalues | `stiffness`, `linear_system` of it | `a_bead_on_a_hoop_has_four_equilibria` |
+//! | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of it | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
+//! | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
+//! | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `bodies_share_momentum_and_energy` |
+//! | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
+//! | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
+//! | what is conserved: energy, Jacobi's integral, cyclic coordinates, momenta | the word `conserved` | `conserved.rs` |
+//! | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
+//! | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
+//! | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
+//! | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
+//! | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
+//! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | `tables.rs` |
+//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
+//! | trim | `linkwork_design::steady` | [`Aircraft`]; `tests/steady.rs` here and in design |
+//! | forces linear in accelerations (derivatives by `α̇`, added mass) | left out so far, but for inerters, whose matrix is symmetric | [`TunedSuspension`] |
+//! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `modes` of a linear system | `phugoid_of_lanchester` in `flight`, `boeing_747` and `transport_modes` in `anchors` of design |
+//! | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
+//! | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
+//! | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
+//! | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh` in `anchors` of design |
+//! | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
+//! | symbolic linear equations, Routh's reduction, speeds of one's own choice | left out so far: linear systems come in numbers, speeds are those of the joints | |
+//! | Gibbs's, Appell's and Kane's equations in print | left out so far: `equations` takes `lagrange`, `hamilton` and `structure` | |
+//! | all that acts on a body in one list or drawing | left out so far: forces and reactions are asked for one by one | |
+//! | work and power of one force, centres of percussion, instantaneous centres, screw axes | left out as words: what `r`, `v` and `omega` give of them, an output can say | |
+//! | cables around spheres and cylinders | left out so far: what acts between two points runs straight | |
 
 mod aircraft;
 mod andrews_squeezer;

@@ -1,0 +1,261 @@
+//! A seven-axis arm learns what it weighs: it moves along periodic trajectories, its torques are regressed on base parameters,
+//! friction and rotors, and what was found is put back into the robot, as bodies that can be.
+//!
+//! Sources: Swevers, Ganseman, Tükel, De Schutter and Van Brussel, *Optimal robot excitation and identification*, IEEE Transactions
+//! on Robotics and Automation 13 (1997), for the trajectories; Gautier and Khalil (1990) for the base parameters.
+//!
+//! ```text
+//! cargo run --release --example identification -p linkwork-models
+//! ```
+
+use linkwork::identification::approach;
+use linkwork::nalgebra::{Cholesky, SMatrix, SVector};
+use linkwork::prelude::*;
+use linkwork::{Inertial, ParameterError};
+
+/// The arm of the file. Its figures are parameters, and so are rotors of its motors, of which the file says nothing.
+#[mechanism(
+    urdf = "urdf/panda.urdf",
+    lock = ["panda_finger_joint1", "panda_finger_joint2"],
+    parameters = [inertial, damping, friction],
+    regressor
+)]
+#[derive(Clone, Copy, Debug)]
+struct Arm {
+    rotor1: f64,
+    rotor2: f64,
+    rotor3: f64,
+    rotor4: f64,
+    rotor5: f64,
+    rotor6: f64,
+    rotor7: f64,
+    #[acts(on = panda_joint1, inertance = rotor1)]
+    motor1: Inerter,
+    #[acts(on = panda_joint2, inertance = rotor2)]
+    motor2: Inerter,
+    #[acts(on = panda_joint3, inertance = rotor3)]
+    motor3: Inerter,
+    #[acts(on = panda_joint4, inertance = rotor4)]
+    motor4: Inerter,
+    #[acts(on = panda_joint5, inertance = rotor5)]
+    motor5: Inerter,
+    #[acts(on = panda_joint6, inertance = rotor6)]
+    motor6: Inerter,
+    #[acts(on = panda_joint7, inertance = rotor7)]
+    motor7: Inerter,
+}
+
+type Joints = SVector<f64, 7>;
+const BASE: usize = Arm::BASE_PARAMETERS.len();
+/// After the base parameters: damping and dry friction of every joint, and the rotors of all but the first two. Those act as the
+/// inertias of their links about the same axes do, which turn about nothing else along them.
+const COLUMNS: usize = BASE + 7 + 7 + 5;
+/// Speed around which dry friction is smooth, rad/s: `friction_speed` of the mechanism, as it is if nothing is said.
+const SMOOTH: f64 = 0.01;
+
+impl Arm {
+    /// Damping, friction and rotors of the joints.
+    fn joints(&self) -> [Joints; 3] {
+        let damping = [
+            self.panda_joint1_damping,
+            self.panda_joint2_damping,
+            self.panda_joint3_damping,
+            self.panda_joint4_damping,
+            self.panda_joint5_damping,
+            self.panda_joint6_damping,
+            self.panda_joint7_damping,
+        ];
+        let friction = [
+            self.panda_joint1_friction,
+            self.panda_joint2_friction,
+            self.panda_joint3_friction,
+            self.panda_joint4_friction,
+            self.panda_joint5_friction,
+            self.panda_joint6_friction,
+            self.panda_joint7_friction,
+        ];
+        let rotors =
+            [self.rotor1, self.rotor2, self.rotor3, self.rotor4, self.rotor5, self.rotor6, self.rotor7];
+        [damping, friction, rotors].map(Joints::from)
+    }
+
+    fn with_joints(self, [damping, friction, rotors]: [Joints; 3]) -> Arm {
+        Arm {
+            panda_joint1_damping: damping[0],
+            panda_joint2_damping: damping[1],
+            panda_joint3_damping: damping[2],
+            panda_joint4_damping: damping[3],
+            panda_joint5_damping: damping[4],
+            panda_joint6_damping: damping[5],
+            panda_joint7_damping: damping[6],
+            panda_joint1_friction: friction[0],
+            panda_joint2_friction: friction[1],
+            panda_joint3_friction: friction[2],
+            panda_joint4_friction: friction[3],
+            panda_joint5_friction: friction[4],
+            panda_joint6_friction: friction[5],
+            panda_joint7_friction: friction[6],
+            rotor1: rotors[0],
+            rotor2: rotors[1],
+            rotor3: rotors[2],
+            rotor4: rotors[3],
+            rotor5: rotors[4],
+            rotor6: rotors[5],
+            rotor7: rotors[6],
+            ..self
+        }
+    }
+}
+
+/// Numbers between −1 and 1, the same in every run (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A sum of sines that repeats itself, by joint and harmonic: position, velocity and acceleration are exact.
+struct Fourier([[[f64; 2]; 5]; 7]);
+
+impl Fourier {
+    /// Of moderate size, about a posture with a bent elbow.
+    fn new(random: &mut Random) -> Fourier {
+        Fourier([[(); 5]; 7].map(|joint| joint.map(|()| [0.8 * random.next(), 0.8 * random.next()])))
+    }
+
+    fn at(&self, t: f64) -> [Joints; 3] {
+        const RATE: f64 = 0.6;
+        let mut q = Joints::from([0.0, 0.3, 0.0, -1.6, 0.0, 1.8, 0.0]);
+        let (mut v, mut a) = (Joints::zeros(), Joints::zeros());
+        for (j, harmonics) in self.0.iter().enumerate() {
+            for (k, [sine, cosine]) in harmonics.iter().enumerate() {
+                let rate = RATE * (k + 1) as f64;
+                let (s, c) = (rate * t).sin_cos();
+                q[j] += (sine * s - cosine * c) / rate;
+                v[j] += sine * c + cosine * s;
+                a[j] += rate * (cosine * c - sine * s);
+            }
+        }
+        [q, v, a]
+    }
+}
+
+/// The robot as it is: links that differ from the file's, a load in the hand, friction and rotors.
+fn robot_as_it_is() -> Arm {
+    let mut random = Random(7);
+    let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let other = |link: Inertial<f64>| {
+        let off = [(); 3].map(|()| 0.04 * random.next());
+        let at = [0, 1, 2].map(|k| link.com[k] + off[k]);
+        link.scaled(0.9).plus(&Inertial::point(0.15 * link.mass, at))
+    };
+    arm.set_inertials(&arm.inertials().map(other));
+    arm.panda_hand = arm.panda_hand.plus(&Inertial::point(1.2, [0.01, 0.02, 0.12]));
+    arm.with_joints([
+        [0.8, 0.7, 0.6, 0.5, 0.3, 0.25, 0.2].into(),
+        [0.9, 0.8, 0.5, 0.6, 0.3, 0.3, 0.2].into(),
+        [0.6, 0.5, 0.4, 0.4, 0.15, 0.12, 0.1].into(),
+    ])
+}
+
+/// The columns that torques are a sum of.
+fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
+    let mut all = SMatrix::<f64, 7, COLUMNS>::zeros();
+    all.fixed_view_mut::<7, BASE>(0, 0).copy_from(&arm.base_regressor(q, v, a));
+    for j in 0..7 {
+        all[(j, BASE + j)] = v[j];
+        all[(j, BASE + 7 + j)] = (v[j] / SMOOTH).tanh();
+        if j > 1 {
+            all[(j, BASE + 14 + j - 2)] = a[j];
+        }
+    }
+    all
+}
+
+/// The root of the mean square of what one robot's torques differ from another's on a trajectory, N·m.
+fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
+    let square = |k: usize| {
+        let [q, v, a] = trajectory.at(0.02 * k as f64);
+        (one.inverse_dynamics(&q, &v, &a) - other.inverse_dynamics(&q, &v, &a)).norm_squared()
+    };
+    ((0..500).map(square).sum::<f64>() / (500.0 * 7.0)).sqrt()
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (truth, mut random) = (robot_as_it_is(), Random(42));
+    truth.validate()?;
+    let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+
+    // Excite, and measure torques with noise: the normal equations of the regression.
+    let (mut normal, mut right) =
+        (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
+    for _ in 0..6 {
+        let trajectory = Fourier::new(&mut random);
+        for k in 0..400 {
+            let state = trajectory.at(0.025 * k as f64);
+            let [q, v, a] = &state;
+            let torque = truth.inverse_dynamics(q, v, a) + Joints::from_fn(|_, _| 0.05 * random.next());
+            let y = columns(&arm, &state);
+            normal += y.transpose() * y;
+            right += y.transpose() * torque;
+        }
+    }
+    let found = Cholesky::new(normal).ok_or("some parameters were not excited")?.solve(&right);
+
+    // Put back: the joints' own figures, then the bodies nearest to the file's that move as was measured. What was measured has
+    // noise, so that no bodies may have it as it is.
+    let part = |first: usize| Joints::from_fn(|j, _| found[first + j]);
+    let rotors = Joints::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
+    arm = arm.with_joints([part(BASE), part(BASE + 7), rotors]);
+    let base = found.fixed_rows::<BASE>(0).into_owned();
+    approach(&mut arm, &base, 1e-6)?;
+    arm.validate()?;
+
+    println!("joint   damping       friction      rotor");
+    let ([d, f, r], [td, tf, tr]) = (arm.joints(), truth.joints());
+    for j in 0..7 {
+        println!(
+            "{}  {:6.3} {:6.3} {:6.3} {:6.3} {:6.3} {:6.3}",
+            j + 1,
+            d[j],
+            td[j],
+            f[j],
+            tf[j],
+            r[j],
+            tr[j]
+        );
+    }
+    assert!((d - td).amax() < 0.03 && (f - tf).amax() < 0.03, "friction of all joints");
+    assert!((r - tr).rows(2, 5).amax() < 0.03, "rotors of all but the first two");
+
+    // The base parameters are those of the robot, the first two rotors among them.
+    let expected = truth.base_parameters(&truth.standard_parameters());
+    let mut got = arm.base_parameters(&arm.standard_parameters());
+    got[index!(Arm::BASE_PARAMETERS, "panda_link1.zz")] -= truth.rotor1;
+    got[index!(Arm::BASE_PARAMETERS, "panda_link2.zz")] -= truth.rotor2;
+    println!("base parameters: {:.3} off at most, of {:.1}", (got - expected).amax(), expected.amax());
+    assert!((got - expected).amax() < 0.05);
+
+    // On a trajectory that it has not seen, the robot does what was learnt, and not what its file says.
+    let fresh = Fourier::new(&mut random);
+    let file = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (before, after) = (difference(&file, &truth, &fresh), difference(&arm, &truth, &fresh));
+    println!("torques off by {before:.3} N·m by the file, {after:.4} N·m as identified");
+    assert!(before > 1.0 && after < 0.02);
+
+    // What no body has does not go unnoticed.
+    let wrong: Result<(), ParameterError> =
+        Arm { panda_link5: Inertial { mass: -1.0, ..arm.panda_link5 }, ..arm }.validate();
+    println!("{}", wrong.err().map_or(String::new(), |error| error.to_string()));
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+    main()
+}

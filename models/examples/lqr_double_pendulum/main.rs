@@ -1,0 +1,102 @@
+//! A cart keeps two poles upright, one on the other: a linear-quadratic regulator on generated derivatives, and from how far it
+//! brings the poles back.
+//!
+//! ```text
+//! cargo run --release --example lqr_double_pendulum -p linkwork-models
+//! ```
+
+mod controller;
+#[path = "../regulator/mod.rs"]
+mod regulator;
+
+use controller::{Cart, CostsToGo, Regulator, State, control, costs};
+use linkwork::discrete;
+use linkwork::prelude::*;
+use regulator::regulator;
+
+/// How often the controller looks, s.
+const PERIOD: f64 = 0.005;
+
+/// What a run from leaning poles ends with.
+struct Run {
+    q: State,
+    v: State,
+    strongest: f64,
+    costs: f64,
+}
+
+/// Lets the poles go at rest, and the cart push, for some seconds.
+fn run(regulator: &Regulator, lower: f64, upper: f64, seconds: f64) -> Result<Run, Error> {
+    let (cart, method, rate) = (Cart {}, Rk4::step(PERIOD), costs());
+    // The hip's angle is relative to the lower pole.
+    let (mut q, mut v) = (State::from([0.0, lower, upper - lower]), State::zeros());
+    let (mut strongest, mut costs) = (0.0_f64, 0.0);
+    for _ in 0..(seconds / PERIOD) as usize {
+        let push = control(regulator, &q, &v);
+        strongest = strongest.max(push.abs());
+        costs += (q.dot(&(rate.qq * q)) + v.dot(&(rate.vv * v)) + push * rate.uu[0] * push) / 2.0;
+        (q, v) = discrete::step(&cart, &method, 0.0, &q, &v, &[push].into())?;
+        if q[1].abs() > 1.5 {
+            break; // The poles lie on the rail.
+        }
+    }
+    Ok(Run { q, v, strongest, costs })
+}
+
+/// Prints what becomes of three starts, and holds it against what the regulator promises.
+fn three_starts(regulator: &Regulator, to_go: &CostsToGo) -> Result<(), Error> {
+    println!("lower, rad   upper, rad   strongest push, N   costs   promised   left after 6 s");
+    for (lower, upper) in [(0.01, 0.0), (0.1, 0.1), (0.2, -0.05)] {
+        let Run { q, v, strongest, costs } = run(regulator, lower, upper, 6.0)?;
+        let promised = to_go.at(&[0.0, lower, upper - lower].into(), &State::zeros());
+        let left = q.amax().max(v.amax());
+        println!("{lower:10.2} {upper:12.2} {strongest:19.2} {costs:7.3} {promised:10.3} {left:16.1e}");
+        assert!(left < 2e-3, "the poles stand, and the cart is back");
+        // The promise is that of the linear system without a limit: kept where angles are small and the motor strong enough.
+        let kept = (costs / promised - 1.0).abs() < 0.01;
+        assert!(kept || strongest == 30.0, "{costs} is about {promised}");
+    }
+    Ok(())
+}
+
+/// Prints from which angles the poles come back, at most 0.6 rad to either side, and returns it row by row.
+fn basin(regulator: &Regulator) -> Result<[[bool; 13]; 13], Error> {
+    let mut caught = [[false; 13]; 13];
+    println!(
+        "\nfrom where it catches the poles (+): lower pole from −0.6 to 0.6 rad to the right, upper one upwards"
+    );
+    for (i, row) in caught.iter_mut().enumerate().rev() {
+        for (j, caught) in row.iter_mut().enumerate() {
+            let [upper, lower] = [i, j].map(|k| 0.1 * (k as f64 - 6.0));
+            let end = run(regulator, lower, upper, 4.0)?;
+            *caught = end.q.rows(1, 2).amax() < 0.05;
+            print!(" {}", if *caught { '+' } else { '·' });
+        }
+        println!();
+    }
+    Ok(caught)
+}
+
+fn main() -> Result<(), Error> {
+    let (upright, still) = (State::zeros(), [0.0].into());
+    let found = regulator(&Cart {}, &Rk4::step(PERIOD), &upright, &still, &costs());
+    let (regulator, to_go) = found.expect("a push on the cart can keep both poles upright");
+    println!("push = {:.2?} · q + {:.2?} · v\n", regulator.by_q.as_slice(), regulator.by_v.as_slice());
+    three_starts(&regulator, &to_go)?;
+
+    let caught = basin(&regulator)?;
+    // Left and right are alike; what leans little comes back, what leans much does not.
+    for (i, row) in caught.iter().enumerate() {
+        for (j, &caught_here) in row.iter().enumerate() {
+            assert_eq!(caught_here, caught[12 - i][12 - j], "the mirrored poles end alike");
+        }
+    }
+    assert!((5..8).all(|i| (5..8).all(|j| caught[i][j])), "0.1 rad of either pole come back");
+    assert!(!caught[12][0] && !caught[0][12], "a pole that leans by 0.6 rad against the other does not");
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Error> {
+    main()
+}

@@ -1,0 +1,211 @@
+//! A cart with a pole goes from one end of its rail to the other, and never over: model-predictive control. To lean the pole
+//! to where it shall go, the cart has to go back first, for which it has two centimetres. Twenty-five times a second the next
+//! second is linearised about what was planned before, and a quadratic program finds the pushes that cost least within the
+//! limits of rail and motor.
+//!
+//! ```text
+//! cargo run --release --example mpc -p linkwork-models
+//! ```
+
+mod regulator;
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+use linkwork::discrete;
+use linkwork::optimal::{Quadratic, Value};
+use linkwork::prelude::*;
+use regulator::regulator;
+
+/// A cart on a short rail, with a pole pinned to it, upright at zero.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct CartPole {
+    #[body(mass = 1)]
+    cart: Body,
+    #[body(mass = 0.2, com = 0.5 * y, inertia = rod(0.2, 1, y))]
+    pole: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> pole, about = z)]
+    hinge: Pin,
+    #[limit(on = rail, from = -0.52, to = 0.52, max_effort = 8)]
+    buffers: Limit,
+    #[acts(on = rail)]
+    push: Force,
+}
+
+/// Place of the cart and lean of the pole, then their rates.
+type State = SVector<f64, 4>;
+const RAIL: usize = index!(CartPole::VELOCITIES, "rail");
+
+/// Steps that are planned, and the period of each, s.
+const STEPS: usize = 25;
+const PERIOD: f64 = 0.04;
+const METHOD: Rk4<f64> = Rk4::step(PERIOD);
+/// Where it should come to rest: two centimetres before the buffer.
+const GOAL: State = State::new(0.5, 0.0, 0.0, 0.0);
+/// Numbers of a step in the quadratic program: a push, then the state after it.
+const SIZE: usize = 5;
+
+/// Costs of a period at rest in a place.
+fn costs() -> Quadratic<f64, 2, 1> {
+    Quadratic {
+        qq: SMatrix::from_diagonal(&[20.0, 5.0].into()),
+        vv: SMatrix::from_diagonal(&[1.0, 0.5].into()),
+        uu: [0.02].into(),
+        ..Quadratic::zeros()
+    }
+}
+
+/// A state after a push.
+fn after(x: &State, push: f64) -> Result<State, Error> {
+    let (q, v) = discrete::split(x);
+    let (q, v) = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
+    Ok(discrete::stacked(&q, &v))
+}
+
+/// A sparse matrix while it is written: rows, columns and values of entries.
+#[derive(Default)]
+struct Entries(Vec<usize>, Vec<usize>, Vec<f64>);
+
+impl Entries {
+    fn put(&mut self, row: usize, column: usize, value: f64) {
+        self.0.push(row);
+        self.1.push(column);
+        self.2.push(value);
+    }
+
+    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(rows, columns, self.0, self.1, self.2)
+    }
+}
+
+/// The pushes and states of the next second: the sum of costs is least, with `rows x = right` for the motion, and `≤` for limits.
+struct Program {
+    hessian: Entries,
+    gradient: [f64; SIZE * STEPS],
+    rows: Entries,
+    right: Vec<f64>,
+}
+
+impl Program {
+    /// The motion from a state on, linearised about that under planned pushes: `x⁺ − A x − B u = f − A x̄ − B ū`.
+    fn motion(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
+        let mut x = *start;
+        for (k, &push) in plan.iter().enumerate() {
+            let (q, v) = discrete::split(&x);
+            let step = discrete::transition(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
+            let (a, b) = (step.a::<4>(), step.b::<4>());
+            let next: State = discrete::stacked(&step.q, &step.v);
+            // The first state is known.
+            let known = if k == 0 { next - b * push } else { next - a * x - b * push };
+            for i in 0..4 {
+                let row = self.right.len();
+                self.rows.put(row, SIZE * k + 1 + i, 1.0);
+                self.rows.put(row, SIZE * k, -b[i]);
+                for j in (0..4).filter(|_| k > 0) {
+                    self.rows.put(row, SIZE * (k - 1) + 1 + j, -a[(i, j)]);
+                }
+                self.right.push(known[i]);
+            }
+            x = next;
+        }
+        Ok(())
+    }
+
+    /// The push of every step and the place after it within their limits, to both sides.
+    fn limits(&mut self) {
+        let m = CartPole {};
+        let (least, most) = (m.lower_limits()[RAIL], m.upper_limits()[RAIL]);
+        let strength = m.effort_limits()[RAIL];
+        for k in 0..STEPS {
+            for (column, least, most) in [(SIZE * k, -strength, strength), (SIZE * k + 1 + RAIL, least, most)]
+            {
+                for (sign, bound) in [(1.0, most), (-1.0, -least)] {
+                    self.rows.put(self.right.len(), column, sign);
+                    self.right.push(bound);
+                }
+            }
+        }
+    }
+
+    /// The costs of every step, and at its end what the regulator would take from there.
+    fn costs(&mut self, to_go: &Value<f64, 2>) {
+        let costs = costs();
+        let each = Value { qq: costs.qq, vv: costs.vv, ..Value::zeros() }.hessian::<4>();
+        for k in 0..STEPS {
+            let last = k + 1 == STEPS;
+            let weight = if last { to_go.hessian::<4>() } else { each };
+            self.hessian.put(SIZE * k, SIZE * k, costs.uu[0]);
+            let first = SIZE * k + 1;
+            for j in 0..4 {
+                (0..=j).for_each(|i| self.hessian.put(first + i, first + j, weight[(i, j)]));
+                self.gradient[first + j] = -(weight.row(j) * GOAL)[0];
+            }
+        }
+    }
+
+    /// The best pushes; `None` if there are none.
+    fn solved(self) -> Option<[f64; STEPS]> {
+        let (count, columns, motions) = (self.right.len(), SIZE * STEPS, 4 * STEPS);
+        let (hessian, rows) = (self.hessian.matrix(columns, columns), self.rows.matrix(count, columns));
+        let cones = [ZeroConeT(motions), NonnegativeConeT(count - motions)];
+        let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
+        let mut solver = DefaultSolver::new(&hessian, &self.gradient, &rows, &self.right, &cones, settings);
+        solver.solve();
+        let solved = solver.solution.status == SolverStatus::Solved;
+        solved.then(|| std::array::from_fn(|k| solver.solution.x[SIZE * k]))
+    }
+}
+
+/// The pushes of the next second that cost least, by those that were planned before; `None` if none keep the limits.
+fn planned(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
+    let (hessian, rows) = (Entries::default(), Entries::default());
+    let mut program = Program { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
+    program.motion(x, plan)?;
+    program.limits();
+    program.costs(to_go);
+    Ok(program.solved())
+}
+
+fn main() -> Result<(), Error> {
+    let found = regulator(&CartPole {}, &METHOD, &SVector::zeros(), &SVector::zeros(), &costs());
+    let (regulator, to_go) = found.expect("a push on the cart can keep the pole upright");
+    let (most, strength) = (CartPole {}.upper_limits()[RAIL], CartPole {}.effort_limits()[RAIL]);
+
+    // The regulator alone, which knows no limits, and a plan from the same start.
+    let start = State::new(-0.5, 0.0, 0.0, 0.0);
+    let (mut free, mut x, mut plan) = (start, start, [0.0; STEPS]);
+    let (mut furthest, mut strongest) = ([0.0_f64; 2], [0.0_f64; 2]);
+    println!("  t, s   cart, m   pole, rad   push, N   cart without a plan, m");
+    for k in 0..100 {
+        let (dq, dv) = discrete::split(&(free - GOAL));
+        let push = regulator.inputs(1.0, &dq, &dv)[0];
+        free = after(&free, push)?;
+
+        plan.rotate_left(1);
+        plan = planned(&x, &plan, &to_go)?.expect("there is a way within the limits");
+        if k % 6 == 0 {
+            let t = PERIOD * k as f64;
+            println!("{t:6.2} {:9.4} {:11.4} {:9.3} {:15.4}", x[0], x[1], plan[0], free[0]);
+        }
+        x = after(&x, plan[0])?;
+        for (i, (x, push)) in [(x, plan[0]), (free, push)].into_iter().enumerate() {
+            furthest[i] = furthest[i].max(x[0].abs());
+            strongest[i] = strongest[i].max(push.abs());
+        }
+    }
+    println!("\nlimits          {most:.3} m  {strength:6.2} N");
+    println!("with a plan     {:.3} m  {:6.2} N", furthest[0], strongest[0]);
+    println!("without a plan  {:.3} m  {:6.2} N", furthest[1], strongest[1]);
+
+    assert!(furthest[0] < most + 1e-4 && strongest[0] < strength + 1e-4, "it keeps its limits");
+    assert!(furthest[0] > most - 1e-4 && strongest[0] > strength - 1e-4, "all of which it uses");
+    assert!((x - GOAL).amax() < 2e-3, "it arrives");
+    assert!(furthest[1] > 1.1 * most && strongest[1] > strength, "the regulator alone keeps none");
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Error> {
+    main()
+}

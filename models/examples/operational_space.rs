@@ -1,0 +1,105 @@
+//! A seven-axis arm leads its hand along a circle without turning it, while its elbow stays where it likes to be:
+//! operational-space control with the generated inverse mass matrix, frame Jacobian and bias forces.
+//!
+//! Source: Khatib, *A unified approach for motion and force control of robot manipulators: the operational space formulation*,
+//! IEEE Journal on Robotics and Automation 3 (1987).
+//!
+//! ```text
+//! cargo run --release --example operational_space -p linkwork-models
+//! ```
+
+use linkwork::inverse_kinematics::{InverseKinematics, Target};
+use linkwork::nalgebra::{IsometryMatrix3, Rotation3, SVector, Vector3};
+use linkwork::placement_difference;
+use linkwork::prelude::{Limits, Rk4, frame, index, simulate};
+use linkwork_models::PandaArm;
+use std::f64::consts::PI;
+
+type Joints = SVector<f64, 7>;
+/// Linear, then angular, in ground axes.
+type Twist = SVector<f64, 6>;
+
+/// Where the joints like to be, rad: far from their limits, the elbow bent.
+const POSTURE: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
+/// Radius of the circle, m.
+const RADIUS: f64 = 0.12;
+const RATE: f64 = 2.0;
+
+/// Where the hand should be, how it should move and accelerate: upside down on an upright circle.
+fn wanted(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
+    let (sin, cos) = (RATE * t).sin_cos();
+    let along = |y: f64, z: f64| Twist::from([0.0, RADIUS * y, RADIUS * z, 0.0, 0.0, 0.0]);
+    let place = Vector3::new(0.5, RADIUS * cos, 0.45 + RADIUS * sin);
+    let placement =
+        IsometryMatrix3::from_parts(place.into(), Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
+    (placement, along(-sin, cos) * RATE, along(-cos, -sin) * RATE * RATE)
+}
+
+/// The torques for the hand's motion; what it leaves free draws the joints to their posture.
+fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
+    let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
+    let (placement, twist, acceleration) = wanted(t);
+    let jacobian = arm.frame_jacobian(hand, q);
+    let missing = placement_difference(&arm.frame_placement(hand, q), &placement);
+    // The acceleration of the hand that corrects what is missing, less what it has without one of the joints, J̇ v.
+    let corrected = acceleration + missing * 400.0 + (twist - jacobian * v) * 40.0;
+    let hand_acceleration = corrected - arm.frame_acceleration(hand, q, v, &Joints::zeros());
+
+    // The hand's inertia Λ = (J M⁻¹ Jᵀ)⁻¹ makes a force of the acceleration.
+    let inverse_mass = arm.mass_matrix_inverse(q);
+    let Some(inertia) = (jacobian * inverse_mass * jacobian.transpose()).try_inverse() else {
+        return arm.clamp_effort(&arm.bias_forces(q, v)); // Stretched out: hold still.
+    };
+    let posture = arm.mass_matrix(q) * ((Joints::from(POSTURE) - q) * 25.0 - v * 10.0);
+    // Torques of the posture that do not move the hand: less those by which it would, Jᵀ Λ J M⁻¹.
+    let moving = jacobian.transpose() * (inertia * (jacobian * (inverse_mass * posture)));
+    let torques = jacobian.transpose() * (inertia * hand_acceleration) + posture - moving;
+    // Gravity, Coriolis and centrifugal forces, friction: all that does not depend on the acceleration.
+    arm.clamp_effort(&(torques + arm.bias_forces(q, v)))
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
+    // The start of the circle, from the posture by inverse kinematics; at rest, so that the hand has to catch up.
+    let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), wanted(0.0).0);
+    let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
+
+    let run = simulate(&arm)
+        .from(found.q, Joints::zeros())
+        .control_every(1e-3, control)
+        .method(Rk4::step(1e-3))
+        .duration(2.0 * PI / RATE)
+        .sample_every(PI / RATE / 8.0);
+    println!("   t, s     y, m     z, m   off, mm   turned, mrad   joint 3, rad   largest share of a limit");
+    let limits = arm.effort_limits();
+    let mut posture_kept = 0.0_f64;
+    for sample in run {
+        let sample = sample?;
+        let is = arm.frame_placement(hand, &sample.q);
+        let left = placement_difference(&is, &wanted(sample.t).0);
+        let (off, turned) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
+        let share = sample.u.component_div(&limits).amax();
+        let place = is.translation;
+        println!(
+            "{:7.3} {:8.4} {:8.4} {:9.4} {:14.4} {:14.4} {share:26.2}",
+            sample.t,
+            place.y,
+            place.z,
+            1e3 * off,
+            1e3 * turned,
+            sample.q[2]
+        );
+        assert!(share <= 1.0, "no motor gives more than it can");
+        posture_kept = posture_kept.max((sample.q - Joints::from(POSTURE)).amax());
+        if sample.t > 1.0 {
+            assert!(off < 1e-5 && turned < 1e-4, "a hundredth of a millimetre, a tenth of a milliradian");
+        }
+    }
+    assert!(posture_kept < 0.8, "the arm stays in its posture, as far as the hand lets it");
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+    main()
+}

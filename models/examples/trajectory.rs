@@ -1,0 +1,189 @@
+//! A pole is swung up by a cart: a trajectory that costs least, found by iterative linear-quadratic regulators (iLQR) and by
+//! differential dynamic programming (DDP), on generated first and second derivatives of the discrete step.
+//!
+//! ```text
+//! cargo run --release --example trajectory -p linkwork-models
+//! ```
+
+use linkwork::discrete;
+use linkwork::optimal::{Policy, Quadratic, Value, backward};
+use linkwork::prelude::*;
+use std::f64::consts::PI;
+
+/// A cart on a rail, with a pole that hangs from it at zero.
+#[mechanism(gravity = -9.81 * y, second_derivatives)]
+struct CartPole {
+    #[body(mass = 1)]
+    cart: Body,
+    #[body(mass = 0.3, com = -0.4 * y, inertia = rod(0.3, 0.8, y))]
+    pole: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> pole, about = z)]
+    hinge: Pin,
+    #[acts(on = rail)]
+    push: Force,
+}
+
+/// Place of the cart and angle of the pole, or their rates.
+type State = SVector<f64, 2>;
+type Push = SVector<f64, 1>;
+/// What to change in each step.
+type Policies = [Policy<f64, 2, 1>; STEPS];
+
+/// Steps of the trajectory, and the period of each, s.
+const STEPS: usize = 60;
+const PERIOD: f64 = 0.03;
+/// What makes a step of a motion.
+const METHOD: Rk4<f64> = Rk4::step(PERIOD);
+
+/// States from the start on, and the inputs between them.
+#[derive(Clone)]
+struct Trajectory {
+    states: [(State, State); STEPS + 1],
+    inputs: [Push; STEPS],
+}
+
+/// Where it should end: the cart where it was, the pole upright.
+fn goal() -> State {
+    [0.0, PI].into()
+}
+
+/// What a step costs, to second order about a push; pushes alone count.
+fn step_costs(u: &Push) -> Quadratic<f64, 2, 1> {
+    let weight = 0.02 * PERIOD;
+    Quadratic { u: u * weight, uu: [weight].into(), ..Quadratic::zeros() }
+}
+
+/// What the end costs, to second order about a state.
+fn end_costs(q: &State, v: &State) -> Value<f64, 2> {
+    let weight = SMatrix::from_diagonal_element(100.0);
+    Value { q: (q - goal()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
+}
+
+impl Trajectory {
+    fn costs(&self) -> f64 {
+        let pushes: f64 = self.inputs.iter().map(|u| step_costs(u).u.dot(u) / 2.0).sum();
+        let (q, v) = self.states[STEPS];
+        pushes + 50.0 * ((q - goal()).norm_squared() + v.norm_squared())
+    }
+
+    /// The trajectory from the same start under policies about this one, with the length `α` of their changes.
+    fn followed(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
+        let mut next = self.clone();
+        for (k, policy) in policies.iter().enumerate() {
+            let ((q, v), (old_q, old_v)) = (next.states[k], self.states[k]);
+            next.inputs[k] = self.inputs[k] + policy.inputs(length, &(q - old_q), &(v - old_v));
+            next.states[k + 1] = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &next.inputs[k])?;
+        }
+        Ok(next)
+    }
+
+    /// Policies that are best to second order about this trajectory, and what they should save; `None` if the costs are not
+    /// convex in a push. DDP counts the curvature of the steps, iLQR does not.
+    fn policies(&self, ddp: bool, regularisation: f64) -> Result<Option<(Policies, f64)>, Error> {
+        let none = Policy {
+            change: SVector::zeros(),
+            by_q: SMatrix::zeros(),
+            by_v: SMatrix::zeros(),
+            expected: [0.0; 2],
+        };
+        let (m, mut policies, mut saved) = (CartPole {}, [none; STEPS], 0.0);
+        let (q, v) = self.states[STEPS];
+        let mut to_go = end_costs(&q, &v);
+        for k in (0..STEPS).rev() {
+            let ((q, v), u) = (&self.states[k], &self.inputs[k]);
+            let step = discrete::transition(&m, &METHOD, 0.0, q, v, u)?;
+            let mut costs = step_costs(u);
+            if ddp {
+                let factors = (&to_go.q, &to_go.v);
+                let curvature = discrete::second_order(&m, &METHOD, 0.0, q, v, u, factors)?;
+                costs = costs.with_curvature(&curvature);
+            }
+            let Ok((policy, before)) = backward(&step, &costs, &to_go, regularisation) else {
+                return Ok(None);
+            };
+            (policies[k], to_go) = (policy, before);
+            saved -= policy.expected[0] + policy.expected[1];
+        }
+        Ok(Some((policies, saved)))
+    }
+}
+
+/// What a method found, and the largest change of a push in each iteration, N.
+struct Found {
+    best: Trajectory,
+    changes: Vec<f64>,
+}
+
+/// Improves a trajectory until its pushes no longer change.
+fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
+    let (mut best, mut regularisation, mut changes) = (start.clone(), 1e-3, Vec::new());
+    for _ in 0..500 {
+        let Some((policies, saved)) = best.policies(ddp, regularisation)? else {
+            regularisation = (4.0 * regularisation).max(1e-6);
+            continue;
+        };
+        // Half as long a change, and half again, until it saves a part of what it should; near the end rounding hides that.
+        // A change that is far too long ends in states that are no numbers.
+        let lengths = (0..10).map(|k| 0.5_f64.powi(k));
+        let mut tried = lengths.filter_map(|length| best.followed(&policies, length).ok());
+        let enough = |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;
+        let Some(next) = tried.find(enough) else {
+            regularisation = (4.0 * regularisation).max(1e-6);
+            continue;
+        };
+        let moved = next.inputs.iter().zip(&best.inputs).map(|(new, old)| (new - old).amax());
+        changes.push(moved.fold(0.0, f64::max));
+        best = next;
+        regularisation = if regularisation < 1e-7 { 0.0 } else { regularisation / 4.0 };
+        if changes.last() < Some(&1e-7) {
+            break;
+        }
+    }
+    Ok(Found { best, changes })
+}
+
+fn main() -> Result<(), Error> {
+    // It hangs, and the cart is pushed to and fro a little.
+    let mut start =
+        Trajectory { states: [(State::zeros(), State::zeros()); STEPS + 1], inputs: [Push::zeros(); STEPS] };
+    for (k, u) in start.inputs.iter_mut().enumerate() {
+        u[0] = 2.0 * (4.0 * PERIOD * k as f64).sin();
+        let (q, v) = start.states[k];
+        start.states[k + 1] = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, u)?;
+    }
+    let [ilqr, ddp] = [optimise(&start, false)?, optimise(&start, true)?];
+
+    println!("time, s   cart, m   pole, rad   push, N");
+    for k in (0..STEPS).step_by(6) {
+        let ((q, _), u) = (ddp.best.states[k], ddp.best.inputs[k]);
+        println!("{:7.2} {:9.3} {:11.3} {:9.2}", PERIOD * k as f64, q[0], q[1], u[0]);
+    }
+    println!("\nlargest change of a push, N, in the last iterations");
+    for (name, found) in [("iLQR", &ilqr), ("DDP", &ddp)] {
+        let (count, costs) = (found.changes.len(), found.best.costs());
+        let last = found.changes[count - 6..].iter().map(|change| format!("{change:.1e}"));
+        println!("{name:5} {count:3} iterations, costs {costs:.6}: {}", last.collect::<Vec<_>>().join(" "));
+    }
+
+    // Both end the same way, and upright.
+    let (end, _) = ddp.best.states[STEPS];
+    assert!((end - goal()).amax() < 0.05, "it is swung up");
+    for (a, b) in ilqr.best.inputs.iter().zip(&ddp.best.inputs) {
+        assert!((a - b).amax() < 1e-5, "one trajectory is the best");
+    }
+    // In the end an iteration of DDP squares what is left, one of iLQR takes a part of it away.
+    for pair in ddp.changes[ddp.changes.len() - 3..].windows(2) {
+        assert!(pair[1] < 2.0 * pair[0] * pair[0], "quadratic convergence");
+    }
+    for pair in ilqr.changes[ilqr.changes.len() - 6..].windows(2) {
+        assert!(pair[1] > 0.5 * pair[0], "linear convergence");
+    }
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Error> {
+    main()
+}

@@ -1,0 +1,70 @@
+//! The table of the book's topics in the gallery's documentation names mechanisms and tests that exist.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where the table looks for tests: here, in the package of tests, and in that of design.
+const FOLDERS: [&str; 3] = ["tests", "../tests", "../runtime/design/tests"];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// Names of the functions of a file that are tests.
+fn tests(text: &str) -> impl Iterator<Item = &str> {
+    text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next())
+}
+
+/// What stands between backticks.
+fn quoted(cell: &str) -> impl Iterator<Item = &str> {
+    cell.split('`').skip(1).step_by(2)
+}
+
+#[test]
+fn topics_name_what_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let gallery = fs::read_to_string(root.join("src/lib.rs")).unwrap();
+    let mut paths = Vec::new();
+    FOLDERS.iter().for_each(|folder| sources(&root.join(folder), &mut paths));
+    let texts: Vec<String> = paths.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let functions: BTreeSet<&str> = texts.iter().flat_map(|text| tests(text)).collect();
+    let is_test = |name: &str| {
+        let file = if name.ends_with(".rs") { name.to_string() } else { format!("{name}.rs") };
+        functions.contains(name) || paths.iter().any(|path| path.ends_with(&file))
+    };
+    let exported: BTreeSet<&str> = gallery
+        .lines()
+        .filter(|line| line.starts_with("pub use "))
+        .flat_map(|line| line.split([':', '{', '}', ',', ';', ' ']))
+        .collect();
+
+    let table = gallery.split("//! # By topic of the textbook").nth(1).unwrap();
+    let lines = table.lines().skip(1).take_while(|line| line.starts_with("//!"));
+    let rows: Vec<&str> = lines.filter(|line| line.starts_with("//! | ")).collect();
+    assert!(rows.len() > 30, "the table has {} rows", rows.len());
+    let mut mistakes = Vec::new();
+    for row in &rows[2..] {
+        let cells: Vec<&str> = row.trim_start_matches("//! |").trim_end_matches('|').split(" | ").collect();
+        let [topic, words, proof] = cells[..] else { panic!("three columns: {row}") };
+        let reason = words.trim().strip_prefix("left out").and_then(|rest| rest.split_once([':', ',', ';']));
+        if quoted(proof).next().is_none() && reason.is_none_or(|(_, why)| why.trim().is_empty()) {
+            mistakes.push(format!("{topic}: neither proved nor left out with a reason"));
+        }
+        for name in quoted(proof) {
+            let exists =
+                if proof.contains(&format!("[`{name}`]")) { exported.contains(name) } else { is_test(name) };
+            if !exists {
+                mistakes.push(format!("{topic}: no `{name}`"));
+            }
+        }
+    }
+    assert!(mistakes.is_empty(), "{}", mistakes.join("\n"));
+}
