@@ -397,12 +397,17 @@ pub enum Slipping {}
 /// | a point, `sphere(radius)` | `plane(normal)`, `sphere(radius)`, `capsule(radius, length, axis)`, `cylinder(radius, axis)`, `cone(half_angle, axis)`; inside of `bowl(radius)`, `tube(radius, axis)`, `funnel(half_angle, axis)` |
 /// | `capsule(radius, length, axis)`: two points, at its ends; `length` is between the centres of these | `plane(normal)` |
 /// | `capsule(radius, length, axis)`: one point, where the axes are nearest | `capsule(radius, length, axis)` |
-/// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)` |
+/// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)`, `cylinder(radius, length, axis)` |
 /// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
+/// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 ///
-/// A plane is that of a half space, and a cylinder, a tube and a cone go on without end. A rim that lies flat on a plane touches it
-/// by its centre.
+/// A plane is that of a half space, and a cylinder without a length, a tube and a cone go on without end. The rim of a circle or a
+/// torus that lies flat on a plane touches it by its centre.
+///
+/// `foot.collision()` stands for all collision geometry that the URDF file has of the link `foot`: spheres, boxes, cylinders and
+/// capsules. `collision()` alone is that of every link: `#[contact(collision(), ground.plane(z), friction = 0.8)]`. Meshes are
+/// an error; name surfaces that stand for them.
 ///
 /// `friction`, the coefficient of Coulomb's friction, and `restitution`, the part of the speed of approach with which
 /// surfaces leave each other, are zero unless given, and may be expressions of parameters. Contacts are no constraints: the

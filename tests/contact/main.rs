@@ -3,6 +3,7 @@
 mod bodies;
 mod both;
 mod events;
+mod files;
 mod forces;
 mod laws;
 mod mechanisms;

@@ -113,7 +113,8 @@ pub fn read(
 ) -> Option<Source> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
     let (mut file, before) = (None, cx.len());
-    if let Some(options) = &mechanism.urdf {
+    if let Some(options) = &mut mechanism.urdf {
+        options.collisions = mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
         file = text.is_some().then_some(path);
@@ -158,6 +159,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     description.joints.extend(own_joints);
     // Those of the file come first.
     description.limits.splice(0..0, imported.limits);
+    description.collisions = imported.collisions;
     description.snapped = imported.snapped;
     description.ground_frame = imported.is_ground;
     if description.gravity.is_none() {

@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
-use crate::syntax::{Body, Joint, Limit};
+use crate::syntax::{Body, Collision, Joint, Limit};
 
 /// What a file describes.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Imported {
     pub fields: Vec<FileField>,
     /// The file's root is the ground itself.
     pub is_ground: bool,
+    /// Collision geometry of the links, if it was asked for.
+    pub collisions: Vec<Collision>,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
     pub snapped: Vec<String>,
 }

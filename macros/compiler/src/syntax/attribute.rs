@@ -201,6 +201,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         actions: Vec::new(),
         limits: Vec::new(),
         contacts: Vec::new(),
+        collisions: Vec::new(),
         coordinates: Vec::new(),
         inputs: Vec::new(),
         frames: Vec::new(),
@@ -419,6 +420,7 @@ fn read_options(
         lock,
         snap,
         parameters,
+        collisions: false,
     })
 }
 

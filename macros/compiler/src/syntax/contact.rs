@@ -1,7 +1,7 @@
 //! Contacts: two surfaces that may part, strike, slide and stick.
 
 use super::arguments::Arguments;
-use super::{Contact, Description, Name};
+use super::{Contact, Description, Expr, ExprKind, Name};
 use crate::diag::Diagnostics;
 
 const KEYS: [&str; 2] = ["friction", "restitution"];
@@ -36,5 +36,26 @@ pub fn read_contact(
                 .help(format!("write `{EXAMPLE}`"));
         }
         _ => {}
+    }
+}
+
+/// The word for what a file says of a link's shape.
+pub const COLLISION: &str = "collision";
+
+/// `link.collision()` gives the link, `collision()` nothing: all links of the file.
+pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
+    match &surface.kind {
+        ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.is_empty() => {
+            Some(Some(link.as_ref()))
+        }
+        ExprKind::Call(word, arguments) if word.text == COLLISION && arguments.is_empty() => Some(None),
+        _ => None,
+    }
+}
+
+impl Contact {
+    /// True if collision geometry of a file is to be read.
+    pub fn names_collisions(&self) -> bool {
+        [&self.first, &self.second].into_iter().any(|surface| collision(surface).is_some())
     }
 }

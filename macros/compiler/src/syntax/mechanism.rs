@@ -171,6 +171,8 @@ pub struct UrdfOptions {
     pub snap: Option<f64>,
     /// Figures that are parameters.
     pub parameters: Vec<FileFigures>,
+    /// Contacts name the collision geometry of links.
+    pub collisions: bool,
 }
 
 /// The words of [`Requests`].

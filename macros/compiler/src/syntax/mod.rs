@@ -211,6 +211,8 @@ pub struct Description {
     pub constraints: Vec<Constraint>,
     /// Surfaces that may touch.
     pub contacts: Vec<Contact>,
+    /// Collision geometry of a file's links.
+    pub collisions: Vec<Collision>,
     /// How constrained motion is solved.
     pub formulation: Formulation,
     /// Numbers of a file that were rounded, as the user asked for.
@@ -447,6 +449,32 @@ pub struct Endpoint {
     /// Rotations about carried axes, from the body's axes to the joint's: `z(a)`, `eigenaxis(n, a)`, or a
     /// 3×3 matrix whose columns are the joint's axes.
     pub rotated: Vec<Expr>,
+}
+
+/// A part of the collision geometry of a file's link.
+#[derive(Clone, Debug)]
+pub struct Collision {
+    /// The link, and where the shape's centre and axes are on it.
+    pub on: Endpoint,
+    /// The shape.
+    pub shape: Shape,
+    /// Where the file says it.
+    pub place: Place,
+}
+
+/// Shapes of collision geometry; lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Radius.
+    Sphere(f64),
+    /// Edges along the axes.
+    Cuboid([f64; 3]),
+    /// Radius and length, along z.
+    Cylinder(f64, f64),
+    /// Radius, and distance of the centres of the spheres, along z.
+    Capsule(f64, f64),
+    /// Triangles of another file.
+    Mesh,
 }
 
 /// `coordinate = multiplier × other + offset`.

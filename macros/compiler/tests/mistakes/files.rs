@@ -117,3 +117,39 @@ fn figures_that_are_parameters_are_those_of_the_file() {
         assert!(matches!(found.as_slice(), [one] if one.starts_with(message)), "{attribute}: {found:#?}");
     }
 }
+
+#[test]
+fn collision_geometry_is_read_when_it_is_named() {
+    let of = |inside: &str| {
+        let foot = format!("<link name=\"foot\"><collision><geometry>{inside}</geometry></collision></link>");
+        let sole = r#"<joint name="sole" type="fixed"><origin xyz="0 0.5 0"/><parent link="hand"/><child link="foot"/></joint>"#;
+        ROBOT.replacen("</robot>", &format!("{foot}\n{sole}\n</robot>"), 1)
+    };
+    let cases = [
+        ("<sphere radius=\"0.1\"/>", "foot", ""),
+        ("<sphere radius=\"0.1\"/>", "", ""),
+        ("<mesh filename=\"foot.stl\"/>", "", "the collision geometry of `foot` is a mesh"),
+        ("<sphere radius=\"0\"/>", "foot", "this length must be positive, but it is 0"),
+        ("<box size=\"1 2\"/>", "foot", "expected 3 numbers in `size`, found `1 2`"),
+        ("<cylinder radius=\"1\"/>", "foot", "`<cylinder>` without `length`"),
+        ("<cone radius=\"1\"/>", "foot", "collision geometry without a shape that is known"),
+        ("<mesh filename=\"foot.stl\"/>", "foot", "the collision geometry of `foot` is a mesh"),
+        ("<sphere radius=\"0.1\"/>", "hand", "`hand` has no collision geometry"),
+        ("<sphere radius=\"0.1\"/>", "food", "unknown point `food`"),
+    ];
+    for (k, (inside, link, message)) in cases.into_iter().enumerate() {
+        let name = format!("shapes{k}.urdf");
+        fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), of(inside)).unwrap();
+        let contact = match link {
+            "" => "#[contact(ground.plane(z), collision())] floor: Contact".to_string(),
+            link => format!("#[contact({link}.collision(), ground.plane(z))] floor: Contact"),
+        };
+        let found = messages(&format!("urdf = \"{name}\""), &contact);
+        let good = match found.as_slice() {
+            [] => message.is_empty(),
+            [one] => !message.is_empty() && one.contains(message),
+            _ => false,
+        };
+        assert!(good, "{inside}: {found:#?}");
+    }
+}

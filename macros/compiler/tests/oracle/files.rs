@@ -33,6 +33,7 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         lock: robot.locked().map(name).collect(),
         snap: None,
         parameters: Vec::new(),
+        collisions: false,
     };
     let imported = import::import_urdf(&robot.text(), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));

@@ -29,6 +29,7 @@ fn defaults() -> UrdfOptions {
         lock: Vec::new(),
         snap: None,
         parameters: Vec::new(),
+        collisions: false,
     }
 }
 

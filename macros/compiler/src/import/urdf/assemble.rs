@@ -20,6 +20,9 @@ pub(super) fn assemble(
     cx: &mut Cx<'_>,
 ) -> Imported {
     let is_ground = robot.links[order.root].name.text == GROUND;
+    let collisions =
+        robot.collisions.iter().filter_map(|(link, part)| Some(part.on(&robot.links.get(*link)?.name)));
+    let collisions = collisions.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
     let mut given: Vec<Option<(FileJoint, Motion)>> =
@@ -36,7 +39,7 @@ pub(super) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints, limits, fields: Vec::new(), is_ground, snapped: robot.snapped }
+    Imported { bodies, joints, limits, fields: Vec::new(), is_ground, collisions, snapped: robot.snapped }
 }
 
 /// The joint that holds the root, which no URDF file names.

@@ -11,6 +11,7 @@ use crate::syntax::UrdfOptions;
 use robot::Robot;
 
 mod assemble;
+mod collision;
 mod figures;
 mod joint;
 mod limit;
@@ -69,7 +70,8 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
 fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
     let standing = standing::links(node, options);
-    let mut robot = Robot { links: Vec::new(), joints: Vec::new(), snapped: Vec::new() };
+    let mut robot =
+        Robot { links: Vec::new(), joints: Vec::new(), collisions: Vec::new(), snapped: Vec::new() };
     for child in elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
@@ -85,7 +87,15 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
             return None;
         }
         match kind {
-            0 => robot.links.extend(link::read_link(child, |link| standing.contains(link), options, cx)),
+            0 => {
+                let number = robot.links.len();
+                robot.links.extend(link::read_link(child, |link| standing.contains(link), options, cx));
+                if options.collisions {
+                    robot
+                        .collisions
+                        .extend(collision::read(child, cx).into_iter().map(|part| (number, part)));
+                }
+            }
             _ => robot.joints.extend(joint::read_joint(child, options, cx)),
         }
     }

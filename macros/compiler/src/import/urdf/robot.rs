@@ -1,5 +1,6 @@
 //! A robot as its file says.
 
+use super::collision::FileCollision;
 use super::joint::FileJoint;
 use crate::syntax::Body;
 
@@ -9,6 +10,8 @@ pub struct Robot {
     pub links: Vec<Body>,
     /// Its joints.
     pub joints: Vec<FileJoint>,
+    /// Collision geometry: the link's number, what it is.
+    pub collisions: Vec<(usize, FileCollision)>,
     /// What was rounded.
     pub snapped: Vec<String>,
 }

@@ -3,6 +3,7 @@
 //! touches along the normal through its centre, and cones touch along a line. On a surface given by its points two
 //! coordinates say where.
 
+mod collision;
 mod cones;
 mod contact_point;
 mod force;
@@ -12,7 +13,7 @@ pub use force::stands_alone;
 mod unilateral;
 
 pub use slipping::check_pressed;
-pub use surface::FORMS;
+pub use surface::arguments_of;
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;

@@ -9,6 +9,7 @@ use crate::syntax::{self, ExprKind, GROUND};
 use std::f64::consts::FRAC_PI_2;
 
 /// A surface of a body; vectors and lengths in body axes.
+#[derive(Clone)]
 pub enum Form<'g> {
     /// The rim of a disk: radius, axis.
     Circle(Expr<'g>, Vec3<'g>),
@@ -24,6 +25,8 @@ pub enum Form<'g> {
     Bowl(Expr<'g>),
     /// The outside of a cylinder: radius, axis.
     Cylinder(Expr<'g>, Vec3<'g>),
+    /// A cylinder with two ends: radius, length, axis.
+    Drum(Expr<'g>, Expr<'g>, Vec3<'g>),
     /// The inside of a cylinder: radius, axis.
     Tube(Expr<'g>, Vec3<'g>),
     /// The outside of a cone: half angle, axis from the apex into the cone.
@@ -41,6 +44,7 @@ pub enum Form<'g> {
 }
 
 /// Points of a surface as expressions of two coordinates, in body axes from its place.
+#[derive(Clone)]
 pub struct Sheet<'g> {
     /// The point.
     pub at: Vec3<'g>,
@@ -49,6 +53,7 @@ pub struct Sheet<'g> {
 }
 
 /// A surface where it is.
+#[derive(Clone)]
 pub struct Surface<'g> {
     /// Its centre, apex or a point of it.
     pub home: Placed<'g>,
@@ -57,7 +62,7 @@ pub struct Surface<'g> {
 }
 
 /// The surfaces with their arguments.
-pub const FORMS: [(&str, &[&str]); 13] = [
+const FORMS: [(&str, &[&str]); 14] = [
     ("circle", &["radius", "axis"]),
     ("torus", &["radius", "tube_radius", "axis"]),
     ("sphere", &["radius"]),
@@ -65,6 +70,7 @@ pub const FORMS: [(&str, &[&str]); 13] = [
     ("plane", &["normal"]),
     ("bowl", &["radius"]),
     ("cylinder", &["radius", "axis"]),
+    ("cylinder", &["radius", "length", "axis"]),
     ("tube", &["radius", "axis"]),
     ("cone", &["half_angle", "axis"]),
     ("funnel", &["half_angle", "axis"]),
@@ -72,6 +78,12 @@ pub const FORMS: [(&str, &[&str]); 13] = [
     ("cuboid", &["a", "b", "c"]),
     ("capsule", &["radius", "length", "axis"]),
 ];
+
+/// Names of the arguments of a form, one with as many of them if there is one.
+pub fn arguments_of(word: &str, count: usize) -> Option<&'static [&'static str]> {
+    let named = || FORMS.iter().filter(|(known, _)| *known == word).map(|(_, names)| *names);
+    named().find(|names| names.len() == count).or_else(|| named().next())
+}
 
 impl<'g> Builder<'_, 'g> {
     /// `body.form(arguments)`; `example` is how a pair is written.
@@ -87,11 +99,12 @@ impl<'g> Builder<'_, 'g> {
             };
             return None;
         };
-        let Some((_, names)) = FORMS.iter().find(|(known, _)| *known == word.text) else {
+        let Some(names) = arguments_of(&word.text, arguments.len()) else {
             let error = cx.error(word.place.clone(), format!("unknown surface `{}`", word.text));
             error.suggest(&word.text, FORMS.iter().map(|(word, _)| *word));
             if error.is_bare() {
-                let list: Vec<String> = FORMS.iter().map(|(word, _)| format!("`{word}`")).collect();
+                let mut list: Vec<String> = FORMS.iter().map(|(word, _)| format!("`{word}`")).collect();
+                list.dedup();
                 error.help(format!("the surfaces are {}", all_of(&list)));
             }
             return None;
@@ -109,7 +122,7 @@ impl<'g> Builder<'_, 'g> {
             return Some(Surface { home, form });
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
-        for (argument, name) in arguments.iter().zip(*names) {
+        for (argument, name) in arguments.iter().zip(names) {
             let context = Context::new(Allowed::Constant, None);
             match *name {
                 "axis" | "normal" => {
@@ -135,6 +148,7 @@ impl<'g> Builder<'_, 'g> {
             ("plane", _, Some(n)) => Form::Plane(n),
             ("bowl", [r], _) => Form::Bowl(*r),
             ("cylinder", [r], Some(n)) => Form::Cylinder(*r, n),
+            ("cylinder", [r, length], Some(n)) => Form::Drum(*r, *length, n),
             ("tube", [r], Some(n)) => Form::Tube(*r, n),
             ("cone", [angle], Some(n)) => Form::Cone(*angle, n),
             ("funnel", [angle], Some(n)) => Form::Funnel(*angle, n),

@@ -2,14 +2,14 @@
 
 use super::surface::{Form, Surface};
 use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{time_derivative, velocity_gradient};
-use crate::mechanism::{Contact, Quantity, Rule};
+use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
 use crate::resolve::scope::{Allowed, Context};
-use crate::syntax::contact::EXAMPLE;
+use crate::syntax::contact::{EXAMPLE, collision};
 use crate::syntax::{self, ExprKind, GROUND};
 
 /// Most points of all contacts of a mechanism: what is generated grows as their number.
@@ -21,7 +21,17 @@ const PARALLEL: f64 = 1e-12;
 /// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
 const FLAT: f64 = 1e-24;
 
-const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules and cuboids on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids";
+const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends";
+
+/// A point where two surfaces may touch.
+struct Point<'g> {
+    /// Distance.
+    gap: Expr<'g>,
+    /// Normal and tangents, towards the first surface, each with the rate along it.
+    rates: [(Vec3<'g>, Expr<'g>); 3],
+    /// The link in whose axes the directions are.
+    ancestor: Option<LinkId>,
+}
 
 impl<'g> Builder<'_, 'g> {
     /// Adds all contacts to the model: declared ones in their order, then the stops of limits.
@@ -43,53 +53,87 @@ impl<'g> Builder<'_, 'g> {
 
     fn add_contact(&mut self, contact: &syntax::Contact, cx: &mut Diagnostics) {
         let laws = self.laws(contact.friction.as_ref(), contact.restitution.as_ref(), &contact.name.text, cx);
-        let first = self.touching(&contact.first, cx);
+        let firsts = self.touching(&contact.first, cx);
         // Two bodies in the place of two surfaces are one mistake.
-        let second = match first {
-            None if !matches!(contact.second.kind, ExprKind::Method(..)) => None,
+        let seconds = match firsts {
+            None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
             _ => self.touching(&contact.second, cx),
         };
-        let (Some(first), Some(second), Some((friction, restitution))) = (first, second, laws) else {
-            return;
-        };
-        let first_home = first.home.link;
-        let Some(pair) = self.two(first, second, Form::touches, &contact.second, cx) else { return };
-        let touches = self.touches(&pair);
-        if touches.is_empty() {
-            let place = contact.first.place.to(&contact.second.place);
-            cx.error(place, "where these surfaces touch is not known").help(PAIRS);
+        let (Some(firsts), Some(seconds), Some(laws)) = (firsts, seconds, laws) else { return };
+        let place = contact.first.place.to(&contact.second.place);
+        let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
+        let mut points: Vec<Point<'g>> = Vec::new();
+        for first in &firsts {
+            for second in &seconds {
+                // Of a whole file, what moves.
+                if whole && first.home.link == second.home.link {
+                    continue;
+                }
+                let Some(found) = self.points_of(first, second, (&contact.second, &place), cx) else {
+                    return;
+                };
+                points.extend(found);
+            }
+        }
+        let apart: Vec<&Point<'g>> =
+            points.iter().filter(|point| !velocity_gradient(point.rates[0].1).is_empty()).collect();
+        if apart.is_empty() || (apart.len() < points.len() && !whole) {
+            cx.error(place, "nothing moves these surfaces apart, or together")
+                .help("surfaces touch that belong to bodies which move relative to each other");
             return;
         }
-        let several = touches.len() > 1;
-        let side = self.scope.graph.num(if pair.a.home.link == first_home { 1.0 } else { -1.0 });
-        let mut forces = Vec::new();
-        for (k, touch) in touches.into_iter().enumerate() {
-            let slip = self.slip(&pair, touch.point);
-            let mut rates: Vec<(Vec3<'g>, Expr<'g>)> =
-                touch.axes.iter().map(|(_, e)| (*e * side, e.dot(slip))).collect();
-            if velocity_gradient(rates[0].1).is_empty() {
-                let place = contact.first.place.to(&contact.second.place);
-                cx.error(place, "nothing moves these surfaces apart, or together")
-                    .help("surfaces touch that belong to bodies which move relative to each other");
-                return;
-            }
-            rates.truncate(if friction.is_zero() { 1 } else { rates.len() });
-            let mut place = 0;
-            rates.retain(|(_, rate)| {
-                place += 1;
-                place == 1 || !velocity_gradient(*rate).is_empty()
-            });
-            let number = self.model.contact_rates().len();
-            for (k, (direction, _)) in rates.iter().enumerate() {
-                let force = Quantity::ContactForce(number + k).expr(self.scope.graph);
-                forces.push((pair.on_a.ancestor, *direction * force));
-            }
-            let rates = rates.into_iter().map(|(_, rate)| rate).collect();
+        let (several, mut forces) = (apart.len() > 1, Vec::new());
+        for (k, point) in apart.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
-            self.push_contact(name, touch.gap, false, rates, (friction, restitution));
+            self.add_point(name, point, laws, &mut forces);
         }
         self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), forces);
+    }
+
+    /// Where two surfaces touch; `None` after a mistake.
+    fn points_of(
+        &self,
+        first: &Surface<'g>,
+        second: &Surface<'g>,
+        (second_place, place): (&syntax::Expr, &Place),
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Point<'g>>> {
+        let first_home = first.home.link;
+        let pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
+        let touches = self.touches(&pair);
+        if touches.is_empty() {
+            cx.error(place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            return None;
+        }
+        let side = self.scope.graph.num(if pair.a.home.link == first_home { 1.0 } else { -1.0 });
+        let points = touches.into_iter().map(|touch| {
+            let slip = self.slip(&pair, touch.point);
+            let rates = touch.axes.map(|(_, e)| (e * side, e.dot(slip)));
+            Point { gap: touch.gap, rates, ancestor: pair.on_a.ancestor }
+        });
+        Some(points.collect())
+    }
+
+    /// Adds a point of contact to the model, and its forces on the first surface.
+    fn add_point(
+        &mut self,
+        name: String,
+        point: &Point<'g>,
+        laws: (Expr<'g>, Expr<'g>),
+        forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
+    ) {
+        let [normal, slip @ ..] = point.rates;
+        let slides =
+            slip.into_iter().filter(|(_, rate)| !laws.0.is_zero() && !velocity_gradient(*rate).is_empty());
+        let rates: Vec<(Vec3<'g>, Expr<'g>)> = std::iter::once(normal).chain(slides).collect();
+        let number = self.model.contact_rates().len();
+        for (k, (direction, _)) in rates.iter().enumerate() {
+            let force = Quantity::ContactForce(number + k).expr(self.scope.graph);
+            forces.push((point.ancestor, *direction * force));
+        }
+        let rates = rates.into_iter().map(|(_, rate)| rate).collect();
+        self.push_contact(name, point.gap, false, rates, laws);
     }
 
     /// Adds the stops at the bounds of a limit.
@@ -154,17 +198,20 @@ impl<'g> Builder<'_, 'g> {
         Some((friction?, restitution?))
     }
 
-    /// A surface of a contact: those that roll, or a point.
-    fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Surface<'g>> {
+    /// Surfaces of one side of a contact: one that rolls, a point, or the collision geometry of a file.
+    fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Surface<'g>>> {
+        if let Some(link) = collision(e) {
+            return self.collisions(e, link, cx);
+        }
         let is_place = match &e.kind {
             ExprKind::Method(_, word, _) => word.text == "at",
             ExprKind::Name(name) => name != GROUND,
             _ => false,
         };
         if is_place {
-            return Some(Surface { home: self.scope.place(e, cx)?, form: Form::Point });
+            return Some(vec![Surface { home: self.scope.place(e, cx)?, form: Form::Point }]);
         }
-        self.surface(e, &format!("write `{EXAMPLE}`"), cx)
+        Some(vec![self.surface(e, &format!("write `{EXAMPLE}`"), cx)?])
     }
 
     /// Where a pair touches, at one point or several.
@@ -194,6 +241,13 @@ impl<'g> Builder<'_, 'g> {
                     touch(turned_a(corner))
                 })
                 .collect(),
+            Form::Drum(radius, length, axis) => {
+                let rim = rim(*axis, normal, &turned_a);
+                let ends = [-half, half].map(|side| turned_a(*axis * (*length * side)));
+                let sides =
+                    ends.into_iter().flat_map(|end| rim.map(|direction| touch(end + direction * *radius)));
+                sides.collect()
+            }
             Form::Capsule(radius, length, axis) => {
                 [-half, half].map(|side| touch(turned_a(*axis * (*length * side)) - normal * *radius)).into()
             }
@@ -237,9 +291,30 @@ impl<'g> Builder<'_, 'g> {
                     .fold(Vec3::zero(g), |sum, k| sum + axes[k] * within(axes[k].dot(c), lengths[k] * half));
                 sphere_contact(radius, &Form::Sphere(g.zero()), c - inner, turned_b)
             }
+            Form::Drum(wide, length, axis) => {
+                let axis = turned_b(*axis);
+                let height = axis.dot(c);
+                let outward = c - axis * height;
+                let size = outward.norm().extreme(Extreme::Max, *wide);
+                let inner = axis * within(height, *length * half) + outward * (*wide / size);
+                sphere_contact(radius, &Form::Sphere(g.zero()), c - inner, turned_b)
+            }
             form => sphere_contact(radius, form, c, turned_b),
         }
     }
+}
+
+/// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn further each. Where
+/// the rim lies flat, every one is lowest: one of the body's own is chosen.
+fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
+    let [(_, own), _] = perpendicular(axis);
+    let (a, own) = (turned(axis), turned(own));
+    let cosine = a.dot(normal);
+    let down = a * cosine - normal + own * cosine.num(FLAT.sqrt());
+    let size = down.norm();
+    let lowest = down.map(|x| x / size);
+    let beside = a.cross(lowest);
+    [lowest, beside, -lowest, -beside]
 }
 
 /// What is nearest to a number between `-most` and `most`.
@@ -278,7 +353,7 @@ impl<'g> Form<'g> {
                     | Form::Funnel(..)
             ),
             Form::Capsule(..) => matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..)),
-            Form::Cuboid(_) => matches!(self, Form::Sphere(_)),
+            Form::Cuboid(_) | Form::Drum(..) => matches!(self, Form::Sphere(_)),
             Form::Sphere(_)
             | Form::Bowl(_)
             | Form::Cylinder(..)

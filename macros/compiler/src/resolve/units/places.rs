@@ -7,8 +7,9 @@ use super::si::{
     STRENGTH, TIME,
 };
 use super::unify::Dimension;
-use crate::resolve::contact::FORMS;
+use crate::resolve::contact::arguments_of;
 use crate::resolve::inertia::SOLIDS;
+use crate::syntax::contact::collision;
 use crate::syntax::{
     Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
     Limit, Target,
@@ -288,16 +289,20 @@ impl<'a> Places<'a> {
 
     /// A surface of a body, or a point.
     fn surface(&mut self, surface: &'a Expr) {
+        if let Some(link) = collision(surface) {
+            self.points.extend(link);
+            return;
+        }
         let ExprKind::Method(home, word, arguments) = &surface.kind else {
             self.points.push(surface);
             return;
         };
-        let Some((_, names)) = FORMS.iter().find(|(name, _)| *name == word.text) else {
+        let Some(names) = arguments_of(&word.text, arguments.len()) else {
             self.points.push(surface);
             return;
         };
         self.points.push(home);
-        for (argument, name) in arguments.iter().zip(*names) {
+        for (argument, name) in arguments.iter().zip(names) {
             match *name {
                 "axis" | "normal" => self.add(argument, &PLAIN, "1"),
                 "half_angle" => self.add(argument, &PLAIN, "rad"),

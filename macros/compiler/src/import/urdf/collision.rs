@@ -1,0 +1,85 @@
+//! `<collision>` → shapes of links that contacts name.
+
+use super::origin::{Origin, read_origin};
+use crate::diag::Place;
+use crate::import::context::Cx;
+use crate::import::element::{Node, check_attributes, children, elements, number, numbers, place, required};
+use crate::import::imported::Placed;
+use crate::syntax::{Collision, Endpoint, Name, Shape};
+
+/// Shapes that a file can name.
+const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
+
+/// A part of a link's collision geometry.
+pub struct FileCollision {
+    origin: Origin,
+    shape: Shape,
+    place: Place,
+}
+
+impl FileCollision {
+    /// The part on a link of this name.
+    pub(super) fn on(&self, link: &Name) -> Collision {
+        let (at, rotated) = (self.origin.at(), self.origin.rotated());
+        let on = Endpoint { body: link.clone(), at, rotated };
+        Collision { on, shape: self.shape, place: self.place.clone() }
+    }
+}
+
+/// Reads all collision geometry of a link.
+pub(super) fn read(link: Node<'_>, cx: &mut Cx<'_>) -> Vec<FileCollision> {
+    let parts = elements(link).filter(|node| node.tag_name().name() == "collision");
+    parts.filter_map(|part| read_part(part, cx)).collect()
+}
+
+fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
+    let [origin, geometry] = children(node, ["origin", "geometry"], cx);
+    let origin = read_origin(origin, node, cx);
+    let geometry = required(geometry, node, "geometry", &[], cx)?;
+    let [sphere, cuboid, cylinder, capsule, mesh] = children(geometry, SHAPES, cx);
+    let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
+        (Some(sphere), ..) => {
+            check_attributes(sphere, &["radius"], &[], cx);
+            Shape::Sphere(length(sphere, "radius", cx)?)
+        }
+        (_, Some(cuboid), ..) => {
+            check_attributes(cuboid, &["size"], &[], cx);
+            let size: Placed<[f64; 3]> = numbers(cuboid, "size", cx)?;
+            for x in size.value {
+                positive(x, &size.place, cx)?;
+            }
+            Shape::Cuboid(size.value)
+        }
+        (_, _, Some(round), ..) | (_, _, _, Some(round), _) => {
+            check_attributes(round, &["radius", "length"], &[], cx);
+            let (radius, length) = (length(round, "radius", cx), length(round, "length", cx));
+            if cylinder.is_some() {
+                Shape::Cylinder(radius?, length?)
+            } else {
+                Shape::Capsule(radius?, length?)
+            }
+        }
+        (.., Some(_)) => Shape::Mesh,
+        _ => {
+            let message = "collision geometry without a shape that is known";
+            let help = "known are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
+            cx.error(&place(geometry, cx), message.to_string(), |d| d.help(help));
+            return None;
+        }
+    };
+    Some(FileCollision { origin, shape, place: place(node, cx) })
+}
+
+fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
+    let read = number(node, attribute, cx)?;
+    positive(read.value, &read.place, cx)
+}
+
+fn positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
+    if x <= 0.0 {
+        let help = "sizes of collision geometry are lengths in m";
+        cx.error(place, format!("this length must be positive, but it is {x}"), |d| d.help(help));
+        return None;
+    }
+    Some(x)
+}

@@ -1,0 +1,74 @@
+//! Collision geometry of a file's links, as surfaces of contacts.
+
+use super::surface::{Form, Surface};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::Vec3;
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::Placed;
+use crate::syntax::{self, Collision, ExprKind, Name, Shape};
+
+impl<'g> Builder<'_, 'g> {
+    /// The collision geometry of a link, `link.collision()`, or of all links, `collision()`.
+    pub fn collisions(
+        &self,
+        e: &syntax::Expr,
+        link: Option<&syntax::Expr>,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Surface<'g>>> {
+        let known = &self.description.collisions;
+        let home = match link {
+            Some(link) => Some(self.scope.place(link, cx)?),
+            None => None,
+        };
+        let name = link.and_then(|link| link.name());
+        let parts: Vec<&Collision> =
+            known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
+        if parts.is_empty() {
+            let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
+            cx.error(e.place.clone(), format!("{whose} has no collision geometry"))
+                .help("links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
+            return None;
+        }
+        let mut meshes: Vec<&Name> =
+            parts.iter().filter(|part| part.shape == Shape::Mesh).map(|part| &part.on.body).collect();
+        meshes.dedup_by(|a, b| a.text == b.text);
+        if !meshes.is_empty() {
+            let names: Vec<String> = meshes.iter().map(|name| format!("`{}`", name.text)).collect();
+            let message = format!("the collision geometry of {} is a mesh", names.join(", "));
+            cx.error(e.place.clone(), message).help(
+                "name surfaces that stand for it, as in `foot.sphere(0.02)`, or the other links one by one",
+            );
+            return None;
+        }
+        let surfaces = parts.into_iter().map(|part| self.collision(part, home.as_ref(), &e.place, cx));
+        surfaces.collect()
+    }
+
+    /// A part of the collision geometry where it is.
+    fn collision(
+        &self,
+        part: &Collision,
+        home: Option<&Placed<'g>>,
+        place: &Place,
+        cx: &mut Diagnostics,
+    ) -> Option<Surface<'g>> {
+        let g = self.scope.graph;
+        let home = match home {
+            Some(home) => home.clone(),
+            None => {
+                let link = ExprKind::Name(part.on.body.text.clone());
+                self.scope.place(&syntax::Expr { kind: link, place: place.clone() }, cx)?
+            }
+        };
+        let pose = home.pose.then(&self.endpoint(&part.on, cx)?);
+        let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
+        let form = match part.shape {
+            Shape::Sphere(radius) => Form::Sphere(length(radius)),
+            Shape::Cuboid(edges) => Form::Cuboid(edges.map(length)),
+            Shape::Cylinder(radius, along) => Form::Drum(length(radius), length(along), z),
+            Shape::Capsule(radius, along) => Form::Capsule(length(radius), length(along), z),
+            Shape::Mesh => return None,
+        };
+        Some(Surface { home: Placed { pose, ..home }, form })
+    }
+}
