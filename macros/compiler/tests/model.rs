@@ -45,6 +45,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             lock: Vec::new(),
             snap: None,
             parameters: Vec::new(),
+            collisions: false,
         };
         if let Some(imported) = import::import_urdf(text, &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;
