@@ -104,6 +104,7 @@
 //! | [`TwoBodies`] (Kepler) | 6 | ellipse, Laplace's vector |
 //! | [`GravityGradientSatellite`] | 6 | torque, pitch oscillation |
 //! | [`Aircraft`] | 6 | trim in level flight, level turn |
+//! | [`CruisingAircraft`] (a transport and a light aircraft by their derivatives) | 6 | published matrices and modes |
 //! | [`PlanarRotorcraft`] | 3 | hovering, free fall |
 //!
 //! # By joint
@@ -181,8 +182,9 @@
 //! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | `tables.rs` |
 //! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
 //! | trim | `linkwork_design::steady` | [`Aircraft`]; `tests/steady.rs` here and in design |
-//! | forces linear in accelerations (derivatives by `α̇`, added mass) | left out so far, but for inerters, whose matrix is symmetric | [`TunedSuspension`] |
-//! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `modes` of a linear system | `phugoid_of_lanchester` in `flight`, `boeing_747` and `transport_modes` in `anchors` of design |
+//! | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
+//! | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
+//! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
 //! | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
 //! | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
 //! | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
@@ -213,6 +215,7 @@ mod cart_pole;
 mod chaplygin_sleigh;
 mod charged_particle;
 mod coplanar_double_pendulum;
+mod cruising_aircraft;
 mod cylinder_in_trough;
 mod disk_on_incline;
 mod double_pendulum;
@@ -273,6 +276,7 @@ pub use cart_pole::CartPole;
 pub use chaplygin_sleigh::ChaplyginSleigh;
 pub use charged_particle::ChargedParticle;
 pub use coplanar_double_pendulum::CoplanarDoublePendulum;
+pub use cruising_aircraft::CruisingAircraft;
 pub use cylinder_in_trough::CylinderInTrough;
 pub use disk_on_incline::DiskOnIncline;
 pub use double_pendulum::DoublePendulum;

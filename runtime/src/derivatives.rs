@@ -47,7 +47,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     ) -> Square<Self::Scalar, NV>;
 
     /// `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per m, rad, m/s and rad/s; `∂τ/∂a` is
-    /// the mass matrix (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
+    /// the mass matrix unless forces depend on accelerations (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
     fn inverse_dynamics_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,

@@ -117,6 +117,13 @@ pub enum Error {
         /// The configuration, then the other unknowns.
         place: Vec<(String, f64)>,
     },
+    /// A linear motion was asked for about a state that is not steady.
+    NotSteady {
+        /// The velocity or angle that changes.
+        what: String,
+        /// Its rate: m/s², rad/s² or rad/s.
+        rate: f64,
+    },
     /// Stability by energy is not to be had.
     NoPotential {
         /// Why.
@@ -170,6 +177,9 @@ impl fmt::Display for Error {
                 unknowns.join(", "),
                 Listed(place)
             ),
+            Self::NotSteady { what, rate } => {
+                write!(f, "not steady: `{what}` changes at the rate {rate:.3e}")
+            }
             Self::NoPotential { why } => write!(f, "no stability by energy: {why}; modes decide"),
             Self::Picture(error) => write!(f, "no picture: {error}"),
         }

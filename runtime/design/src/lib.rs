@@ -4,7 +4,8 @@
 //! mechanism ([`mechanism`]) or from matrices. It has [modes](StateSpace::modes), [zeros](StateSpace::zeros),
 //! [transfer functions](StateSpace::transfer_function), [responses](StateSpace::step_response) over time and
 //! [frequency](StateSpace::frequency_response), [margins](StateSpace::margins), [regulators](StateSpace::lqr) and
-//! [estimators](StateSpace::kalman). [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names.
+//! [estimators](StateSpace::kalman). [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names;
+//! [`flight`] has the modes of aircraft by name, and their derivatives.
 //!
 //! The [guide] goes through all of it with one aircraft.
 
@@ -28,6 +29,7 @@ pub use transfer::{TransferFunction, ZerosPolesGain};
 mod connect;
 mod discretize;
 mod error;
+pub mod flight;
 mod frequency;
 mod margins;
 pub mod matrices;

@@ -269,9 +269,12 @@ where
 
 /// The second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
 ///
+/// `M` is what multiplies the accelerations: the mass matrix, less what forces that depend on accelerations take from it. Then it need
+/// not be symmetric.
+///
 /// # Errors
 ///
-/// [`Error::NotFinite`].
+/// [`Error::NotFinite`]; [`Error::Count`] of a mechanism with states of first order, which have no such form.
 pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -281,6 +284,10 @@ pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
+    if M::FIRST_ORDER > 0 {
+        let what = "states of first order";
+        return Err(Error::Count { what, expected: 0, found: M::FIRST_ORDER });
+    }
     let motion = m.linear_motion(q, v, u);
     let mass = effective_mass(m, 0.0, q, v);
     let (by_q, by_v) = (dynamic(&motion.by_q), dynamic(&motion.by_v));

@@ -246,6 +246,24 @@ impl StateSpace {
         self.unstable_pole()?.map_or(Ok(()), |pole| Err(Error::Unstable { pole }))
     }
 
+    /// These states alone, by name and in this order, while all others stay at zero; they are the outputs, too. What aircraft do in
+    /// their plane of symmetry, for instance.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn of_states(&self, names: &[&str]) -> Result<Self, Error> {
+        let kept = names.iter().map(|name| place("state", &self.states, Port::Named(name)));
+        let kept = kept.collect::<Result<Vec<usize>, Error>>()?;
+        let (a, b) = (self.a.select_rows(&kept).select_columns(&kept), self.b.select_rows(&kept));
+        let n = kept.len();
+        let d = DMatrix::zeros(n, b.ncols());
+        let mut part = Self::new(a, b, DMatrix::identity(n, n), d)?;
+        part.period = self.period;
+        let states: Vec<Signal> = kept.iter().map(|k| self.states[*k].clone()).collect();
+        Ok(part.with_states(states)?.with_inputs(self.inputs.clone())?.with_states_as_outputs())
+    }
+
     /// What constant inputs lead to: `D − C A⁻¹ B`, or `D + C (I − A)⁻¹ B`.
     ///
     /// # Errors

@@ -70,7 +70,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`Error::NoPotential`] in motion, and where velocities alone are constrained (rolling);
+    /// [`Error::NoPotential`] in motion, where velocities alone are constrained (rolling), where forces by accelerations are not
+    /// those of an inertia (what multiplies the accelerations is not symmetric), and with states of first order;
     /// [`linear_system`](Trim::linear_system) decides there. [`Error::Indefinite`] where the mass matrix is not positive.
     pub fn stiffness(&self, found: &SteadyState<NQ, NV, NU>) -> Result<Stiffness, Error> {
         let Linear { coordinates, shape, by_q, mass, is_holonomic, .. } = linear(self, found)?;
@@ -79,6 +80,12 @@ where
         }
         if !is_holonomic {
             return Err(Error::NoPotential { why: "velocities alone are constrained" });
+        }
+        if M::FIRST_ORDER > 0 {
+            return Err(Error::NoPotential { why: "forces follow states of first order" });
+        }
+        if (&mass - mass.transpose()).amax() > SKEW * mass.amax() {
+            return Err(Error::NoPotential { why: "forces by accelerations are not those of an inertia" });
         }
         // Zᵀ M P = Zᵀ for the accelerations P by forces, so that multipliers drop out.
         let matrix = -(shape.transpose() * &mass * by_q * &shape);

@@ -1,0 +1,247 @@
+use linkwork::mechanism;
+
+/// An aircraft by its non-dimensional derivatives about level cruise, `α̇` derivatives among them.
+///
+/// Source: Etkin and Reid, *Dynamics of Flight* (1996), ch. 4 and 6; the figures of [`BOEING_747`](Self::BOEING_747) from their
+/// tables, those of [`NAVION`](Self::NAVION) from Nelson, *Flight Stability and Automatic Control* (1998), appendix B.
+///
+/// - Axes: forward, right, down, of the ground too; the stability axes of the cruise. Inputs: `elevator`, `aileron`, `rudder`, rad;
+///   `thrust`, N, beyond that of the cruise.
+/// - With `û = V / u₀ − 1`, the dynamic pressure `Q = ½ ρ V²`, and turning made dimensionless by `2 V / c` and `2 V / b`: forces and
+///   moments are `Q S`, `Q S c`, `Q S b` times coefficients that are linear, as
+///   `C_Z = C_Z0 + C_Zu û + C_Zα α + (C_Zq q + C_Zα̇ α̇) c / (2 V) + C_Zδ δ`. In the cruise `C_X = 0` and `C_Z0 = −m g / (Q S)`.
+/// - What depends on `α̇` multiplies accelerations, and makes that matrix unsymmetric.
+#[mechanism(gravity = g * z, derivatives)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CruisingAircraft {
+    /// Acceleration of free fall, m/s².
+    pub g: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about the forward axis, kg·m².
+    pub ixx: f64,
+    /// Moment of inertia about the right axis, kg·m².
+    pub iyy: f64,
+    /// Moment of inertia about the downward axis, kg·m².
+    pub izz: f64,
+    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column z.
+    pub product: f64,
+    /// Density of the air, kg/m³.
+    pub density: f64,
+    /// Speed of the cruise, m/s.
+    pub cruise: f64,
+    /// Wing area, m².
+    pub area: f64,
+    /// Mean chord, m.
+    pub chord: f64,
+    /// Wing span, m.
+    pub span: f64,
+    /// `C_Xu`.
+    pub cx_u: f64,
+    /// `C_Xα`.
+    pub cx_alpha: f64,
+    /// `C_Xδ` of the elevator.
+    pub cx_elevator: f64,
+    /// `C_Zu`.
+    pub cz_u: f64,
+    /// `C_Zα`.
+    pub cz_alpha: f64,
+    /// `C_Zq`.
+    pub cz_q: f64,
+    /// `C_Zα̇`.
+    pub cz_alpha_rate: f64,
+    /// `C_Zδ` of the elevator.
+    pub cz_elevator: f64,
+    /// `C_mu`.
+    pub cm_u: f64,
+    /// `C_mα`.
+    pub cm_alpha: f64,
+    /// `C_mq`.
+    pub cm_q: f64,
+    /// `C_mα̇`.
+    pub cm_alpha_rate: f64,
+    /// `C_mδ` of the elevator.
+    pub cm_elevator: f64,
+    /// `C_Yβ`.
+    pub cy_beta: f64,
+    /// `C_Yδ` of the rudder.
+    pub cy_rudder: f64,
+    /// `C_lβ`.
+    pub cl_beta: f64,
+    /// `C_lp`.
+    pub cl_p: f64,
+    /// `C_lr`.
+    pub cl_r: f64,
+    /// `C_lδ` of the ailerons.
+    pub cl_aileron: f64,
+    /// `C_lδ` of the rudder.
+    pub cl_rudder: f64,
+    /// `C_nβ`.
+    pub cn_beta: f64,
+    /// `C_np`.
+    pub cn_p: f64,
+    /// `C_nr`.
+    pub cn_r: f64,
+    /// `C_nδ` of the ailerons.
+    pub cn_aileron: f64,
+    /// `C_nδ` of the rudder.
+    pub cn_rudder: f64,
+
+    elevator: Input,
+    aileron: Input,
+    rudder: Input,
+    #[body(mass = mass, inertia = [[ixx, 0, -product], [0, iyy, 0], [-product, 0, izz]])]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(norm(velocity))]
+    speed: Scalar,
+    #[define(angle_of_attack(airframe, velocity))]
+    alpha: Scalar,
+    #[define(sideslip(airframe, velocity))]
+    beta: Scalar,
+    #[define(speed / cruise - 1)]
+    faster: Scalar,
+    #[define(density / 2 * speed * speed * area)]
+    load: Scalar,
+    #[define(omega(airframe / ground))]
+    turning: Vector,
+    #[define(span / (2 * speed) * dot(turning, airframe.x))]
+    rolling: Scalar,
+    #[define(chord / (2 * speed) * dot(turning, airframe.y))]
+    pitching: Scalar,
+    #[define(span / (2 * speed) * dot(turning, airframe.z))]
+    yawing: Scalar,
+    #[define(chord / (2 * speed) * rate(alpha))]
+    plunging: Scalar,
+
+    #[define(cx_u * faster + cx_alpha * alpha + cx_elevator * elevator)]
+    cx: Scalar,
+    #[define(cy_beta * beta + cy_rudder * rudder)]
+    cy: Scalar,
+    #[define(-mass * g / (density / 2 * cruise * cruise * area))]
+    cz_0: Scalar,
+    #[define(
+        cz_0 + cz_u * faster + cz_alpha * alpha + cz_q * pitching + cz_alpha_rate * plunging + cz_elevator * elevator
+    )]
+    cz: Scalar,
+    #[define(cl_beta * beta + cl_p * rolling + cl_r * yawing + cl_aileron * aileron + cl_rudder * rudder)]
+    cl: Scalar,
+    #[define(
+        cm_u * faster + cm_alpha * alpha + cm_q * pitching + cm_alpha_rate * plunging + cm_elevator * elevator
+    )]
+    cm: Scalar,
+    #[define(cn_beta * beta + cn_p * rolling + cn_r * yawing + cn_aileron * aileron + cn_rudder * rudder)]
+    cn: Scalar,
+
+    #[acts(on = airframe, value = load * (cx * airframe.x + cy * airframe.y + cz * airframe.z))]
+    aerodynamic_force: Force,
+    #[acts(
+        on = airframe,
+        value = load * (span * cl * airframe.x + chord * cm * airframe.y + span * cn * airframe.z)
+    )]
+    aerodynamic_moment: Torque,
+    #[acts(on = airframe, along = airframe.x)]
+    thrust: Force,
+
+    #[output(alpha)]
+    angle_of_attack: Scalar,
+    #[output(speed)]
+    airspeed: Scalar,
+    #[output(flight_path(velocity))]
+    climb: Scalar,
+    #[output(dot(a(airframe / ground / ground), airframe.z) / g - dot(ground.z, airframe.z))]
+    felt: Scalar,
+}
+
+impl CruisingAircraft {
+    /// The Boeing 747-100 at Mach 0.8 in 40 000 ft (Etkin and Reid, tables 6.1 and 6.6 and ch. 7).
+    pub const BOEING_747: Self = Self {
+        g: 9.81,
+        mass: 2.83176e6 / 9.81,
+        ixx: 0.247e8,
+        iyy: 0.449e8,
+        izz: 0.673e8,
+        product: -0.212e7,
+        density: 0.3045,
+        cruise: 235.9,
+        area: 511.0,
+        chord: 8.324,
+        span: 59.64,
+        cx_u: -0.1080,
+        cx_alpha: 0.2193,
+        cx_elevator: -3.818e-6,
+        cz_u: -0.1060,
+        cz_alpha: -4.920,
+        cz_q: -5.921,
+        cz_alpha_rate: 5.896,
+        cz_elevator: -0.3648,
+        cm_u: 0.1043,
+        cm_alpha: -1.023,
+        cm_q: -23.92,
+        cm_alpha_rate: -6.314,
+        cm_elevator: -1.444,
+        cy_beta: -0.8771,
+        cy_rudder: 0.1146,
+        cl_beta: -0.2797,
+        cl_p: -0.3295,
+        cl_r: 0.3040,
+        cl_aileron: -1.368e-2,
+        cl_rudder: 6.976e-3,
+        cn_beta: 0.1946,
+        cn_p: -0.04073,
+        cn_r: -0.2737,
+        cn_aileron: -1.973e-4,
+        cn_rudder: -0.1257,
+    };
+
+    /// The Navion, a light aircraft with four seats, at 176 ft/s by the sea: 2750 lb, 184 ft², with
+    /// `C_L = 0.41`, `C_D = 0.05`, `C_Lα = 4.44`, `C_Dα = 0.33`. Forces by pitch rate are left out, as Nelson does.
+    pub const NAVION: Self = Self {
+        g: 32.2 * FOOT,
+        mass: 2750.0 / 32.2 * SLUG,
+        ixx: 1048.0 * SLUG * FOOT * FOOT,
+        iyy: 3000.0 * SLUG * FOOT * FOOT,
+        izz: 3530.0 * SLUG * FOOT * FOOT,
+        product: 0.0,
+        density: 0.002378 * SLUG / (FOOT * FOOT * FOOT),
+        cruise: 176.0 * FOOT,
+        area: 184.0 * FOOT * FOOT,
+        chord: 5.7 * FOOT,
+        span: 33.4 * FOOT,
+        cx_u: -0.10,
+        cx_alpha: 0.41 - 0.33,
+        cx_elevator: 0.0,
+        cz_u: 0.0,
+        cz_alpha: -(4.44 + 0.05),
+        cz_q: 0.0,
+        cz_alpha_rate: 0.0,
+        cz_elevator: -0.355,
+        cm_u: 0.0,
+        cm_alpha: -0.683,
+        cm_q: -9.96,
+        cm_alpha_rate: -4.36,
+        cm_elevator: -0.923,
+        cy_beta: -0.564,
+        cy_rudder: 0.157,
+        cl_beta: -0.074,
+        cl_p: -0.410,
+        cl_r: 0.107,
+        cl_aileron: 0.1342,
+        cl_rudder: 0.107,
+        cn_beta: 0.071,
+        cn_p: -0.0575,
+        cn_r: -0.125,
+        cn_aileron: -0.00346,
+        cn_rudder: -0.072,
+    };
+}
+
+/// m.
+const FOOT: f64 = 0.3048;
+
+/// kg.
+const SLUG: f64 = 14.593_902_937_206_36;

@@ -1,0 +1,24 @@
+//! The flight gallery: trim, modes and derivatives against published figures and closed forms.
+
+#[path = "flight/cruise.rs"]
+mod cruise;
+
+use linkwork_design::Mode;
+
+/// Whether a figure is another, within a part of it.
+#[track_caller]
+pub fn close(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
+}
+
+/// Whether a mode has this eigenvalue, within a part of its size.
+#[track_caller]
+pub fn is_at(mode: Option<&Mode>, re: f64, im: f64, relative: f64) {
+    let pole = mode.expect("the mode is there").exponent;
+    let error = (pole.re - re).hypot(pole.im - im);
+    assert!(
+        error <= relative * re.hypot(im),
+        "expected {re} {im:+}i, found {pole}: {:.1e}",
+        error / re.hypot(im)
+    );
+}

@@ -1,0 +1,187 @@
+//! The transport and the light aircraft by their derivatives.
+
+use crate::{close, is_at};
+use linkwork::prelude::*;
+use linkwork_design::StateSpace;
+use linkwork_design::flight::{self, Derivatives, FlightModes, LATERAL, Reference};
+use linkwork_design::mechanism::measured_system;
+use linkwork_design::steady::equilibrium;
+use linkwork_models::CruisingAircraft;
+
+type State = (SVector<f64, 7>, SVector<f64, 6>, SVector<f64, 4>);
+
+/// Level flight at the speed of the cruise: pitch, climb, elevator and thrust are found.
+fn level(craft: &CruisingAircraft) -> State {
+    let found = equilibrium(craft)
+        .moving([craft.cruise, 0.0, 0.0, 0.0, 0.0, 0.0].into())
+        .with_inputs([0.01, 0.0, 0.0, 1e3].into())
+        .coordinates(["flight.wy"])
+        .speeds(["flight.vx", "flight.vz"])
+        .inputs(["elevator", "thrust"])
+        .output("climb", 0.0)
+        .output("airspeed", craft.cruise)
+        .find()
+        .unwrap();
+    (found.q, found.v, found.u)
+}
+
+fn system(craft: &CruisingAircraft) -> StateSpace {
+    let (q, v, u) = level(craft);
+    flight::linear_system(craft, &q, &v, &u).unwrap()
+}
+
+const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
+
+#[test]
+fn a_transport_cruises() {
+    let (q, v, u) = level(&TRANSPORT);
+    // The cruise is that of its derivatives: nothing deflects.
+    assert!((v[0] - 235.9).abs() < 1e-12 && v[2].abs() < 1e-9 && q[4].abs() < 1e-12);
+    assert!(u[0].abs() < 1e-12 && u[3].abs() < 1e-6, "{u}");
+    let felt = measured_system(&TRANSPORT, 0.0, &q, &v, &u).unwrap();
+    assert_eq!(felt.outputs()[3].name, "felt");
+}
+
+/// The matrices by an independent chain of Etkin's derivatives to 1e-9, and his matrices (ft and s), as printed, to their digits.
+#[test]
+fn a_transport_has_the_matrices_of_etkin_and_reid() {
+    let system = system(&TRANSPORT);
+    let part = system.of_states(&["u", "w", "q", "theta"]).unwrap();
+    let own = [
+        [-0.006866611275943936, 0.013943035674208383, 0.0, -9.81],
+        [-0.09050889360654447, -0.31489494006034713, 235.89334048404203, 0.0],
+        [0.00038918098285667125, -0.003361353515319591, -0.42814117544558544, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+    ];
+    let feet = 1.0 / 0.3048;
+    let published = [
+        [-0.006868, 0.01395, 0.0, -32.2],
+        [-0.09055, -0.3151, 773.98, 0.0],
+        [0.0001187, -0.001026, -0.4285, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+    ];
+    let in_feet = [1.0 / feet, 1.0 / feet, 1.0, 1.0];
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let found = part.a()[(i, j)];
+        assert!((found - own[i][j]).abs() <= 1e-9 * own[i][j].abs() + 1e-12, "A[{i}, {j}] is {found}");
+        let found = found / in_feet[i] * in_feet[j];
+        assert!(
+            (found - published[i][j]).abs() <= 1.5e-3 * published[i][j].abs() + 1e-9,
+            "A[{i}, {j}] is {found}"
+        );
+    }
+    let part = system.of_states(&LATERAL).unwrap();
+    let own = [
+        [-0.05576578472342987, 0.0, -235.9, 9.81],
+        [-0.01270078301241097, -0.4349018915599015, 0.4142375389921919, 0.0],
+        [0.003565068319118036, -0.006054072298785469, -0.14579164379805434, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+    ];
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let found = part.a()[(i, j)];
+        assert!((found - own[i][j]).abs() <= 1e-9 * own[i][j].abs() + 1e-12, "A[{i}, {j}] is {found}");
+    }
+    // What the elevator does: Z_δ / (m − Z_ẇ), and M_δ with what the downwash of that adds.
+    let column = system.input_index("elevator").unwrap();
+    let CruisingAircraft { mass, density, cruise, area, chord, iyy, .. } = TRANSPORT;
+    let (load, lag) = (0.5 * density * cruise * cruise * area, 0.25 * density * chord * area);
+    let heave = load * TRANSPORT.cz_elevator / (mass - lag * TRANSPORT.cz_alpha_rate);
+    close(system.b()[(2, column)], heave, 1e-12);
+    let pitch = load * chord * TRANSPORT.cm_elevator + lag * chord * TRANSPORT.cm_alpha_rate * heave;
+    close(system.b()[(4, column)], pitch / iyy, 1e-12);
+}
+
+/// Published eigenvalues, and those of the independent chain.
+#[test]
+fn a_transport_has_the_modes_of_etkin_and_reid() {
+    let modes = FlightModes::of(&system(&TRANSPORT)).unwrap();
+    is_at(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
+    is_at(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
+    is_at(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
+    is_at(modes.roll.as_ref(), -0.5630776981191257, 0.0, 1e-9);
+    is_at(modes.spiral.as_ref(), -0.007277201746158317, 0.0, 1e-9);
+    is_at(modes.short_period.as_ref(), -0.3719, 0.8875, 1e-3);
+    is_at(modes.phugoid.as_ref(), -0.003289, 0.06723, 1e-3);
+    is_at(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
+    is_at(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
+    is_at(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
+    // Height alone is left, on which nothing depends in air of one density.
+    let [height] = &modes.others[..] else { panic!("{:?}", modes.others) };
+    assert!(height.frequency() < 1e-9);
+    assert_eq!(modes.named().len(), 5);
+}
+
+/// Without its `α̇` derivatives the short period has seven eighths of its damping.
+#[test]
+fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
+    let damping = |craft| FlightModes::of(&system(&craft)).unwrap().short_period.unwrap().damping_ratio();
+    let without = CruisingAircraft { cz_alpha_rate: 0.0, cm_alpha_rate: 0.0, ..TRANSPORT };
+    let ratio = damping(without) / damping(TRANSPORT);
+    assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
+}
+
+/// What went in comes out: dimensional derivatives over what makes them dimensionless.
+#[test]
+fn derivatives_without_dimension_are_those_declared() {
+    let craft = TRANSPORT;
+    let (q, v, u) = level(&craft);
+    let found = Derivatives::of(&craft, &q, &v, &u).unwrap();
+    let reference =
+        Reference { density: craft.density, area: craft.area, chord: craft.chord, span: craft.span };
+    let declared = [
+        ("X", "u", craft.cx_u),
+        ("X", "w", craft.cx_alpha),
+        ("Z", "u", craft.cz_u),
+        ("Z", "w", craft.cz_alpha),
+        ("Z", "q", craft.cz_q),
+        ("Z", "w'", craft.cz_alpha_rate),
+        ("Z", "elevator", craft.cz_elevator),
+        ("M", "u", craft.cm_u),
+        ("M", "w", craft.cm_alpha),
+        ("M", "q", craft.cm_q),
+        ("M", "w'", craft.cm_alpha_rate),
+        ("M", "elevator", craft.cm_elevator),
+        ("Y", "v", craft.cy_beta),
+        ("Y", "rudder", craft.cy_rudder),
+        ("L", "v", craft.cl_beta),
+        ("L", "p", craft.cl_p),
+        ("L", "r", craft.cl_r),
+        ("L", "aileron", craft.cl_aileron),
+        ("N", "v", craft.cn_beta),
+        ("N", "p", craft.cn_p),
+        ("N", "r", craft.cn_r),
+        ("N", "rudder", craft.cn_rudder),
+    ];
+    for axes in [found.clone(), found.in_stability_axes()] {
+        for (force, by, expected) in declared {
+            close(axes.coefficient(force, by, &reference).unwrap(), expected, 1e-9);
+        }
+    }
+    // Table 6.2 of the book, in N·s/m: X_u = −1.982e3, Z_w = −9.030e4, M_q = −1.521e7, Z_ẇ = 1.909e3.
+    for (force, by, published) in
+        [("X", "u", -1.982e3), ("Z", "w", -9.030e4), ("M", "q", -1.521e7), ("Z", "w'", 1.909e3)]
+    {
+        close(found.of_force(force, by).unwrap(), published, 1e-3);
+    }
+    close(found.static_margin(craft.chord).unwrap(), 1.023 / 4.920, 1e-9);
+    assert!(found.of_force("M", "flaps").unwrap_err().to_string().contains("elevator"));
+}
+
+/// Nelson, *Flight Stability and Automatic Control* (1998), ch. 4 and 5: eigenvalues of the Navion as printed.
+#[test]
+fn a_light_aircraft_has_the_modes_of_nelson() {
+    let modes = FlightModes::of(&system(&CruisingAircraft::NAVION)).unwrap();
+    is_at(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
+    is_at(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
+    is_at(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
+    is_at(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
+    is_at(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
+}
+
+#[test]
+fn off_a_steady_state_the_error_says_by_how_much() {
+    let (q, mut v, u) = level(&TRANSPORT);
+    v[4] = 0.01;
+    let error = flight::linear_system(&TRANSPORT, &q, &v, &u).unwrap_err().to_string();
+    assert!(error.contains("not steady") && error.contains("flight.v"), "{error}");
+}

@@ -1,0 +1,207 @@
+//! Dimensional and non-dimensional derivatives of an aircraft's forces.
+
+use super::states::check_free;
+use crate::Error;
+use crate::mechanism::effective_mass;
+use linkwork::{Derivatives as Generated, Mechanism};
+use nalgebra::{DMatrix, DVector, SVector};
+
+/// Forces along and moments about the axes forward, right and down.
+const FORCES: [&str; 6] = ["X", "Y", "Z", "L", "M", "N"];
+/// Velocities and turning in the same axes.
+const VELOCITIES: [&str; 6] = ["u", "v", "w", "p", "q", "r"];
+
+/// What makes derivatives dimensionless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Density of the air, kg/m³.
+    pub density: f64,
+    /// Wing area, m².
+    pub area: f64,
+    /// Mean chord, m.
+    pub chord: f64,
+    /// Wing span, m.
+    pub span: f64,
+}
+
+/// Derivatives of all forces on an aircraft but gravity and its own inertia: aerodynamic forces and thrust, about the origin of the
+/// airframe, in its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivatives {
+    /// By `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s; rows are `X`, `Y`, `Z`, `L`, `M`, `N`.
+    pub by_velocity: DMatrix<f64>,
+    /// By their rates, as `Z` by `ẇ`: kg, kg·m, kg·m².
+    pub by_acceleration: DMatrix<f64>,
+    /// By the inputs.
+    pub by_input: DMatrix<f64>,
+    /// The forces and moments themselves, N and N·m.
+    pub forces: DVector<f64>,
+    /// Velocity and turning, m/s and rad/s.
+    pub velocity: DVector<f64>,
+    inputs: Vec<&'static str>,
+}
+
+/// `w × (M v)` of wrenches, with `w` as a twist: linear part first.
+fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
+    let momentum = mass * v;
+    let part = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
+    let (force, moment) = (part(&momentum, 0), part(&momentum, 3));
+    let (linear, angular) = (part(w, 0), part(w, 3));
+    let mut all = DVector::zeros(6);
+    all.fixed_rows_mut::<3>(0).copy_from(&angular.cross(&force));
+    all.fixed_rows_mut::<3>(3).copy_from(&(angular.cross(&moment) + linear.cross(&force)));
+    all
+}
+
+impl Derivatives {
+    /// Of a mechanism whose first six velocities are those of a free joint, in a state. The spin of rotors counts among the forces.
+    ///
+    /// ```text
+    /// f = M v̇ + v × M v − weight,   ∂f/∂v, ∂f/∂v̇, ∂f/∂u
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] where the first joint is not free, [`Error::NotFinite`] without a finite answer.
+    pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
+        m: &M,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        u: &SVector<f64, NU>,
+    ) -> Result<Self, Error>
+    where
+        M: Generated<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+    {
+        check_free(&M::VELOCITIES)?;
+        let motion = m.linear_motion(q, v, u);
+        let (_, by_v) = m.inverse_dynamics_derivatives(q, v, &motion.acceleration);
+        let all = effective_mass(m, 0.0, q, v);
+        let own = Mechanism::mass_matrix(m, q);
+        let mass = DMatrix::from_fn(6, 6, |i, j| own[(i, j)]);
+        let velocity = DVector::from_fn(6, |i, _| v[i]);
+        let acceleration = DVector::from_fn(6, |i, _| motion.acceleration[i]);
+        let mut by_velocity = DMatrix::from_fn(6, 6, |i, j| -by_v[(i, j)]);
+        for k in 0..6 {
+            let unit = DVector::from_fn(6, |i, _| if i == k { 1.0 } else { 0.0 });
+            let change = bias(&mass, &unit, &velocity) + bias(&mass, &velocity, &unit);
+            by_velocity.column_mut(k).zip_apply(&change, |x, y| *x += y);
+        }
+        let by_acceleration = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
+        let by_u = DMatrix::from_fn(NV, NU, |i, j| motion.by_u[(i, j)]);
+        let by_input = (all * by_u).rows(0, 6).into_owned();
+        let forces = &mass * acceleration + bias(&mass, &velocity, &velocity) - weight(m, q);
+        let parts =
+            [by_velocity.as_slice(), by_acceleration.as_slice(), by_input.as_slice(), forces.as_slice()];
+        if parts.iter().any(|part| part.iter().any(|x| !x.is_finite())) {
+            return Err(Error::NotFinite { what: "a derivative" });
+        }
+        Ok(Self { by_velocity, by_acceleration, by_input, forces, velocity, inputs: M::INPUTS.to_vec() })
+    }
+
+    /// In stability axes: turned about the axis to the right, so that the first axis is along the velocity in the plane of symmetry.
+    pub fn in_stability_axes(&self) -> Self {
+        let (s, c) = self.velocity[2].atan2(self.velocity[0]).sin_cos();
+        let mut turn = DMatrix::identity(6, 6);
+        for k in [0, 3] {
+            (turn[(k, k)], turn[(k, k + 2)], turn[(k + 2, k)], turn[(k + 2, k + 2)]) = (c, s, -s, c);
+        }
+        let turned = |m: &DMatrix<f64>| &turn * m * turn.transpose();
+        Self {
+            by_velocity: turned(&self.by_velocity),
+            by_acceleration: turned(&self.by_acceleration),
+            by_input: &turn * &self.by_input,
+            forces: &turn * &self.forces,
+            velocity: &turn * &self.velocity,
+            inputs: self.inputs.clone(),
+        }
+    }
+
+    /// A derivative by the names of the force and of what changes: `of_force("M", "q")`, `("Z", "w'")`, `("M", "elevator")`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unknown`] lists the names that there are.
+    pub fn of_force(&self, force: &str, by: &str) -> Result<f64, Error> {
+        let row = place("force", &FORCES, force)?;
+        if let Some(velocity) = by.strip_suffix('\'') {
+            return Ok(self.by_acceleration[(row, place("velocity", &VELOCITIES, velocity)?)]);
+        }
+        if let Some(column) = VELOCITIES.iter().position(|name| *name == by) {
+            return Ok(self.by_velocity[(row, column)]);
+        }
+        let names: Vec<&str> = VELOCITIES.iter().copied().chain(self.inputs.iter().copied()).collect();
+        Ok(self.by_input[(row, place("velocity or input", &names, by)?.saturating_sub(6))])
+    }
+
+    /// The same without dimension, as Etkin and Reid have it (*Dynamics of Flight*, 1996, table 4.1): forces by `½ ρ V² S`, moments
+    /// by that and chord or span; `u` by the speed, at a coefficient that changes, `v` and `w` as the angles `β` and `α`, turning
+    /// by `2 V / b` and, in pitch, `2 V / c`, rates of `v` and `w` likewise.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`of_force`](Self::of_force); [`Error::Range`] at rest.
+    pub fn coefficient(&self, force: &str, by: &str, reference: &Reference) -> Result<f64, Error> {
+        let derivative = self.of_force(force, by)?;
+        let Reference { density, area, chord, span } = *reference;
+        let speed = self.velocity.fixed_rows::<3>(0).norm();
+        let load = 0.5 * density * speed * speed * area;
+        if !(load > 0.0 && load.is_finite()) {
+            return Err(Error::Range { what: "a dynamic pressure times area", value: load });
+        }
+        let arm = match force {
+            "M" => chord,
+            "L" | "N" => span,
+            _ => 1.0,
+        };
+        let own = if by == "u" { 2.0 * self.forces[place("force", &FORCES, force)?] / speed } else { 0.0 };
+        let unit = match by {
+            "u" | "v" | "w" => 1.0 / speed,
+            "q" => chord / (2.0 * speed),
+            "p" | "r" => span / (2.0 * speed),
+            "u'" | "w'" => chord / (2.0 * speed * speed),
+            "v'" => span / (2.0 * speed * speed),
+            "q'" => (chord / (2.0 * speed)).powi(2),
+            "p'" | "r'" => (span / (2.0 * speed)).powi(2),
+            _ => 1.0,
+        };
+        Ok((derivative - own) / (load * arm * unit))
+    }
+
+    /// How far the neutral point lies behind the airframe's origin, its centre of mass, in chords: the slope of the pitching moment
+    /// with the downward velocity over that of the force along the downward axis. Positive where the aircraft is stable.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] for a chord that is not positive, [`Error::Singular`] where no force follows the downward velocity.
+    pub fn static_margin(&self, chord: f64) -> Result<f64, Error> {
+        if !(chord > 0.0 && chord.is_finite()) {
+            return Err(Error::Range { what: "a chord", value: chord });
+        }
+        let (force, moment) = (self.by_velocity[(2, 2)], self.by_velocity[(4, 2)]);
+        if force == 0.0 {
+            return Err(Error::Singular { what: "the slope of the lift" });
+        }
+        Ok(moment / (force * chord))
+    }
+}
+
+/// The generalized forces of the potential on the free joint. Differences of a uniform field are exact.
+fn weight<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>) -> DVector<f64>
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    DVector::from_fn(6, |k, _| {
+        let step = if k < 3 { 1.0 } else { 1e-3 };
+        let by = SVector::from_fn(|i, _| if i == k { step } else { 0.0 });
+        let (up, down) = (Mechanism::integrate(m, q, &by), Mechanism::integrate(m, q, &-by));
+        (Mechanism::potential_energy(m, &down) - Mechanism::potential_energy(m, &up)) / (2.0 * step)
+    })
+}
+
+fn place(kind: &'static str, names: &[&str], name: &str) -> Result<usize, Error> {
+    names.iter().position(|known| *known == name).ok_or_else(|| Error::Unknown {
+        kind,
+        name: name.to_owned(),
+        known: names.iter().map(|known| (*known).to_owned()).collect(),
+    })
+}

@@ -1,0 +1,86 @@
+//! Flight modes by name.
+
+use super::{LATERAL, LONGITUDINAL};
+use crate::{Error, Mode, StateSpace};
+
+/// The modes of an aircraft by their names (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6). One that does not exist is `None`:
+/// of an aircraft that is unstable in pitch the short period is two real modes, which are among the others.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FlightModes {
+    /// The oscillation of angle of attack and pitch rate.
+    pub short_period: Option<Mode>,
+    /// The slow exchange of speed and height.
+    pub phugoid: Option<Mode>,
+    /// The oscillation of sideslip, yaw and roll.
+    pub dutch_roll: Option<Mode>,
+    /// The fast real mode of the roll rate.
+    pub roll: Option<Mode>,
+    /// The slow real mode of bank and heading.
+    pub spiral: Option<Mode>,
+    /// All others: of engines and actuators, of the air's density over height.
+    pub others: Vec<Mode>,
+}
+
+fn share(mode: &Mode, states: &[&str]) -> f64 {
+    states.iter().filter_map(|state| mode.participation_of(state)).sum()
+}
+
+/// Takes out the mode for which `key` is largest, among those that fit.
+fn take(modes: &mut Vec<Mode>, fits: impl Fn(&Mode) -> bool, key: impl Fn(&Mode) -> f64) -> Option<Mode> {
+    let candidates = modes.iter().enumerate().filter(|(_, mode)| fits(mode));
+    let (k, _) = candidates.max_by(|(_, a), (_, b)| key(a).total_cmp(&key(b)))?;
+    Some(modes.remove(k))
+}
+
+impl FlightModes {
+    /// Of a system with the states `u`, `w`, `q`, `theta` or `v`, `p`, `r`, `phi` or all of them, as
+    /// [`linear_system`](super::linear_system) gives: modes are told apart by which states take part.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`], [`Error::Unknown`] for a system without states of these names.
+    pub fn of(system: &StateSpace) -> Result<Self, Error> {
+        let is_state = |name: &&str| system.states().iter().any(|state| state.name == *name);
+        if !LONGITUDINAL.iter().chain(&LATERAL).any(is_state) {
+            let known = system.states().iter().map(|state| state.name.clone()).collect();
+            return Err(Error::Unknown { kind: "state", name: LONGITUDINAL.join(", "), known });
+        }
+        let mut modes = system.modes()?;
+        let along = |mode: &Mode| share(mode, &LONGITUDINAL);
+        let across = |mode: &Mode| share(mode, &LATERAL);
+        let in_plane = |mode: &Mode| along(mode) > 0.5;
+        let sideways = |mode: &Mode| across(mode) > 0.5;
+        let swings = |mode: &Mode| mode.exponent.im > 0.0;
+        let pitches = |mode: &Mode| share(mode, &["w", "q"]);
+        let surges = |mode: &Mode| share(mode, &["u", "theta", "h"]);
+        let short = |mode: &Mode| in_plane(mode) && swings(mode) && pitches(mode) > surges(mode);
+        let long = |mode: &Mode| in_plane(mode) && swings(mode) && pitches(mode) <= surges(mode);
+        let yaws = |mode: &Mode| share(mode, &["v", "r"]);
+        let rolls = |mode: &Mode| sideways(mode) && !swings(mode);
+        Ok(Self {
+            short_period: take(&mut modes, short, Mode::frequency),
+            phugoid: take(&mut modes, long, surges),
+            dutch_roll: take(&mut modes, |mode| sideways(mode) && swings(mode) && yaws(mode) > 0.3, yaws),
+            roll: take(&mut modes, |mode| rolls(mode) && share(mode, &["p"]) > 0.3, Mode::frequency),
+            spiral: take(
+                &mut modes,
+                |mode| rolls(mode) && share(mode, &["phi"]) > 0.3,
+                |mode| -mode.frequency(),
+            ),
+            others: modes,
+        })
+    }
+
+    /// Those that there are, with their names.
+    pub fn named(&self) -> Vec<(&'static str, &Mode)> {
+        let all = [
+            ("short period", &self.short_period),
+            ("phugoid", &self.phugoid),
+            ("Dutch roll", &self.dutch_roll),
+            ("roll", &self.roll),
+            ("spiral", &self.spiral),
+        ];
+        all.into_iter().filter_map(|(name, mode)| Some((name, mode.as_ref()?))).collect()
+    }
+}

@@ -1,0 +1,134 @@
+//! From displacements in body axes to the states that one writes of aircraft.
+
+use crate::{Error, Signal, StateSpace, mechanism};
+use linkwork::{Derivatives, Mechanism};
+use nalgebra::{DMatrix, Matrix3, Quaternion, SVector, UnitQuaternion};
+
+/// The states of motion in the plane of symmetry: forward and downward velocity, pitch rate, pitch angle, height.
+pub const LONGITUDINAL: [&str; 5] = ["u", "w", "q", "theta", "h"];
+
+/// The states of motion out of it: sideways velocity, roll and yaw rate, bank.
+pub const LATERAL: [&str; 4] = ["v", "p", "r", "phi"];
+
+/// Names and units, in the order of the free joint's velocities; place and heading are left out.
+const STATES: [(&str, &str); 9] = [
+    ("u", "m/s"),
+    ("v", "m/s"),
+    ("w", "m/s"),
+    ("p", "rad/s"),
+    ("q", "rad/s"),
+    ("r", "rad/s"),
+    ("phi", "rad"),
+    ("theta", "rad"),
+    ("h", "m"),
+];
+
+/// Accelerations below this are none, m/s² and rad/s².
+const STEADY: f64 = 1e-6;
+
+/// Beside the largest entry: what depends on place or heading by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The suffixes of a free joint's velocities.
+const FREE: [&str; 6] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz"];
+
+/// Refuses a mechanism that does not begin with a free joint.
+pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
+    for (k, suffix) in FREE.iter().enumerate() {
+        let name = velocities.get(k).copied().unwrap_or("nothing");
+        if !name.ends_with(suffix) {
+            let known = velocities.iter().map(|name| (*name).to_owned()).collect();
+            return Err(Error::Unknown {
+                kind: "velocity of a free joint",
+                name: (*suffix).to_owned(),
+                known,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The axes of the airframe in the ground, and what body rates do to bank, pitch and heading.
+struct Attitude {
+    axes: Matrix3<f64>,
+    rates: Matrix3<f64>,
+}
+
+impl Attitude {
+    fn of(q: &[f64]) -> Result<Self, Error> {
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
+        let axes = turn.to_rotation_matrix().into_inner();
+        let (sine, across) = (-axes[(2, 0)], axes[(2, 1)].hypot(axes[(2, 2)]));
+        if across < 1e-6 {
+            return Err(Error::Singular { what: "bank and heading of a nose straight up or down" });
+        }
+        let (s, c) = (axes[(2, 1)] / across, axes[(2, 2)] / across);
+        let (tangent, secant) = (sine / across, 1.0 / across);
+        let rates = Matrix3::new(1.0, s * tangent, c * tangent, 0.0, c, -s, 0.0, s * secant, c * secant);
+        Ok(Self { axes, rates })
+    }
+}
+
+/// The motion of an aircraft about steady flight, as `ẋ = A x + B δu`: of the velocity `u`, `v`, `w` and turning `p`, `q`, `r` in axes
+/// forward, right and down, of bank `phi`, pitch angle `theta` and height `h` (upward), then of what else there is. Of a
+/// mechanism with states of first order pass `&at(&m.extended(), t)`. The states are the outputs, too.
+///
+/// In a climb, where the air changes with height, it is the motion of an instant.
+///
+/// # Errors
+///
+/// [`Error::NotSteady`] says what accelerates or turns up, and by how much; [`Error::Unknown`] where the first joint is not free;
+/// [`Error::Singular`] of a nose straight up or down; [`Error::Range`] where forces depend on place or heading.
+pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    u: &SVector<f64, NU>,
+) -> Result<StateSpace, Error>
+where
+    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    check_free(&M::VELOCITIES)?;
+    let attitude = Attitude::of(q.as_slice())?;
+    let forces = Mechanism::generalized_forces(m, q, v, u);
+    let acceleration = Mechanism::forward_dynamics(m, q, v, &forces);
+    let turning = attitude.rates * v.fixed_rows::<3>(3);
+    let angles = [("bank", turning[0]), ("pitch angle", turning[1])];
+    let rates = M::VELOCITIES.into_iter().zip(acceleration.iter().copied()).chain(angles);
+    if let Some((what, rate)) = rates.into_iter().find(|(_, rate)| !rate.is_finite() || rate.abs() > STEADY) {
+        return Err(Error::NotSteady { what: what.to_owned(), rate });
+    }
+    let system = mechanism::linear_system(m, q, v, u)?;
+    in_flight(&system, &attitude, NV - M::FIRST_ORDER)
+}
+
+fn in_flight(system: &StateSpace, attitude: &Attitude, displacements: usize) -> Result<StateSpace, Error> {
+    let n = system.order();
+    let (mut to, mut from) = (DMatrix::identity(n, n), DMatrix::identity(n, n));
+    let singular = Error::Singular { what: "rates of bank, pitch and heading" };
+    let back = attitude.rates.try_inverse().ok_or(singular)?;
+    to.view_mut((0, 0), (3, 3)).copy_from(&attitude.axes);
+    from.view_mut((0, 0), (3, 3)).copy_from(&attitude.axes.transpose());
+    to.view_mut((3, 3), (3, 3)).copy_from(&attitude.rates);
+    from.view_mut((3, 3), (3, 3)).copy_from(&back);
+    // Height counts upward.
+    to.row_mut(2).neg_mut();
+    from.column_mut(2).neg_mut();
+    let (a, b) = (&to * system.a() * from, &to * system.b());
+    // Velocities, bank, pitch, height, then other displacements and velocities.
+    let own = displacements..displacements + 6;
+    let rest = (6..displacements).chain(displacements + 6..n);
+    let kept: Vec<usize> = own.chain([3, 4, 2]).chain(rest.clone()).collect();
+    for left_out in [0, 1, 5] {
+        let most = kept.iter().map(|k| a[(*k, left_out)].abs()).fold(0.0, f64::max);
+        if most > ROUNDING * a.amax() {
+            return Err(Error::Range { what: "a dependence of the motion on place or heading", value: most });
+        }
+    }
+    let names = STATES.map(Signal::from).into_iter().chain(rest.map(|k| system.states()[k].clone()));
+    let count = kept.len();
+    let (a, b) = (a.select_rows(&kept).select_columns(&kept), b.select_rows(&kept));
+    let found =
+        StateSpace::new(a, b, DMatrix::identity(count, count), DMatrix::zeros(count, system.b().ncols()))?;
+    Ok(found.with_states(names)?.with_inputs(system.inputs().to_vec())?.with_states_as_outputs())
+}
