@@ -2,10 +2,10 @@
 #![expect(unsafe_code, reason = "a global allocator is unsafe to implement")]
 
 use linkwork::batch::{Rollout, unwatched};
-use linkwork::integrate::{ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler};
+use linkwork::integrate::{EventDriven, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler, TimeStepping};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
-use linkwork::{Batch, Constrained, Mechanism, frame, mechanism, simulate};
+use linkwork::{Batch, Constrained, Mechanism, contact, frame, mechanism, simulate};
 use linkwork_models::{Bicycle, BricardLinkage, FourBar};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -250,4 +250,27 @@ fn constraints() {
     let (q, v) = (bicycle.neutral(), SVector::zeros());
     let linear = || assert!(bicycle.linearize(&q, &v, &SVector::zeros(), &[3, 7]).is_ok());
     assert_eq!(heap_calls(linear), 0, "linearize");
+}
+
+/// A box that falls on its face, and slides.
+#[mechanism(gravity = -9.81 * z)]
+struct Crate {
+    #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[contact(hull.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = 0.3, restitution = 0.2)]
+    floor: Contact,
+}
+
+#[test]
+fn contacts() {
+    let m = Crate {};
+    let (q, v) = ([0.0, 0.0, 0.055, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, -0.5, 0.0, 0.0, 0.0]);
+    let run = || simulate(&m).from(q, v).duration(0.1);
+    let (at, rates) = (SVector::from(q), SVector::from(v));
+    assert_eq!(heap_calls(|| run().method(TimeStepping::step(1e-3)).finish().unwrap()), 0, "time stepping");
+    assert_eq!(heap_calls(|| run().method(EventDriven::new()).finish().unwrap()), 0, "event by event");
+    assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
+    assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

@@ -36,11 +36,13 @@ mod held;
 mod phase;
 mod problem;
 mod response;
+mod total;
 
 pub use apart::{Apart, apart};
 pub use held::{Held, forward_dynamics};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
+use total::Total;
 
 /// Which of the rates of all contacts are those of one: that of its gap first, then those of slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -331,7 +333,8 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+    let mut problem =
+        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
     let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
@@ -342,7 +345,7 @@ where
 /// What has acted: the contacts that are closed, with their impulses and what these do to velocities.
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
-    impulses: [T; NR],
+    impulses: Total<T, NR>,
     responses: SMatrix<T, NV, NR>,
 }
 
@@ -379,7 +382,7 @@ where
     }
     let after = mechanism.contact_rates(t, q, free);
     let laws = mechanism.contact_laws();
-    let mut problem = Problem::new(M::CONTACT_ROWS, &laws, |k| closed[k], &after);
+    let mut problem = Problem::new(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &after);
     if !problem.is_loaded(before) {
         return Ok((solved, None));
     }
@@ -410,7 +413,7 @@ fn tempered<T: Real, const NK: usize, const NR: usize>(
     laws: &[Law<T>; NK],
     before: &SVector<T, NR>,
     may_gain: bool,
-) -> Result<[T; NR], usize> {
+) -> Result<Total<T, NR>, usize> {
     // A bit of the part each.
     const HALVINGS: usize = 12;
     let (mut least, mut step) = (T::zero(), T::one());

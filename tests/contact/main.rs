@@ -5,6 +5,7 @@ mod both;
 mod events;
 mod files;
 mod forces;
+mod fuzz;
 mod laws;
 mod mechanisms;
 mod robots;

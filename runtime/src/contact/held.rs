@@ -113,7 +113,8 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+    let mut problem =
+        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&responses.rates);
     let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
         constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),

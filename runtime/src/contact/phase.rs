@@ -1,12 +1,13 @@
 //! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the next event is.
 
 use super::held::held;
-use super::problem::Problem;
+use super::problem::{Problem, entry, put};
 use super::{Contacts, Law, Rows, Touch, impact, near};
 use crate::constraint::ConstraintError;
 use crate::forward::each_function;
 use crate::private::{constant, epsilon};
 use crate::{Real, Rheonomic};
+use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 /// Of a mechanism with `NK` contacts and `NR` rates, what each does until the next event.
@@ -53,6 +54,11 @@ impl<T: Real> Flight<T> {
 fn still<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
     let most = rates.iter().fold(T::one(), |most, rate| most.max(rate.abs()));
     most * epsilon::<T>() * constant(512.0)
+}
+
+/// The length of a part of a vector.
+fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
+    part.fold(T::zero(), |sum, i| sum + entry(vector, i) * entry(vector, i)).sqrt()
 }
 
 /// Gaps of surfaces that rest on each other, m: what rounding and a step may leave of none.
@@ -132,7 +138,12 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
             if free.iter().any(|rate| !rate.is_finite()) {
                 return Err(ConstraintError::NotFinite);
             }
-            let mut problem = Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed[k], &free);
+            let mut problem = Problem::new(
+                M::CONTACT_ROWS,
+                &mechanism.contact_laws(),
+                |k| closed.get(k) == Some(&true),
+                &free,
+            );
             let responses = mechanism.contact_responses(t, q, &closed);
             problem.weigh(&responses.rates);
             let forces = problem.solve().map_err(|k| ConstraintError::Contact {
@@ -144,9 +155,10 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         }
         let bent = mechanism.contact_rates(t, q, &a) - driven + bias;
         let touching = touching(q);
-        for (k, Rows { first, .. }) in M::CONTACT_ROWS.into_iter().enumerate() {
-            let (gap, rate, acceleration) = (gaps[k], rates[first], bent[first]);
-            if closed[k] || gap > near() {
+        let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut());
+        for (((gap, closed), flight), Rows { first, .. }) in states.zip(M::CONTACT_ROWS) {
+            let (gap, rate, acceleration) = (*gap, entry(&rates, first), entry(&bent, first));
+            if closed || gap > near() {
                 continue;
             }
             let gap = if gap > touching { gap } else { T::zero() };
@@ -154,7 +166,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 if rate > T::zero() { -rate * rate / (acceleration * constant(2.0)) } else { T::zero() };
             let falls = rate < T::zero() || acceleration < T::zero();
             if falls && gap + rise <= near() {
-                phase.flights[k] = Some(Flight { gap, rate, acceleration });
+                *flight = Some(Flight { gap, rate, acceleration });
             }
         }
         Ok((phase, a))
@@ -164,10 +176,12 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
     fn aim(free: &mut SVector<T, NR>, rates: &SVector<T, NR>, still: T, rows: [Rows; NK]) {
         let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
         for Rows { first, count } in rows {
-            let slip = (1..count).fold(T::zero(), |sum, i| sum + rates[first + i] * rates[first + i]).sqrt();
+            let slip = length(rates, first + 1..first + count);
             if slip > still {
                 let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
-                (1..count).for_each(|i| free[first + i] += rates[first + i] / slip * size);
+                for i in first + 1..first + count {
+                    put(free, i, entry(free, i) + entry(rates, i) / slip * size);
+                }
             }
         }
     }
@@ -180,7 +194,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
             self.touches.iter().zip(rows).filter(|(touch, _)| **touch == Touch::Slips)
         {
             if self.slip(rates, first, count) <= T::zero() {
-                (1..count).for_each(|i| braked[first + i] = self.along[first + i]);
+                (first + 1..first + count).for_each(|i| put(&mut braked, i, entry(&self.along, i)));
             }
         }
         braked
@@ -188,7 +202,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
 
     /// The slip of a contact the way it slips.
     fn slip(&self, rates: &SVector<T, NR>, first: usize, count: usize) -> T {
-        (1..count).fold(T::zero(), |sum, i| sum + self.along[first + i] * rates[first + i])
+        (first + 1..first + count).fold(T::zero(), |sum, i| sum + entry(&self.along, i) * entry(rates, i))
     }
 
     /// Whether contacts slip whose forces the motion does not tell apart.
@@ -299,24 +313,26 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let friction = mechanism.contact_laws().map(|Law { friction, .. }| friction);
         let mut moving = constant::<T>(1.0);
         let mut forces = moving;
-        for (k, Rows { first, count }) in M::CONTACT_ROWS.into_iter().enumerate() {
-            let (rate, normal) = (rates[first], held.forces[first]);
-            let least = match phase.touches[k] {
+        let contacts = M::CONTACT_ROWS.into_iter().zip(phase.touches).zip(phase.flights);
+        for (((Rows { first, count }, touch), flight), (gap, friction)) in
+            contacts.zip(gaps.iter().zip(friction))
+        {
+            let (rate, normal) = (entry(&rates, first), entry(&held.forces, first));
+            let least = match touch {
                 Touch::Open => {
-                    let gap = phase.flights[k].map_or(gaps[k], |flight| flight.gap(s, rate, bent[first]));
+                    let gap = flight.map_or(*gap, |flight| flight.gap(s, rate, entry(&bent, first)));
                     if gap < T::zero() && rate >= -still { T::one() } else { gap }
                 }
                 Touch::Slips => self::still(&rates) + phase.slip(&rates, first, count),
                 Touch::Sticks => T::one(),
             };
             moving = moving.min(least);
-            if phase.touches[k] != Touch::Open {
+            if touch != Touch::Open {
                 forces = forces.min(normal + rounding);
             }
-            if phase.touches[k] == Touch::Sticks && count > 1 && friction[k] > T::zero() {
-                let size = (1..count)
-                    .fold(T::zero(), |sum, i| sum + held.forces[first + i] * held.forces[first + i]);
-                forces = forces.min(friction[k] * normal - size.sqrt() + rounding);
+            if touch == Touch::Sticks && count > 1 && friction > T::zero() {
+                let size = length(&held.forces, first + 1..first + count);
+                forces = forces.min(friction * normal - size + rounding);
             }
         }
         let numbers = moving.is_finite() && forces.is_finite();
@@ -378,13 +394,13 @@ where
     }
     let responses = mechanism.contact_responses(t, q, &closed);
     let undone = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
-        let mut problem = Problem::new(M::CONTACT_ROWS, laws, |k| closed[k], left);
+        let mut problem = Problem::new(M::CONTACT_ROWS, laws, |k| closed.get(k) == Some(&true), left);
         problem.weigh(&responses.rates);
         responses.velocities * problem.spread(&problem.together(|_| true))
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
     for (gap, Rows { first, .. }) in gaps.iter().zip(M::CONTACT_ROWS) {
-        left[first] = *gap;
+        put(&mut left, first, *gap);
     }
     let push = undone(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
     let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, &push, v));

@@ -1,5 +1,6 @@
 //! The impulses of all contacts that are closed: a complementarity problem with friction cones.
 
+use super::total::Total;
 use super::{Law, Rows, Touch};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -10,9 +11,9 @@ mod newton;
 mod search;
 
 /// A number for each rate.
-type List<T, const NR: usize> = [T; NR];
+type List<T, const NR: usize> = Total<T, NR>;
 /// A row of numbers for each rate.
-type Square<T, const NR: usize> = [[T; NR]; NR];
+type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
 
 /// Roundings of the rates that are left of the equations.
 const ROUNDINGS: f64 = 64.0;
@@ -23,20 +24,20 @@ const ROUNDINGS: f64 = 64.0;
 #[derive(Clone, Debug)]
 pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// Which contacts of the mechanism they are, and which rates these have there.
-    contacts: [(usize, Rows); NK],
+    contacts: Total<(usize, Rows), NK>,
     count: usize,
     /// Of each contact the first of its rates and how many there are.
-    rows: [Rows; NK],
+    rows: Total<Rows, NK>,
     size: usize,
     /// `u₀`.
     free: List<T, NR>,
     /// `W`.
     weights: Square<T, NR>,
     /// What the normal rate is at least.
-    least: [T; NK],
-    friction: [T; NK],
+    least: Total<T, NK>,
+    friction: Total<T, NK>,
     /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where impulses move nothing.
-    step: [T; NK],
+    step: Total<T, NK>,
 }
 
 /// What the natural map makes of a contact.
@@ -60,23 +61,24 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ) -> Self {
         let none = Rows { first: 0, count: 0 };
         let mut problem = Self {
-            contacts: [(0, none); NK],
+            contacts: Total::repeat((0, none)),
             count: 0,
-            rows: [none; NK],
+            rows: Total::repeat(none),
             size: 0,
-            free: [T::zero(); NR],
-            weights: [[T::zero(); NR]; NR],
-            least: [T::zero(); NK],
-            friction: [T::zero(); NK],
-            step: [T::zero(); NK],
+            free: Total::repeat(T::zero()),
+            weights: Total::repeat(Total::repeat(T::zero())),
+            least: Total::repeat(T::zero()),
+            friction: Total::repeat(T::zero()),
+            step: Total::repeat(T::zero()),
         };
-        for k in (0..NK).filter(|k| is_closed(*k)) {
-            let (c, first, of) = (problem.count, problem.size, rows[k]);
+        let all = rows.into_iter().zip(laws).enumerate();
+        for (k, (of, law)) in all.filter(|(k, _)| is_closed(*k)) {
+            let (c, first) = (problem.count, problem.size);
             problem.contacts[c] = (k, of);
             problem.rows[c] = Rows { first, count: of.count };
-            problem.friction[c] = laws[k].friction;
+            problem.friction[c] = law.friction;
             for i in 0..of.count {
-                problem.free[first + i] = free.data.0[0][of.first + i];
+                problem.free[first + i] = entry(free, of.first + i);
             }
             problem.count += 1;
             problem.size += of.count;
@@ -91,9 +93,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Of each rate its number among those of the mechanism; the first `size` are used.
-    fn places(&self) -> [usize; NR] {
-        let mut places = [0; NR];
-        for ((_, of), rows) in self.contacts.iter().zip(self.rows).take(self.count) {
+    fn places(&self) -> List<usize, NR> {
+        let mut places = List::repeat(0);
+        for ((_, of), rows) in self.contacts.iter().zip(*self.rows).take(self.count) {
             for i in 0..rows.count {
                 places[rows.first + i] = of.first + i;
             }
@@ -104,8 +106,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Impulses by their rates in the mechanism.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
-        for (place, impulse) in self.places().iter().zip(impulses).take(self.size) {
-            all.data.0[0][*place] = *impulse;
+        for (place, impulse) in self.places().iter().zip(impulses.iter()).take(self.size) {
+            put(&mut all, *place, *impulse);
         }
         all
     }
@@ -113,21 +115,20 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Whether surfaces approach each other, without impulses or before.
     pub(super) fn is_loaded(&self, before: &SVector<T, NR>) -> bool {
         (0..self.count).any(|k| {
-            self.free[self.rows[k].first] < T::zero()
-                || before.data.0[0][self.contacts[k].1.first] < T::zero()
+            self.free[self.rows[k].first] < T::zero() || entry(before, self.contacts[k].1.first) < T::zero()
         })
     }
 
     /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
         let places = self.places();
-        let places = &places[..self.size];
+        let weight = |i: usize, j: usize| weights.get((i, j)).copied().unwrap_or(T::zero());
         let mut reach = T::zero();
-        for (row, i) in self.weights.iter_mut().zip(places) {
-            for (entry, j) in row.iter_mut().zip(places) {
-                *entry = weights.data.0[*j][*i];
+        for (row, i) in self.weights.iter_mut().zip(places.iter()).take(self.size) {
+            for (entry, j) in row.iter_mut().zip(places.iter()).take(self.size) {
+                *entry = weight(*i, *j);
             }
-            reach = reach.max(weights.data.0[*i][*i]);
+            reach = reach.max(weight(*i, *i));
         }
         for k in 0..self.count {
             let Rows { first, count } = self.rows[k];
@@ -142,15 +143,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
         for k in 0..self.count {
             let (contact, Rows { first, .. }) = self.contacts[k];
-            self.least[k] = (-(laws[contact].restitution * part * before.data.0[0][first])).max(T::zero());
+            let restitution = laws.get(contact).map_or(T::zero(), |law| law.restitution);
+            self.least[k] = (-(restitution * part * entry(before, first))).max(T::zero());
         }
     }
 
     /// The rates with impulses.
     fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
         let mut rates = self.free;
-        for (rate, row) in rates.iter_mut().zip(&self.weights).take(self.size) {
-            for (weight, impulse) in row.iter().zip(impulses).take(self.size) {
+        for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
+            for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
                 *rate += *weight * *impulse;
             }
         }
@@ -198,7 +200,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit vectors at the places of their
     /// rates.
     pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
-        let (mut touches, mut along) = ([Touch::Open; NK], SVector::<T, NR>::zeros());
+        let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
         let rates = self.rates(impulses);
         for k in 0..self.count {
             let (contact, rows) = self.contacts[k];
@@ -206,14 +208,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 Mode::Open => Touch::Open,
                 Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
                     for (c, component) in direction.iter().enumerate().take(rows.count - 1) {
-                        along.data.0[0][rows.first + 1 + c] = -*component;
+                        put(&mut along, rows.first + 1 + c, -*component);
                     }
                     Touch::Slips
                 }
                 _ => Touch::Sticks,
             };
         }
-        (touches, along)
+        (touches.entries(), along)
     }
 
     /// The natural map of a contact: its impulses without what they are by their law.
@@ -221,11 +223,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let (n, tangents) = self.of(k);
         let (normal, mode) = self.mode(k, impulses, rates);
         let mut map = [impulses[n] - normal.max(T::zero()), T::zero(), T::zero()];
-        for (c, i) in tangents.enumerate() {
-            map[c + 1] = match mode {
+        for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
+            *entry = match mode {
                 Mode::Open => impulses[i],
                 Mode::Stick => self.step[k] * rates[i],
-                Mode::Slip { direction, .. } => impulses[i] - direction[c] * self.friction[k] * normal,
+                Mode::Slip { direction, .. } => {
+                    impulses[i] - component(&direction, c) * self.friction[k] * normal
+                }
             };
         }
         map
@@ -256,8 +260,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// What rounding leaves of the rates.
     fn rounding(&self, impulses: &List<T, NR>) -> T {
         let mut most = T::zero();
-        for (free, row) in self.free.iter().zip(&self.weights).take(self.size) {
-            let terms = row.iter().zip(impulses).take(self.size);
+        for (free, row) in self.free.iter().zip(self.weights.iter()).take(self.size) {
+            let terms = row.iter().zip(impulses.iter()).take(self.size);
             most =
                 most.max(terms.fold(free.abs(), |sum, (weight, impulse)| sum + (*weight * *impulse).abs()));
         }
@@ -294,7 +298,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let n = self.rows[k].first;
             if impulses[n] > T::zero() && rates[n] <= rest {
                 let (c, (contact, Rows { first, .. })) = (kept.count, self.contacts[k]);
-                let gap = gaps.data.0[0][contact];
+                let gap = entry(gaps, contact);
                 (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
                 kept.rows[c] = Rows { first: n, count: 1 };
@@ -319,4 +323,21 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let pushes = if overlap > enough { kept.solve().ok()? } else { kept.together(|_| true) };
         Some(kept.spread(&pushes))
     }
+}
+
+/// An entry of a vector; past the end zero.
+pub(super) fn entry<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
+    vector.get(k).copied().unwrap_or(T::zero())
+}
+
+/// Sets an entry of a vector; past the end nothing.
+pub(super) fn put<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
+    if let Some(entry) = vector.get_mut(k) {
+        *entry = value;
+    }
+}
+
+/// A component of a direction of slip.
+fn component<T: Copy>([x, y]: &[T; 2], c: usize) -> T {
+    if c == 0 { *x } else { *y }
 }

@@ -31,8 +31,9 @@ where
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
     let closed = M::CONTACT_ROWS.into_iter().zip(closed).filter(|(_, is_closed)| **is_closed);
     for row in closed.flat_map(|(Rows { first, count }, _)| first..first + count) {
-        let p: [T; NV] = core::array::from_fn(|v| jacobian.data.0[v][row]);
-        velocities.data.0[row] = match &factor {
+        let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
+        let Some(answer) = velocities.data.0.get_mut(row) else { continue };
+        *answer = match &factor {
             Some(factor) => substitute(factor, p),
             None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(p)) - none).data.0[0],
         };

@@ -1,5 +1,5 @@
 //! A computed-torque controller of a seven-axis arm with the arm that it moves, a body in flight with every
-//! integrator, and an engine with a closed loop, without the standard library, without an allocator and without any way to panic: the panic handler
+//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there, without the standard library, without an allocator and without any way to panic: the panic handler
 //! calls a function that does not exist, so that a program with a panic left in it cannot be linked.
 
 #![no_std]
@@ -142,6 +142,30 @@ fn turns(length: f64) -> bool {
     consistent && finite && (held - end.q).norm() < 1e-9
 }
 
+/// A sledge on two runners.
+#[mechanism(gravity = -9.81 * y)]
+struct Sledge {
+    friction: f64,
+    #[body(mass = 2, inertia = cuboid(2, 0.4, 0.2, 0.1))]
+    hull: Body,
+    #[joint(ground -> hull, about = z)]
+    pose: Planar,
+    #[contact(hull.at(-0.2 * x - 0.1 * y), ground.plane(y), friction = friction, restitution = 0.3)]
+    rear: Contact,
+    #[contact(hull.at(0.2 * x - 0.1 * y), ground.plane(y), friction = friction, restitution = 0.3)]
+    front: Contact,
+}
+
+/// Whether the sledge falls, slides and stays, in steps and event by event.
+fn rests(friction: f64) -> bool {
+    let sledge = Sledge { friction };
+    let run = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);
+    let steps = run().method(TimeStepping::step(1e-3)).finish();
+    let (Ok(steps), Ok(events)) = (steps, run().method(EventDriven::new()).finish()) else { return false };
+    let still = |end: &Sample<f64, 3, 3, 0>| (end.q[1] - 0.1).abs() < 1e-7 && end.v.norm() < 1e-9;
+    still(&steps) && still(&events) && (steps.q - events.q).norm() < 1e-2
+}
+
 #[unsafe(no_mangle)]
 extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
     let _ = arguments;
@@ -161,7 +185,8 @@ extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;
-    i32::from(!(sound && arrived && side_by_side(&q, &v) && flies(black_box(0.5)) && turns(black_box(0.13))))
+    let alone = flies(black_box(0.5)) && turns(black_box(0.13)) && rests(black_box(0.4));
+    i32::from(!(sound && arrived && side_by_side(&q, &v) && alone))
 }
 
 #[panic_handler]

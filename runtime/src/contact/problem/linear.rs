@@ -1,7 +1,8 @@
 //! Linear equations among the impulses.
 
 use super::super::Touch;
-use super::{List, Problem, Square};
+use super::super::total::Total;
+use super::{List, Problem, Square, entry};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::SVector;
@@ -13,7 +14,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
     pub(in super::super) fn together(&self, is_kept: impl Fn(usize) -> bool) -> List<T, NR> {
         // Which rates are held, and at what.
-        let (mut held, mut wanted, mut size) = ([0; NR], [T::zero(); NR], 0);
+        let (mut held, mut wanted, mut size) =
+            (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && is_kept(*k)) {
             let (n, tangents) = self.of(k);
             let most = if self.friction[k] > T::zero() { tangents.end } else { n + 1 };
@@ -23,42 +25,36 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let held = &held[..size];
-        let mut system = [[T::zero(); NR]; NR];
-        let mut reach = T::zero();
-        for (row, i) in system.iter_mut().zip(held) {
-            for (entry, j) in row.iter_mut().zip(held) {
-                *entry = self.weights[*i][*j];
-            }
-            reach = reach.max(self.weights[*i][*i]);
-        }
-        let mut impulses = [T::zero(); NR];
+        let system = self.among(&held, size);
+        let reach = held.iter().take(size).fold(T::zero(), |most, i| most.max(self.weights[*i][*i]));
+        let mut impulses = List::repeat(T::zero());
         if let Some(factor) = factor(&system, size, T::zero()) {
-            let mut right = [T::zero(); NR];
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(wanted)) {
+            let mut right = List::repeat(T::zero());
+            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - self.free[*i];
             }
             substitute(&factor, size, &mut right);
-            held.iter().zip(right).for_each(|(i, impulse)| impulses[*i] = impulse);
+            held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
             return impulses;
         }
         let Some(factor) = factor(&system, size, reach * self.lift()) else { return impulses };
         // Impulses that move nothing stay small, and what they leave is made up for.
         for _ in 0..3 {
             let rates = self.rates(&impulses);
-            let mut right = [T::zero(); NR];
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(wanted)) {
+            let mut right = List::repeat(T::zero());
+            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - rates[*i];
             }
             substitute(&factor, size, &mut right);
-            held.iter().zip(right).for_each(|(i, change)| impulses[*i] += change);
+            held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
         impulses
     }
 
     /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
     pub(in super::super) fn is_redundant(&self, touches: &[Touch; NK]) -> bool {
-        let (mut held, mut size) = ([0; NR], 0);
+        let touches = Total::new(*touches, Touch::Open);
+        let (mut held, mut size) = (List::<_, NR>::repeat(0), 0);
         for k in (0..self.count).filter(|k| touches[self.contacts[*k].0] != Touch::Open) {
             let (n, tangents) = self.of(k);
             let slips = touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
@@ -67,14 +63,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let held = &held[..size];
-        let mut system = [[T::zero(); NR]; NR];
-        for (row, i) in system.iter_mut().zip(held) {
-            for (entry, j) in row.iter_mut().zip(held) {
+        factor(&self.among(&held, size), size, T::zero()).is_none()
+    }
+
+    /// `W` among `size` rates.
+    fn among(&self, held: &List<usize, NR>, size: usize) -> Square<T, NR> {
+        let mut system = Square::repeat(List::repeat(T::zero()));
+        for (row, i) in system.iter_mut().zip(held.iter()).take(size) {
+            for (entry, j) in row.iter_mut().zip(held.iter()).take(size) {
                 *entry = self.weights[*i][*j];
             }
         }
-        factor(&system, size, T::zero()).is_none()
+        system
     }
 
     /// The forces that hold contacts as they are said to be, where impulses are forces and rates accelerations; `rates` are those
@@ -88,26 +88,28 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
     ) -> Result<List<T, NR>, usize> {
+        let touches = Total::new(*touches, Touch::Open);
         let slips = |k: usize| touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
-        let mut forces = if (0..self.count).any(slips) { [T::zero(); NR] } else { self.together(|_| true) };
+        let mut forces =
+            if (0..self.count).any(slips) { List::repeat(T::zero()) } else { self.together(|_| true) };
         let (places, reach) =
             (self.places(), (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i])));
         // What is left of the equations, and their matrix.
         let equations = |forces: &List<T, NR>| {
-            let (mut system, mut right) = (identity(), [T::zero(); NR]);
+            let (mut system, mut right) = (identity(), List::repeat(T::zero()));
             let accelerations = self.rates(forces);
             for k in 0..self.count {
                 let (n, tangents) = self.of(k);
                 let speed = tangents
                     .clone()
-                    .fold(T::zero(), |sum, i| sum + rates[places[i]] * rates[places[i]])
+                    .fold(T::zero(), |sum, i| sum + entry(rates, places[i]) * entry(rates, places[i]))
                     .sqrt();
                 for i in core::iter::once(n).chain(tangents) {
                     if i == n || !slips(k) {
                         system[i] = self.weights[i];
                         right[i] = -accelerations[i];
                     } else if speed > T::zero() {
-                        let share = self.friction[k] * rates[places[i]] / speed;
+                        let share = self.friction[k] * entry(rates, places[i]) / speed;
                         system[i][n] = share;
                         right[i] = -(forces[i] + share * forces[n]);
                     } else {
@@ -126,7 +128,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 }
             }
             self.eliminate(&mut system, &mut right);
-            forces.iter_mut().zip(right).for_each(|(force, change)| *force += change);
+            forces.iter_mut().zip(*right).for_each(|(force, change)| *force += change);
         }
         let (_, left) = equations(&forces);
         let most = self.rounding(&forces).max(self.speed() * self.lift());
@@ -156,8 +158,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 }
             }
             if best != column {
-                system.swap(best, column);
-                right.swap(best, column);
+                system.exchange(best, column);
+                right.exchange(best, column);
             }
             let (pivots, value) = (system[column], right[column]);
             if pivots[column] == T::zero() {
@@ -169,7 +171,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if factor == T::zero() {
                     continue;
                 }
-                for (entry, pivot) in system[row].iter_mut().zip(&pivots).take(size).skip(column + 1) {
+                for (entry, pivot) in system[row].iter_mut().zip(pivots.iter()).take(size).skip(column + 1) {
                     *entry -= factor * *pivot;
                 }
                 right[row] -= factor * value;
@@ -205,7 +207,7 @@ fn factor<T: Real, const NR: usize>(a: &Square<T, NR>, size: usize, lift: T) -> 
         for i in j + 1..size {
             let part = column[i];
             if part != T::zero() {
-                for (entry, other) in l[i].iter_mut().zip(&column).take(size).skip(i) {
+                for (entry, other) in l[i].iter_mut().zip(column.iter()).take(size).skip(i) {
                     *entry -= part * *other;
                 }
             }
@@ -219,12 +221,12 @@ fn substitute<T: Real, const NR: usize>(l: &Square<T, NR>, size: usize, x: &mut 
     for j in 0..size {
         let value = x[j] * l[j][j];
         x[j] = value;
-        for (entry, part) in x.iter_mut().zip(&l[j]).take(size).skip(j + 1) {
+        for (entry, part) in x.iter_mut().zip(l[j].iter()).take(size).skip(j + 1) {
             *entry -= value * *part;
         }
     }
     for j in (0..size).rev() {
-        let terms = x.iter().zip(&l[j]).take(size).skip(j + 1);
+        let terms = x.iter().zip(l[j].iter()).take(size).skip(j + 1);
         let sum = terms.fold(x[j], |sum, (other, part)| sum - *other * *part);
         x[j] = sum * l[j][j];
     }
@@ -232,5 +234,9 @@ fn substitute<T: Real, const NR: usize>(l: &Square<T, NR>, size: usize, x: &mut 
 
 /// Ones on the diagonal.
 pub(super) fn identity<T: Real, const NR: usize>() -> Square<T, NR> {
-    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { T::one() } else { T::zero() }))
+    let mut identity = Square::repeat(List::repeat(T::zero()));
+    for (i, row) in identity.iter_mut().enumerate() {
+        row[i] = T::one();
+    }
+    identity
 }

@@ -1,7 +1,7 @@
 //! Newton's method for the natural map.
 
 use super::linear::identity;
-use super::{List, Mode, Problem, Square};
+use super::{List, Mode, Problem, Square, component};
 use crate::Real;
 use crate::private::constant;
 
@@ -21,7 +21,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             self.eliminate(&mut system, &mut right);
             let mut part = T::one();
             let next = loop {
-                let next: List<T, NR> = core::array::from_fn(|i| impulses[i] + right[i] * part);
+                let mut next = impulses;
+                next.iter_mut().zip(right.iter()).for_each(|(next, change)| *next += *change * part);
                 let size = self.size_of_map(&next);
                 if size < left {
                     left = size;
@@ -53,7 +54,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The natural map's derivative, and what takes its value away.
     fn linearised(&self, impulses: &List<T, NR>) -> (Square<T, NR>, List<T, NR>) {
         let rates = self.rates(impulses);
-        let (mut system, mut right) = (identity(), [T::zero(); NR]);
+        let (mut system, mut right) = (identity(), List::repeat(T::zero()));
         for k in 0..self.count {
             let (step, friction) = (self.step[k], self.friction[k]);
             let (n, tangents) = self.of(k);
@@ -79,14 +80,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     continue;
                 };
                 let radius = friction * normal;
-                right[i] = -(impulses[i] - radius * direction[c]);
+                right[i] = -(impulses[i] - radius * component(&direction, c));
                 let turn = radius / size;
                 let unit = |a: usize, b: usize| if a == b { T::one() } else { T::zero() };
                 for j in 0..self.size {
                     let of_normal = unit(n, j) - step * self.weights[n][j];
-                    let mut entry = unit(i, j) - friction * direction[c] * of_normal;
+                    let mut entry = unit(i, j) - friction * component(&direction, c) * of_normal;
                     for (d, other) in tangents.clone().enumerate() {
-                        let across = unit(c, d) - direction[c] * direction[d];
+                        let across = unit(c, d) - component(&direction, c) * component(&direction, d);
                         entry -= turn * across * (unit(other, j) - step * self.weights[other][j]);
                     }
                     system[i][j] = entry;

@@ -51,7 +51,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             // Which steps of the map lead to the solution differs.
             let scale = SCALES[round % SCALES.len()];
-            let scaled = Self { step: self.step.map(|step| step * constant(scale)), ..self.clone() };
+            let scaled = Self { step: self.step.each(|step| step * constant(scale)), ..self.clone() };
             let found = scaled.newton(impulses);
             if self.is_solved(&found) {
                 return Ok(found);
@@ -81,18 +81,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The impulses by way of those with less friction, whose angle grows from none in equal parts.
     fn by_degrees(&self) -> Option<List<T, NR>> {
-        let mut impulses = [T::zero(); NR];
+        let mut impulses = List::repeat(T::zero());
         for part in 1..=DEGREES {
             let mut weaker = self.clone();
             if part < DEGREES {
                 let share = constant::<T>(f64::from(part) / f64::from(DEGREES));
-                weaker.friction = self.friction.map(|friction| (friction.atan() * share).tan());
+                weaker.friction = self.friction.each(|friction| (friction.atan() * share).tan());
             }
             for _ in 0..SWEEPS {
                 weaker.sweep(&mut impulses);
             }
             for scale in SCALES {
-                let scaled = Self { step: weaker.step.map(|step| step * constant(scale)), ..weaker.clone() };
+                let scaled = Self { step: weaker.step.each(|step| step * constant(scale)), ..weaker.clone() };
                 let found = scaled.newton(impulses);
                 if weaker.residual(&found).0 < weaker.residual(&impulses).0 {
                     impulses = found;
@@ -108,7 +108,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// One sweep of projected Gauss–Seidel: contact after contact is brought onto its law, the others as they are.
     fn sweep(&self, impulses: &mut List<T, NR>) {
         let rate = |impulses: &List<T, NR>, i: usize| {
-            let terms = self.weights[i].iter().zip(impulses).take(self.size);
+            let terms = self.weights[i].iter().zip(impulses.iter()).take(self.size);
             terms.fold(self.free[i], |sum, (weight, impulse)| sum + *weight * *impulse)
         };
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
@@ -126,7 +126,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
                 *w = impulses[i] - rate(impulses, i) / trace;
             }
-            let size = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt();
+            let [x, y] = wanted;
+            let size = (x * x + y * y).sqrt();
             let part = if size > most { most / size } else { T::one() };
             for (w, i) in wanted.iter().zip(tangents) {
                 impulses[i] = *w * part;

@@ -1,0 +1,125 @@
+//! States at random, hostile ones among them: whatever comes, answers are numbers that obey the laws, or errors.
+
+use super::laws::{Chain, Pile, Random};
+use linkwork::contact::{self, Contacts};
+use linkwork::prelude::*;
+
+/// A block between two walls that are one and the same, and a floor that is there twice: more contacts than can be told apart.
+#[mechanism(gravity = -9.81 * z)]
+struct Twice {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    block: Body,
+    #[joint(ground -> block)]
+    pose: Free,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = restitution)]
+    floor: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = restitution)]
+    same: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction, restitution = restitution)]
+    wall: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x))]
+    smooth: Contact,
+}
+
+/// A pendulum between stops that meet, so that it cannot move, or that nearly do.
+#[mechanism(gravity = -9.81 * y)]
+struct Jammed {
+    gap: f64,
+    restitution: f64,
+    #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    hinge: Pin,
+    #[limit(on = hinge, from = -gap, to = gap, restitution = restitution)]
+    stops: Limit,
+}
+
+/// What a state gives, and half a dozen steps from it. Returns how many answers were errors.
+fn attack<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    m: &M,
+    q: SVector<f64, NQ>,
+    v: SVector<f64, NV>,
+) -> usize
+where
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = f64>,
+{
+    let mut errors = 0;
+    let energy = m.kinetic_energy(0.0, &q, &v);
+    match contact::impact(m, 0.0, &q, &v) {
+        Ok(found) => {
+            let after = m.kinetic_energy(0.0, &q, &found.v);
+            assert!(after <= energy * (1.0 + 1e-9), "{energy} {after}");
+            assert!(found.impulses.iter().all(|impulse| impulse.is_finite()));
+        }
+        Err(ConstraintError::Contact { .. }) => errors += 1,
+        Err(other) => panic!("{other}"),
+    }
+    let run = simulate(m).from(q, v).method(TimeStepping::step(2e-3)).duration(0.012);
+    for sample in run {
+        match sample {
+            Ok(sample) => {
+                assert!(sample.q.iter().chain(&sample.v).all(|x| x.is_finite()));
+                let (first, gaps) = (m.contact_gaps(0.0, &q).min(), m.contact_gaps(0.0, &sample.q));
+                let speed = m.contact_rates(0.0, &q, &v).amax()
+                    + m.contact_rates(0.0, &sample.q, &sample.v).amax()
+                    + 1.0;
+                // Bodies deep in each other are let go on ways of which nothing is promised.
+                let reached = first.min(0.0) - 2e-3 * speed;
+                assert!(first < -5e-3 || gaps.min() >= reached, "{} {first} {speed}", gaps.min());
+            }
+            Err(_) => errors += 1,
+        }
+    }
+    errors
+}
+
+/// A coefficient of friction from none to a million, and one of restitution with both ends.
+fn laws(random: &mut Random) -> (f64, f64) {
+    let friction = if random.next() > 0.7 { 0.0 } else { 10.0_f64.powf(1.5 + 4.5 * random.next()) };
+    (friction, random.one_of([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
+}
+
+/// Attacks with `count` states of each mechanism; returns how many answers were errors.
+pub fn attacks(seed: u64, count: usize) -> usize {
+    let (mut random, mut errors) = (Random(seed), 0);
+    for _ in 0..count {
+        let (friction, restitution) = laws(&mut random);
+        let m = Twice { friction, restitution };
+        let mut q = m.neutral();
+        q[2] = 0.05 + random.one_of([0.0, 0.0, -1e-3, 1e-9, 0.1]);
+        q[0] = random.one_of([0.0, 1.0, -1e-12]);
+        if random.next() > 0.5 {
+            let size = random.one_of([1e-12, 1e-6, 0.1, 3.0]);
+            let mut turn = random.vector(size);
+            (turn[0], turn[1], turn[2]) = (0.0, 0.0, 0.0);
+            q = m.integrate(&q, &turn);
+        }
+        let speed = random.one_of([0.0, 1e-12, 1.0, 10.0]);
+        errors += attack(&m, q, random.vector(speed));
+
+        let m = Pile { friction, restitution };
+        let mut q = m.neutral();
+        (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
+        q[16] += random.one_of([0.0, 1e-9, -1e-6]);
+        let speed = random.one_of([0.0, 1e-9, 2.0]);
+        errors += attack(&m, q, random.vector(speed));
+
+        let (a, b) = (random.next() * 3.0, random.next() * 3.0);
+        let m = Chain { friction, restitution, height: -(0.5 * a.sin() + 0.5 * (a + b).sin()) };
+        errors += attack(&m, [a, b].into(), random.vector(3.0));
+
+        let m = Jammed { gap: random.one_of([1e-300, 1e-12, 1e-6, 0.3]), restitution };
+        errors += attack(&m, [random.next() * m.gap].into(), random.vector(5.0));
+    }
+    errors
+}
+
+/// Errors are rare, and are said. `LINKWORK_ORACLE` is how many states of each mechanism are tried.
+#[test]
+fn states_at_random_have_answers() {
+    let count = std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok()).unwrap_or(100);
+    let errors = attacks(7, count);
+    assert!(errors <= count / 10, "{errors}");
+}
