@@ -26,7 +26,7 @@
 //! until it does not.
 
 use crate::constraint::ConstraintError;
-use crate::integrate::{Error, State, Steered, System, guided, positive, settled};
+use crate::integrate::{Dynamics, Error, State, Steered, System, guided, holding, positive, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -284,7 +284,9 @@ where
     let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
-    let (free, given) = guided(&mut system, &start, h, t + h).map_err(reported)?;
+    let at_start = system.acceleration(t, q, v);
+    let rate = holding(&mut system, &start, &at_start, h).map_err(reported)?;
+    let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = settled(&system, free, t)?;
     let before = mechanism.contact_rates(t, q, v);
     let held = given * (h * constant(0.5));

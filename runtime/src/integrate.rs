@@ -50,7 +50,7 @@ pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use system::{Dynamics, Held, Inputs, NoInputs, Steered, System};
 pub use time_stepping::TimeStepping;
-pub(crate) use time_stepping::guided;
+pub(crate) use time_stepping::{guided, holding};
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};

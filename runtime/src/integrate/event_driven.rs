@@ -209,7 +209,13 @@ where
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
             let mut system = System::new(mechanism, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
             let mut local = Local { system: &mut system, origin };
-            TimeStepping::step(h).advance(&mut (), &mut local, &begin, Some(until), true)?
+            TimeStepping::step(h).advance(
+                &mut TimeStepping::step(h).memory(),
+                &mut local,
+                &begin,
+                Some(until),
+                true,
+            )?
         };
         let v = separated(mechanism, origin + step.end.t, &step.end.q, &step.end.v).map_err(reported)?;
         Ok(Step { end: State { v, ..step.end }, ..step })

@@ -24,7 +24,10 @@ use nalgebra::SVector;
 /// once, by displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing time-stepping
 /// schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013).
 ///
-/// A step takes four evaluations of the dynamics, and with contacts that are closed two of gaps, rates, Jacobian and mass matrix.
+/// `Λ₀` are those of the step before where they have hardly changed, and found anew where they have.
+///
+/// A step takes four evaluations of the dynamics, and with contacts that are closed one of gaps, rates, Jacobian and mass matrix, or
+/// two where the contacts have changed.
 /// Constraints hold at the end of each step. Source: Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech.
 /// Eng. 177 (1999).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +42,33 @@ impl<T: Real> TimeStepping<T> {
     }
 }
 
+/// What contacts have done to the velocity in the last step, per second.
+#[derive(Clone, Copy, Debug)]
+pub struct TouchMemory<T, const NV: usize> {
+    rate: SVector<T, NV>,
+    /// It is about what it was in the step before.
+    steady: bool,
+}
+
+/// The part of what contacts do that may change from step to step where they are taken to go on.
+const STEADY: f64 = 0.125;
+
+impl<T: Real, const NV: usize> TouchMemory<T, NV> {
+    const fn new(rate: SVector<T, NV>) -> Self {
+        Self { rate, steady: false }
+    }
+
+    /// Takes note of what contacts have done in a step.
+    fn note(&mut self, rate: SVector<T, NV>) {
+        let least = |size: T, x: &T| size.max(x.abs());
+        let size = rate.iter().fold(T::zero(), least);
+        let change = (rate - self.rate).iter().fold(T::zero(), least);
+        *self = Self { rate, steady: change <= size * constant(STEADY) };
+    }
+}
+
 impl<T: Real> Method<T> for TimeStepping<T> {
-    type Memory<const NV: usize> = ();
+    type Memory<const NV: usize> = TouchMemory<T, NV>;
 
     const FIXED: bool = true;
     const CONTACTS: bool = true;
@@ -49,13 +77,18 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {}
+    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+        TouchMemory::new(SVector::zeros())
+    }
 
-    fn disturb<const NV: usize>(&self, (): &mut (), _jump: Jump) {}
+    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+        // Inputs change what contacts do by as much as they move.
+        memory.steady &= matches!(jump, Jump::Inputs);
+    }
 
     fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
-        (): &mut (),
+        memory: &mut Self::Memory<NV>,
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
@@ -66,30 +99,49 @@ impl<T: Real> Method<T> for TimeStepping<T> {
             ConstraintError::NotFinite => Error::NotFinite { t: to_f64(start.t) },
             reason => Error::Constraint { t: to_f64(start.t), reason },
         };
-        let (free, given) = guided(system, start, h, t).map_err(reported)?;
+        let before = system.acceleration(start.t, &start.q, &start.v);
+        let rate = match memory.steady {
+            true => memory.rate,
+            false => holding(system, start, &before, h).map_err(reported)?,
+        };
+        let (free, given) = guided(system, start, (&before, &rate), h, t);
         let free = settled(system, free, start.t)?;
         let v = free.v - given;
-        let Touched { q, v } =
+        let Touched { q, v: end } =
             system.contact_step(t, (&start.q, &start.v), (&free.q, &v), &given, h).map_err(reported)?;
+        memory.note((end - v) / h);
+        let v = end;
         let end = State { q, v, ..free };
         let end = if end == free { end } else { settled(system, end, start.t)? };
         Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
     }
 }
 
-/// Where a step of [`Rk4`] leads under the impulses that hold surfaces together at its start, and what these add to the velocity.
+/// What the impulses that hold surfaces together at the start of a step of `h` seconds add to the velocity, per second; `before` are
+/// the accelerations without them.
+pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    before: &SVector<T, NV>,
+    h: T,
+) -> Result<SVector<T, NV>, ConstraintError> {
+    let state = (&start.q, &start.v);
+    let free = start.v + *before * h;
+    // Without a duration nothing moves.
+    let held = system.contact_step(start.t, state, (&start.q, &free), &SVector::zeros(), T::zero())?;
+    Ok((held.v - free) / h)
+}
+
+/// Where a step of [`Rk4`](super::Rk4) leads from the accelerations `before`, under impulses that add `rate` to the velocity per
+/// second, and what they add in all.
 pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
+    (before, rate): (&SVector<T, NV>, &SVector<T, NV>),
     h: T,
     t: T,
-) -> Result<(State<T, NQ, NV>, SVector<T, NV>), ConstraintError> {
-    let before = system.acceleration(start.t, &start.q, &start.v);
-    let (state, free) = ((&start.q, &start.v), start.v + before * h);
-    // Without a duration nothing moves.
-    let held = system.contact_step(start.t, state, (&start.q, &free), &SVector::zeros(), T::zero())?;
-    let given = held.v - free;
-    let (displacement, change) = through(system, start, h, before, &(given / h));
+) -> (State<T, NQ, NV>, SVector<T, NV>) {
+    let (displacement, change) = through(system, start, h, *before, rate);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    Ok((end, system.carry(start.t, &displacement, &given)))
+    (end, system.carry(start.t, &displacement, &(*rate * h)))
 }
