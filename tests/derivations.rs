@@ -124,6 +124,7 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
         power += u * match input {
             Input::Named => g.zero(),
             Input::Coordinate(c) => kinematics::rate(model, c),
+            Input::Sum(terms, _) => terms.iter().fold(g.zero(), |sum, c| sum + kinematics::rate(model, c)),
             Input::Force { link, point, along } => {
                 let (r, p) = &world[link.0];
                 ground_vector(along, &world, g).dot(velocity(model, *p + *r * *point))

@@ -84,12 +84,13 @@ use std::path::PathBuf;
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
 /// | `skip_passes = [pass, …]` | passes over the model that are left out, of `frames` (link frames moved to where placements are sparse), `regroup` (mass properties moved towards the base), `parallel` (links on parallel axes described in common ones) and `limbs` (alike limbs, and joints of one path, as SIMD lanes); none if not given. The functions are the same to rounding, and cost more |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; when it changes, the crate is compiled again |
-/// | `base = fixed` or `free` | how the file's root link is held; fixed if not given |
-/// | `passive = honour` or `ignore` | damping and friction of the file's joints; honour if not given |
-/// | `mimic = follow` or `independent` | joints with a `mimic` tag; follow if not given |
+/// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes, in the same way |
+/// | `base = fixed` or `free` | how the file's root link is held; fixed if not given. MJCF files say that themselves: `free` is for those with one outermost body and no joint on it |
+/// | `passive = honour` or `ignore` | damping, friction and springs of the file's joints and tendons; honour if not given |
+/// | `mimic = follow` or `independent` | joints with a `mimic` tag, and `<equality>` of MJCF; follow if not given |
 /// | `limits = honour` or `ignore` | limits of the file's joints, which the trait `linkwork::Limits` gives; honour if not given |
 /// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
-/// | `inputs = joints` or `none` | whether every moving joint with one degree of freedom is an input; joints if not given |
+/// | `inputs = joints`, `actuators` or `none` | whether every moving joint with one degree of freedom is an input, or every actuator of an MJCF file; joints if not given, and actuators for MJCF |
 /// | `lock = ["joint", …]` | joints frozen at zero |
 /// | `parameters = inertial`, `[inertial("link", …), placement, damping, friction]` | figures of the file that are fields of the struct, of all links or joints or of those named |
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |

@@ -86,7 +86,7 @@ pub enum Pin {}
 ///
 /// `#[joint(parent -> child, along = x)]`: the child moves along the axis, given in the parent's frame, without
 /// turning. The coordinate has the joint's name: the displacement, m; its velocity, m/s. Its generalized force is the force
-/// along the axis, N. In URDF files: `prismatic`.
+/// along the axis, N. In URDF files: `prismatic`; in MJCF: `slide`.
 #[doc(alias = "prismatic")]
 #[doc(alias = "slider")]
 #[doc(alias = "sliding")]

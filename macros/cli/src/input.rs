@@ -5,6 +5,7 @@ use crate::commands::given;
 use clap::ArgMatches;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::import;
+use linkwork_compiler::syntax::FileFormat;
 use linkwork_compiler::{Source, read};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
@@ -201,12 +202,13 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
 
 /// A struct without fields of its own, which names a robot file.
 fn from_robot(path: &Path) -> Result<Input, Stop> {
-    text_of(path)?;
+    let text = text_of(path)?;
     let name = type_name(path);
     let ident = syn::Ident::new(&name, Span::call_site());
     let written = path.to_string_lossy().into_owned();
     // As it is named, so that messages say it so; found from where the command runs.
-    let arguments = quote::quote!(urdf = #written);
+    let format = syn::Ident::new(format_of(path, &text).word(), Span::call_site());
+    let arguments = quote::quote!(#format = #written);
     let folder = std::env::current_dir()?;
     Ok(Input {
         file: path.to_path_buf(),
@@ -216,6 +218,16 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
         folder,
         is_robot: true,
     })
+}
+
+/// The format of a file: as it is named; where that tells nothing, as it looks.
+fn format_of(path: &Path, text: &str) -> FileFormat {
+    let is = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
+    match () {
+        () if is("urdf") => FileFormat::Urdf,
+        () if is("mjcf") || text.contains("<mujoco") => FileFormat::Mjcf,
+        () => FileFormat::Urdf,
+    }
 }
 
 /// A type's name after a file's: `simple_humanoid.urdf` is `SimpleHumanoid`.

@@ -98,8 +98,8 @@ pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<St
 pub struct Source {
     /// What the struct and the file say.
     pub mechanism: Mechanism,
-    /// Where the file is.
-    file: Option<PathBuf>,
+    /// Where the files are that were read.
+    files: Vec<PathBuf>,
     /// The file, if one is named, could be read.
     imported: bool,
 }
@@ -112,17 +112,18 @@ pub fn read(
     cx: &mut Diagnostics,
 ) -> Option<Source> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
-    let (mut file, before) = (None, cx.len());
-    if let Some(options) = &mut mechanism.urdf {
+    let (mut files, before) = (Vec::new(), cx.len());
+    if let Some(options) = &mut mechanism.file {
         options.collisions = mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
-        file = text.is_some().then_some(path);
-        if let Some(imported) = text.and_then(|text| import::import_urdf(&text, options, cx)) {
+        files.extend(text.is_some().then_some(path));
+        if let Some(imported) = text.and_then(|text| import::import(&text, folder, options, cx)) {
+            files.extend(imported.files.iter().cloned());
             merge(&mut mechanism, imported, cx);
         }
     }
-    Some(Source { mechanism, file, imported: cx.len() == before })
+    Some(Source { mechanism, files, imported: cx.len() == before })
 }
 
 /// Puts the contents of a file before those of the struct.
@@ -160,11 +161,15 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     // Those of the file come first.
     description.limits.splice(0..0, imported.limits);
     description.collisions = imported.collisions;
+    description.drives = imported.drives;
+    description.dissipations.splice(0..0, imported.dissipations);
     description.snapped = imported.snapped;
+    description.left_out = imported.left_out;
     description.ground_frame = imported.is_ground;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
-        description.gravity = Some(syntax::Expr::vector([0.0, 0.0, -9.81], &place));
+        let usual = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
+        description.gravity = Some(imported.gravity.unwrap_or_else(usual));
     }
 }
 
@@ -357,8 +362,9 @@ impl Source {
             facts: Facts::default(),
             detect: !self.mechanism.requests.target_only,
             snapped: &d.snapped,
+            left_out: &d.left_out,
             absent: Vec::new(),
-            file: self.file.as_ref().map(|f| f.to_string_lossy().into_owned()),
+            files: self.files.iter().map(|f| f.to_string_lossy().into_owned()).collect(),
         }
     }
 

@@ -5,7 +5,7 @@ use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{Base, Inertias, Name, UrdfOptions};
+use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOption, Name};
 use linkwork_compiler::{import, read};
 use std::path::Path;
 
@@ -34,20 +34,21 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
     };
     if let Some(text) = urdf {
         let place = source.mechanism.description.name.place.clone();
-        let options = UrdfOptions {
+        let options = FileOptions {
+            format: FileFormat::Urdf,
             path: Name { text: "r.urdf".to_string(), place },
             base: Base::Fixed,
             honour_passive: true,
             follow_mimic: true,
             limits: linkwork_compiler::syntax::LimitOption::Honour,
             inertias: Inertias::Check,
-            inputs: false,
+            inputs: InputOption::None,
             lock: Vec::new(),
             snap: None,
             parameters: Vec::new(),
             collisions: false,
         };
-        if let Some(imported) = import::import_urdf(text, &options, &mut cx) {
+        if let Some(imported) = import::import(text, Path::new(""), &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;
             source.mechanism.description.joints = imported.joints;
         }

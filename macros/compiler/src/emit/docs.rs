@@ -45,6 +45,12 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
             let _ = writeln!(text, "- {number}");
         }
     }
+    if !interface.left_out.is_empty() {
+        text.push_str("\n# Left out\n\nIn the file, and not in the mechanism:\n\n");
+        for line in interface.left_out {
+            let _ = writeln!(text, "- {line}");
+        }
+    }
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let about = match interface.facts.kinematic {
             true => {

@@ -40,14 +40,16 @@ pub struct Interface<'a> {
     pub outputs: Vec<String>,
     /// Units of all of these and of the parameters.
     pub units: Units,
-    /// A file whose change asks for another expansion.
-    pub file: Option<String>,
+    /// The files that were read: when one changes, the crate is compiled again.
+    pub files: Vec<String>,
     /// What signatures depend on.
     pub facts: Facts,
     /// Large functions choose their arithmetic at run time.
     pub detect: bool,
     /// Numbers of the file that were rounded.
     pub snapped: &'a [String],
+    /// What is in the file and not in the mechanism.
+    pub left_out: &'a [String],
     /// What the mechanism does not have, and why.
     pub absent: Vec<Absent>,
 }

@@ -275,7 +275,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     } else {
         quote!(const _: () = { #(const _: ::core::option::Option<#runtime::elements::#words> = ::core::option::Option::None;)* };)
     };
-    let file = i.file.as_ref().map(|path| {
+    let files = i.files.iter().map(|path| {
         quote!(
             const _: &[u8] = ::core::include_bytes!(#path);
         )
@@ -284,7 +284,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
         #(#attributes)*
         #docs
         #visibility struct #ident #struct_generics #fields
-        #file
+        #(#files)*
         #known
         #alias
     };

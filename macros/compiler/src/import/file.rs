@@ -2,7 +2,7 @@
 
 use super::context::quote;
 use crate::diag::{Diagnostics, nearest};
-use crate::syntax::UrdfOptions;
+use crate::syntax::{FileFormat, FileOptions, Name};
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -14,24 +14,34 @@ pub const LARGEST_FILE: usize = 16 << 20;
 const NEIGHBOURS: usize = 1000;
 
 /// Reads the file at `path`; `options` say what the user wrote, and where.
-pub fn read_file(path: &Path, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<String> {
-    let bytes = fs::metadata(path).and_then(|about| match refuse(&about) {
+pub fn read_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {
+    read_named(path, &options.path, options.format, cx)
+}
+
+/// Reads the file at `path`, which is written as `name`, and where that stands.
+pub(super) fn read_named(
+    path: &Path,
+    name: &Name,
+    format: FileFormat,
+    cx: &mut Diagnostics,
+) -> Option<String> {
+    let bytes = fs::metadata(path).and_then(|about| match refuse(&about, format) {
         Some(reason) => Ok(Err(reason)),
         None => read_bytes(path).map(Ok),
     });
     match bytes {
-        Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => report(&too_large(bytes.len() as u64), options, cx),
-        Ok(Ok(bytes)) => return decode(bytes, options, cx),
-        Ok(Err(reason)) => report(&reason, options, cx),
-        Err(error) => report_unreadable(path, &error, options, cx),
+        Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => report(&too_large(bytes.len() as u64), name, cx),
+        Ok(Ok(bytes)) => return decode(bytes, name, cx),
+        Ok(Err(reason)) => report(&reason, name, cx),
+        Err(error) => report_unreadable(path, &error, name, format, cx),
     }
     None
 }
 
 /// The reason not to open a file. A pipe or a device might never end.
-fn refuse(about: &fs::Metadata) -> Option<String> {
+fn refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
-        _ if about.is_dir() => Some("is a directory, expected a URDF file".to_string()),
+        _ if about.is_dir() => Some(format!("is a directory, expected {}", format.article())),
         _ if !about.is_file() => Some("is not a regular file".to_string()),
         _ if about.len() > LARGEST_FILE as u64 => Some(too_large(about.len())),
         _ => None,
@@ -44,8 +54,8 @@ pub(super) fn too_large(bytes: u64) -> String {
 }
 
 /// Reports a mistake of the file as a whole.
-pub(super) fn report(reason: &str, options: &UrdfOptions, cx: &mut Diagnostics) {
-    cx.error(options.path.place.clone(), format!("{} {reason}", quote(&options.path.text)));
+pub(super) fn report(reason: &str, name: &Name, cx: &mut Diagnostics) {
+    cx.error(name.place.clone(), format!("{} {reason}", quote(&name.text)));
 }
 
 /// The bytes of the file, one more than is allowed if it grew meanwhile.
@@ -55,21 +65,27 @@ fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn decode(bytes: Vec<u8>, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<String> {
+fn decode(bytes: Vec<u8>, name: &Name, cx: &mut Diagnostics) -> Option<String> {
     match String::from_utf8(bytes) {
         Ok(text) => Some(text),
         Err(error) => {
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = 1 + good.iter().filter(|b| **b == b'\n').count();
-            let message = format!("{} is not UTF-8 text: line {line}", quote(&options.path.text));
-            cx.error(options.path.place.clone(), message).help("save the file in UTF-8");
+            let message = format!("{} is not UTF-8 text: line {line}", quote(&name.text));
+            cx.error(name.place.clone(), message).help("save the file in UTF-8");
             None
         }
     }
 }
 
-fn report_unreadable(path: &Path, error: &std::io::Error, options: &UrdfOptions, cx: &mut Diagnostics) {
-    let (place, written) = (options.path.place.clone(), &options.path.text);
+fn report_unreadable(
+    path: &Path,
+    error: &std::io::Error,
+    name: &Name,
+    format: FileFormat,
+    cx: &mut Diagnostics,
+) {
+    let (place, written) = (name.place.clone(), &name.text);
     if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) {
         cx.error(place, format!("cannot read {}: {error}", quote(written)));
         return;
@@ -80,7 +96,7 @@ fn report_unreadable(path: &Path, error: &std::io::Error, options: &UrdfOptions,
             diagnostic.help(format!("there is no directory `{}` either", folder.display()));
         }
         _ => {
-            let neighbours = neighbours(path, written);
+            let neighbours = neighbours(path, written, format);
             let near = nearest(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
             diagnostic.suggest(written, neighbours.iter().map(String::as_str));
             // Where it was looked for matters only if the name itself seems right.
@@ -91,8 +107,8 @@ fn report_unreadable(path: &Path, error: &std::io::Error, options: &UrdfOptions,
     }
 }
 
-/// The URDF files beside a missing one, written as the user would write them.
-fn neighbours(path: &Path, written: &str) -> Vec<String> {
+/// The files of the format beside a missing one, written as the user would write them.
+fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
     let Some(Ok(entries)) = path.parent().map(|folder| match folder.as_os_str().is_empty() {
         true => fs::read_dir("."),
         false => fs::read_dir(folder),
@@ -103,7 +119,7 @@ fn neighbours(path: &Path, written: &str) -> Vec<String> {
     let names = entries.take(NEIGHBOURS).flatten().filter_map(|entry| entry.file_name().into_string().ok());
     let is_description = |name: &String| {
         let end = name.rsplit('.').next().unwrap_or_default();
-        end.eq_ignore_ascii_case("urdf") || end.eq_ignore_ascii_case("xml")
+        format.endings().iter().any(|known| end.eq_ignore_ascii_case(known))
     };
     let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
     // The order of a directory differs from machine to machine.

@@ -2,7 +2,8 @@
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
-use crate::syntax::{Body, Collision, Joint, Limit};
+use crate::syntax::{Body, Collision, Drive, Expr, Joint, Limit, Name};
+use std::path::PathBuf;
 
 /// What a file describes.
 #[derive(Clone, Debug)]
@@ -11,6 +12,12 @@ pub struct Imported {
     pub bodies: Vec<Body>,
     /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
     pub joints: Vec<Joint>,
+    /// Springs, dampers, rotors and motors on coordinates.
+    pub drives: Vec<Drive>,
+    /// Rayleigh's functions of what has no coordinate of its own.
+    pub dissipations: Vec<(Name, Expr)>,
+    /// Gravity, m/s², if the format says something of it.
+    pub gravity: Option<Expr>,
     /// Limits of the joints.
     pub limits: Vec<Limit>,
     /// Fields that hold figures of the file.
@@ -21,6 +28,10 @@ pub struct Imported {
     pub collisions: Vec<Collision>,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
     pub snapped: Vec<String>,
+    /// What is in the file and not in the mechanism.
+    pub left_out: Vec<String>,
+    /// Further files that were read.
+    pub files: Vec<PathBuf>,
 }
 
 /// A value with its place.

@@ -1,17 +1,21 @@
 //! Files of other formats → the lists of bodies and joints of a [`Description`](crate::syntax::Description),
-//! with line and column of every word and number. Only URDF for now.
+//! with line and column of every word and number.
 //!
-//! Knows XML and URDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
+//! Knows XML, URDF and MJCF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
 //! limits, transmissions or the extensions of simulators.
 
 use crate::diag::Diagnostics;
-pub use crate::syntax::UrdfOptions;
+use crate::syntax::FileFormat;
+pub use crate::syntax::FileOptions;
 use std::cell::OnceCell;
+use std::path::Path;
 
 mod context;
 mod element;
 mod file;
 mod imported;
+mod mjcf;
+mod robot;
 mod urdf;
 mod xml;
 
@@ -21,19 +25,26 @@ mod tests;
 pub use file::{LARGEST_FILE, read_file};
 pub use imported::Imported;
 
-/// Reads the text of a URDF file.
+/// Reads the text of a file; other files that it names are looked up beside it, at `options.path` in `folder`.
 ///
 /// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
 /// `None` if there was any.
-pub fn import_urdf(text: &str, options: &UrdfOptions, cx: &mut Diagnostics) -> Option<Imported> {
+pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
     if text.len() > LARGEST_FILE {
-        file::report(&file::too_large(text.len() as u64), options, cx);
+        file::report(&file::too_large(text.len() as u64), &options.path, cx);
         return None;
     }
     let text = &*xml::without_late_declaration(text);
+    match options.format {
+        FileFormat::Urdf => import_urdf(text, options, cx),
+        FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
+    }
+}
+
+fn import_urdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
-    let document = xml::parse(text, &declared, cx)?;
+    let document = xml::parse(text, &declared, options.format, cx)?;
     urdf::read(document.root_element(), options, cx)
 }

@@ -3,13 +3,14 @@
 
 use super::context::{Cx, quote};
 use crate::diag::Place;
+use crate::syntax::FileFormat;
 use roxmltree::{Document, Error, Node, ParsingOptions};
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-/// Elements inside one another. URDF needs six.
-const DEEPEST: usize = 64;
+/// Elements inside one another. URDF needs six, MJCF one for each link of a chain.
+const DEEPEST: [(FileFormat, usize); 2] = [(FileFormat::Urdf, 64), (FileFormat::Mjcf, 256)];
 /// Attributes of one element: the parser compares each with each.
 const MOST_ATTRIBUTES: usize = 64;
 /// Namespace declarations of a file: the parser hands each down the tree.
@@ -46,9 +47,10 @@ const MOST_PREFIXES: usize = 16;
 pub(super) fn parse<'t>(
     text: &'t str,
     declared: &'t OnceCell<String>,
+    format: FileFormat,
     cx: &mut Cx<'_>,
 ) -> Option<Document<'t>> {
-    let Scan { root, unclosed, prefixes } = match scan(text) {
+    let Scan { root, unclosed, prefixes } = match scan(text, format) {
         Ok(found) => found,
         Err((offset, message)) => {
             cx.error(&cx.place(offset), message, |d| d);
@@ -73,7 +75,7 @@ pub(super) fn parse<'t>(
         },
     };
     let unclosed = unclosed.map(|start| if start > at { start + declarations.len() } else { start });
-    report(&error, text, unclosed, cx);
+    report(&error, text, unclosed, format, cx);
     None
 }
 
@@ -130,11 +132,12 @@ struct Scan<'t> {
 ///
 /// It follows the parser's own reading of the text up to the first mistake of the text; behind that it may
 /// err, because the parser stops there.
-fn scan(text: &str) -> Result<Scan<'_>, (usize, String)> {
+fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
+    let deepest = DEEPEST.iter().find(|(known, _)| *known == format).map_or(0, |(_, deepest)| *deepest);
     let mut open = Vec::new();
     let (mut at, mut root) = (0, None);
     let (mut prefixes, mut known) = (Vec::new(), BTreeSet::new());
@@ -155,14 +158,18 @@ fn scan(text: &str) -> Result<Scan<'_>, (usize, String)> {
             } else if rest.starts_with("<!DOCTYPE") {
                 return Err((
                     start,
-                    "a URDF file has no document type and no entities of its own".to_string(),
+                    format!("{} has no document type and no entities of its own", format.article()),
                 ));
             } else if rest.starts_with("</") {
                 open.pop();
                 end_behind(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
-                scan_tag(rest, start, &mut open, &mut note)?
+                let length = scan_tag(rest, start, &mut open, &mut note)?;
+                if open.len() > deepest {
+                    return Err((start, format!("more than {deepest} elements inside one another")));
+                }
+                length
             };
     }
     Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop(), prefixes })
@@ -201,9 +208,6 @@ fn scan_tag<'t>(
     let k = k.min(bytes.len());
     if bytes[k - 1] != b'/' {
         open.push(start);
-        if open.len() > DEEPEST {
-            return Err((start, format!("more than {DEEPEST} elements inside one another")));
-        }
     }
     // The `<` of a tag without end belongs to the next one.
     Ok(if bytes.get(k) == Some(&b'>') { k + 1 } else { k })
@@ -235,7 +239,7 @@ fn refuse_template(document: &Document<'_>, cx: &mut Cx<'_>) -> bool {
 const RUN_XACRO: &str = "expand the file first: `xacro robot.urdf.xacro > robot.urdf`";
 
 /// Reports the parser's error.
-fn report(error: &Error, text: &str, unclosed: Option<usize>, cx: &mut Cx<'_>) {
+fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat, cx: &mut Cx<'_>) {
     let mut help = None;
     let message = match error {
         Error::UnexpectedCloseTag(expected, actual, _) => {
@@ -260,7 +264,10 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, cx: &mut Cx<'_>) {
         other => other.to_string().replace(&format!(" at {}", other.pos()), "").replace('\'', "`"),
     };
     if !text.trim_start().starts_with('<') {
-        help = Some("a URDF file is XML: `<robot name=\"…\"> … </robot>`");
+        help = Some(match format {
+            FileFormat::Urdf => "a URDF file is XML: `<robot name=\"…\"> … </robot>`",
+            FileFormat::Mjcf => "an MJCF file is XML: `<mujoco> … </mujoco>`",
+        });
     }
     cx.error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {
         Some(help) => d.help(help),

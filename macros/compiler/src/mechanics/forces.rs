@@ -15,6 +15,11 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         match input {
             Input::Named => {}
             Input::Coordinate(c) => tau[c.v] += u * g.num(c.ratio),
+            Input::Sum(terms, _) => {
+                for c in terms {
+                    tau[c.v] += u * g.num(c.ratio);
+                }
+            }
             Input::Force { link, point, along } => {
                 let force = resolve(joints, along, *link, Vec3::zero(g)) * u;
                 let wrench = Spatial { linear: force, angular: point.cross(force) };

@@ -40,6 +40,8 @@ pub enum Input<'g> {
     Named,
     /// A force or torque on a coordinate.
     Coordinate(Coordinate),
+    /// A force on the sum of coordinates with their ratios: what a motor does behind a gear or on a tendon. Its unit.
+    Sum(Vec<Coordinate>, &'static str),
     /// A force on a link.
     Force {
         /// The link.

@@ -176,7 +176,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     }
     for (_, input) in inputs {
         match input {
-            Input::Named | Input::Coordinate(_) => {}
+            Input::Named | Input::Coordinate(_) | Input::Sum(..) => {}
             Input::Force { link, point, along } => {
                 *point = back[link.0].point(*point);
                 turn(along, back);

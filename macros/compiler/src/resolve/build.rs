@@ -4,7 +4,7 @@ use super::builder::{Builder, JointedBody};
 use super::functions::is_function;
 use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
 use super::tree::find_tree;
-use super::{reaction, units};
+use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
@@ -79,6 +79,7 @@ fn build<'g>(
     builder.add_masses(cx);
     match order.and_then(|order| Some((order, builder.know_motion()?))) {
         Some((order, moving)) => {
+            builder.add_drives(moving, cx);
             builder.add_actions(moving, cx);
             builder.add_limits(cx);
             let solved = builder.add_solved(cx);
@@ -184,7 +185,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
             inputs: &description.inputs,
-            driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count(),
+            driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count()
+                + drive::inputs(description).count(),
             states: &description.states,
             definitions: &description.definitions,
             context: Context::new(Allowed::Constant, None).into(),

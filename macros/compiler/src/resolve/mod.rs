@@ -13,6 +13,7 @@ mod closed_form;
 mod closure;
 mod constraint;
 mod contact;
+mod drive;
 mod expression;
 mod figures;
 mod flight;

@@ -90,6 +90,7 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));
     }
+    u.extend(super::drive::inputs(d).map(|drive| drive.name.text.clone()));
     u.extend(d.inputs.iter().map(|i| i.text.clone()));
     (q, v, u)
 }

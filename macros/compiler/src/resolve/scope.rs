@@ -28,9 +28,9 @@ pub struct Scope<'a, 'g> {
     pub joints: Vec<String>,
     /// Names of force elements.
     pub actions: Vec<String>,
-    /// Names of inputs, in order, after those of driven joints.
+    /// Names of inputs, in order, after those of driven joints and of drives.
     pub inputs: &'a [Name],
-    /// How many joints are driven by inputs of their own.
+    /// How many joints and drives have inputs of their own.
     pub driven: usize,
     /// States of first order, each with its number among the parameters.
     pub states: &'a [(Name, usize)],

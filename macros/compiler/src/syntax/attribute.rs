@@ -4,7 +4,9 @@ use super::arguments::Arguments;
 use super::expression::name;
 use super::figures::{self, FileFigures};
 use super::lists::Lists;
-use super::mechanism::{LimitOption, Mechanism, Printed, REQUESTS, Requests, Shell, Skipped, UrdfOptions};
+use super::mechanism::{
+    FileFormat, FileOptions, InputOption, LimitOption, Mechanism, Printed, REQUESTS, Requests, Shell, Skipped,
+};
 use super::sound::Reading;
 use super::state::{give_type, read_state};
 use super::table::{read_table, table_variables};
@@ -22,13 +24,14 @@ use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type}
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 18] = [
+const OPTIONS: [&str; 19] = [
     "gravity",
     "friction_speed",
     "formulation",
     "independent",
     "scalar",
     "urdf",
+    "mjcf",
     "base",
     "passive",
     "mimic",
@@ -91,7 +94,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         }
     }
     let (mut requests, before) = (Requests::default(), cx.len());
-    let urdf = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
+    let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
         reading.blame_arguments(arguments);
     }
@@ -120,7 +123,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     // Linear systems have the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
     check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
-    Some(Mechanism { description, shell, urdf, requests, reading })
+    Some(Mechanism { description, shell, file, requests, reading })
 }
 
 fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
@@ -199,6 +202,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         particles: Vec::new(),
         joints: Vec::new(),
         actions: Vec::new(),
+        drives: Vec::new(),
         limits: Vec::new(),
         contacts: Vec::new(),
         collisions: Vec::new(),
@@ -213,6 +217,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         constraints: Vec::new(),
         formulation: Formulation::default(),
         snapped: Vec::new(),
+        left_out: Vec::new(),
         inertias: Inertias::Check,
         ground_frame: false,
         partial: false,
@@ -357,7 +362,7 @@ fn read_options(
     scalar: &mut Option<(ScalarType, Place)>,
     requests: &mut Requests,
     cx: &mut Diagnostics,
-) -> Option<UrdfOptions> {
+) -> Option<FileOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
     let mistaken: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_word(word, cx)).collect();
     let asked = words_given(&mut arguments);
@@ -369,9 +374,9 @@ fn read_options(
         let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
         unify_scalar(scalar, found, place, cx);
     }
-    let path = arguments.take_text("urdf", cx);
+    let file = read_path(&mut arguments, cx);
     let file_only = ["base", "passive", "mimic", "limits", "inputs", "lock", "snap", "parameters"];
-    if path.is_none() {
+    if file.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
                 let error = cx.error(place, format!("`{option}` is an option of a file"));
@@ -380,7 +385,7 @@ fn read_options(
                         "what moves freely has a field of its own: `#[joint(ground -> body)] pose: Free`",
                     );
                 }
-                error.help("add `urdf = \"path/to/robot.urdf\"`, or remove the option");
+                error.help("add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the option");
                 arguments.forget(option);
             }
         }
@@ -396,32 +401,65 @@ fn read_options(
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
-    let no_inputs = choice("inputs", ["joints", "none"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &asked, description, cx);
     requests.skipped = skipped::read(&mut arguments, cx);
     let printed = arguments.take_word("equations", &Printed::WORDS.map(|(word, _)| word), cx);
     let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
     requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
+    let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
     let parameters = read_figures(&mut arguments, description.inertias, cx);
     requests.file_parameters = !parameters.is_empty();
     requests.file_inertials = parameters.iter().any(|figures| figures.word.text == figures::INERTIAL);
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
-    Some(UrdfOptions {
-        path: path?,
+    let (format, path) = file?;
+    Some(FileOptions {
+        format,
+        path,
         base: if base { Base::Free } else { Base::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
         limits,
         inertias: description.inertias,
-        inputs: !no_inputs,
+        inputs,
         lock,
         snap,
         parameters,
         collisions: false,
     })
+}
+
+/// `urdf = "…"` or `mjcf = "…"`.
+fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
+    let mut found: Option<(FileFormat, Name)> = None;
+    for format in FileFormat::ALL {
+        let Some(path) = arguments.take_text(format.word(), cx) else { continue };
+        if let Some((first, _)) = &found {
+            cx.error(path.place.clone(), "a second file")
+                .help(format!("a mechanism is read from one file: remove `{}` or this", first.word()));
+        } else {
+            found = Some((format, path));
+        }
+    }
+    found
+}
+
+/// `inputs = joints | actuators | none`: joints are the motors of a format that declares none.
+fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> InputOption {
+    let words: &[&str] = match format {
+        Some(FileFormat::Mjcf) => &["actuators", "joints", "none"],
+        _ => &["joints", "none"],
+    };
+    let found = arguments
+        .take_word("inputs", words, cx)
+        .map_or(words.first().copied(), |(word, _)| words.iter().copied().find(|known| *known == word));
+    match found {
+        Some("actuators") => InputOption::Actuators,
+        Some("none") => InputOption::None,
+        _ => InputOption::Joints,
+    }
 }
 
 /// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of them.

@@ -12,7 +12,7 @@ pub struct Mechanism {
     /// What remains of the struct itself.
     pub shell: Shell,
     /// The file to read, if one is named.
-    pub urdf: Option<UrdfOptions>,
+    pub file: Option<FileOptions>,
     /// What is generated on request.
     pub requests: Requests,
     /// What could be read.
@@ -148,9 +148,68 @@ pub enum LimitOption {
     Stops,
 }
 
-/// The options of `#[mechanism(urdf = "…", …)]`.
+/// A format of files that describe robots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileFormat {
+    /// `urdf = "…"`
+    Urdf,
+    /// `mjcf = "…"`
+    Mjcf,
+}
+
+impl FileFormat {
+    /// All of them.
+    pub const ALL: [FileFormat; 2] = [FileFormat::Urdf, FileFormat::Mjcf];
+
+    /// The word among the attribute's arguments.
+    pub fn word(self) -> &'static str {
+        match self {
+            FileFormat::Urdf => "urdf",
+            FileFormat::Mjcf => "mjcf",
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            FileFormat::Urdf => "URDF",
+            FileFormat::Mjcf => "MJCF",
+        }
+    }
+
+    /// A file of it.
+    pub fn article(self) -> &'static str {
+        match self {
+            FileFormat::Urdf => "a URDF file",
+            FileFormat::Mjcf => "an MJCF file",
+        }
+    }
+
+    /// How names of such files end.
+    pub fn endings(self) -> &'static [&'static str] {
+        match self {
+            FileFormat::Urdf => &["urdf", "xml"],
+            FileFormat::Mjcf => &["xml", "mjcf"],
+        }
+    }
+}
+
+/// What the inputs of a file are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputOption {
+    /// Every moving joint with one degree of freedom.
+    Joints,
+    /// The motors that the file declares.
+    Actuators,
+    /// There are none.
+    None,
+}
+
+/// The options of `#[mechanism(urdf = "…", …)]` and `#[mechanism(mjcf = "…", …)]`.
 #[derive(Clone, Debug)]
-pub struct UrdfOptions {
+pub struct FileOptions {
+    /// The format.
+    pub format: FileFormat,
     /// Path as written.
     pub path: Name,
     /// How the root link is held.
@@ -163,8 +222,8 @@ pub struct UrdfOptions {
     pub limits: LimitOption,
     /// What is made of mass properties.
     pub inertias: Inertias,
-    /// Every moving joint with one degree of freedom is an input.
-    pub inputs: bool,
+    /// What the inputs are.
+    pub inputs: InputOption,
     /// Joints frozen at zero.
     pub lock: Vec<Name>,
     /// How far off round numbers the file's frames and axes may be to be taken for round, rad and m.

@@ -28,7 +28,8 @@ pub mod words;
 pub use attribute::parse_mechanism;
 pub use joint_kind::JointKind;
 pub use mechanism::{
-    GROUND, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests, Shell, Skipped, UrdfOptions,
+    FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests,
+    Shell, Skipped,
 };
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
@@ -189,6 +190,8 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// Force elements and inputs.
     pub actions: Vec<Action>,
+    /// Force elements and inputs of a file on its joints.
+    pub drives: Vec<Drive>,
     /// Limits of coordinates.
     pub limits: Vec<Limit>,
     /// Coordinates of their own.
@@ -217,6 +220,8 @@ pub struct Description {
     pub formulation: Formulation,
     /// Numbers of a file that were rounded, as the user asked for.
     pub snapped: Vec<String>,
+    /// What is in the file and not in the mechanism.
+    pub left_out: Vec<String>,
     /// What is made of mass properties.
     pub inertias: Inertias,
     /// The file's root is the ground: it is a frame as other links are.
@@ -497,6 +502,39 @@ pub struct Action {
     pub kind: ActionKind,
     /// What it acts on.
     pub on: Target,
+}
+
+/// What a file says of springs, dampers, rotors and motors: a force element on a weighted sum of coordinates.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// Its name; an input's name is its entry in `INPUTS`.
+    pub name: Name,
+    /// The joints with their weights; each has one coordinate.
+    pub terms: Vec<(Name, f64)>,
+    /// What it does.
+    pub law: DriveLaw,
+}
+
+/// How a force element of a file answers to the sum of coordinates that it is on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveLaw {
+    /// With a force in proportion to what the sum differs from a free length.
+    Spring {
+        /// Stiffness.
+        stiffness: f64,
+        /// Where the force is zero.
+        free: f64,
+    },
+    /// With a force against its rate, in proportion to that.
+    Damper(f64),
+    /// With a force against its rate, of this size.
+    Friction(f64),
+    /// With a force against its acceleration, in proportion to that.
+    Inerter(f64),
+    /// With this force always.
+    Push(f64),
+    /// With the force that an input says; the input's unit.
+    Input(&'static str),
 }
 
 /// What a force element acts on.

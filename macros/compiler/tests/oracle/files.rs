@@ -9,7 +9,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{self, Base, Inertias, Name, UrdfOptions};
+use linkwork_compiler::syntax::{self, Base, FileFormat, FileOptions, Inertias, InputOption, Name};
 use linkwork_compiler::{derive, import, read};
 use std::path::Path;
 
@@ -22,20 +22,21 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
     let mut source = read(arguments, item, Path::new(""), &mut cx).expect("a struct");
     let place = source.mechanism.description.name.place.clone();
     let name = |text: &str| Name { text: text.to_string(), place: place.clone() };
-    let options = UrdfOptions {
+    let options = FileOptions {
+        format: FileFormat::Urdf,
         path: name("r.urdf"),
         base: if robot.free { Base::Free } else { Base::Fixed },
         honour_passive: true,
         follow_mimic: true,
         limits: linkwork_compiler::syntax::LimitOption::Honour,
         inertias: Inertias::Check,
-        inputs: true,
+        inputs: InputOption::Joints,
         lock: robot.locked().map(name).collect(),
         snap: None,
         parameters: Vec::new(),
         collisions: false,
     };
-    let imported = import::import_urdf(&robot.text(), &options, &mut cx);
+    let imported = import::import(&robot.text(), Path::new(""), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));
     let description = &mut source.mechanism.description;
     (description.bodies, description.joints) = (imported.bodies, imported.joints);

@@ -2,7 +2,7 @@
 
 use crate::diag::Diagnostics;
 use crate::import::tests::{defaults, name};
-use crate::import::{UrdfOptions, read_file};
+use crate::import::{FileOptions, read_file};
 use std::fs;
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ impl Folder {
     /// The text of a file or the mistakes, the directory's own name left out.
     fn read(&self, file: &str) -> String {
         let mut cx = Diagnostics::new();
-        let options = UrdfOptions { path: name(file), ..defaults() };
+        let options = FileOptions { path: name(file), ..defaults() };
         let text = read_file(&self.0.join(file), &options, &mut cx);
         assert_eq!(text.is_some(), cx.is_empty());
         text.unwrap_or_else(|| cx.messages().join("\n").replace(&format!("{}/", self.0.display()), "…"))
@@ -72,7 +72,7 @@ fn what_is_no_text_file_is_refused() {
     {
         let found = folder.read("r.urdf/x.urdf");
         assert!(found.starts_with("there is no file `r.urdf/x.urdf`"), "{found}");
-        let options = UrdfOptions { path: name("null"), ..defaults() };
+        let options = FileOptions { path: name("null"), ..defaults() };
         let mut cx = Diagnostics::new();
         assert!(read_file("/dev/null".as_ref(), &options, &mut cx).is_none());
         assert_eq!(cx.messages(), ["`null` is not a regular file"]);

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Checks the last joints of a chain.
-fn check_chain(options: &UrdfOptions, joints: &[(&str, &str)], expected: &str) {
+fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
     check_with(options, &chain(joints), &(chain_bodies(joints.len()) + expected));
 }
 
@@ -12,7 +12,7 @@ fn every_type_has_its_joint() {
     let axis = "<axis xyz='0 0 2'/>";
     let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
     check_chain(
-        &UrdfOptions { inputs: true, ..defaults() },
+        &FileOptions { inputs: InputOption::Joints, ..defaults() },
         &kinds.map(|kind| (kind, axis)),
         "Pin j1: l0 -> l1 about [0, 0, 2] driven
          Pin j2: l1 -> l2 about [0, 0, 2] driven
@@ -75,7 +75,7 @@ fn passive_elements_count_unless_ignored() {
         "Pin j1: l0 -> l1 about [1, 0, 0] damping=2 friction=3
          Sleeve j2: l1 -> l2 along [1, 0, 0]",
     );
-    let ignore = UrdfOptions { honour_passive: false, ..defaults() };
+    let ignore = FileOptions { honour_passive: false, ..defaults() };
     check_chain(
         &ignore,
         &[("revolute", "<dynamics damping='-2' friction='x'/>")],
@@ -98,7 +98,7 @@ fn a_follower_follows_unless_independent() {
         ("prismatic", "<mimic joint='j4' multiplier='-3' offset='5'/>"),
         ("revolute", ""),
     ];
-    let inputs = UrdfOptions { inputs: true, ..defaults() };
+    let inputs = FileOptions { inputs: InputOption::Joints, ..defaults() };
     check_chain(
         &inputs,
         &joints,
@@ -108,7 +108,7 @@ fn a_follower_follows_unless_independent() {
          Pin j4: l3 -> l4 about [1, 0, 0] driven",
     );
     check_chain(
-        &UrdfOptions { follow_mimic: false, ..inputs },
+        &FileOptions { follow_mimic: false, ..inputs },
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] driven
          Weld j2: l1 -> l2
@@ -167,7 +167,7 @@ fn a_follower_needs_somebody_to_follow() {
 
 #[test]
 fn a_locked_joint_is_a_weld() {
-    let options = UrdfOptions { inputs: true, ..locked(&["j1", "j3", "j4"]) };
+    let options = FileOptions { inputs: InputOption::Joints, ..locked(&["j1", "j3", "j4"]) };
     check_chain(
         &options,
         &[
@@ -199,7 +199,7 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
     check_with(
-        &UrdfOptions { snap: Some(1e-3), ..defaults() },
+        &FileOptions { snap: Some(1e-3), ..defaults() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
          Weld root_joint: ground -> l0
@@ -218,8 +218,8 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
 #[test]
 fn long_axes_are_rounded_by_their_direction() {
     let robot = chain(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
-    let options = UrdfOptions { snap: Some(1e-3), ..defaults() };
-    let imported = import_urdf(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
+    let options = FileOptions { snap: Some(1e-3), ..defaults() };
+    let imported = import_text(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
     assert_eq!(imported.snapped, ["`j1`: axis z 1e300 → 0.0"]);
 }
 
@@ -259,7 +259,7 @@ fn a_locked_slide_moves_along_the_turned_axis() {
     // Yaw 1, then pitch 2, then roll 3, about carried axes: the third column of R_z(1) R_y(2) R_x(3).
     let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
     let text = chain(&[("prismatic", inside), ("revolute", "")]);
-    let imported = import_urdf(&text, &locked(&["j2"]), &mut Diagnostics::new());
+    let imported = import_text(&text, &locked(&["j2"]), &mut Diagnostics::new());
     let at = imported.and_then(|imported| imported.joints[1].parent.at.clone()).map(|at| at.kind);
     let Some(ExprKind::Array(items)) = at else { panic!("a moved end") };
     let ((s1, c1), (s2, c2), (s3, c3)) = (1f64.sin_cos(), 2f64.sin_cos(), 3f64.sin_cos());

@@ -49,7 +49,7 @@ fn zeros_are_as_good_as_nothing() {
 fn a_mass_that_the_model_refuses_comes_with_its_place() {
     let text =
         format!("<robot><link name='a'>\n <inertial><mass value='-1'/>{INERTIA}</inertial></link></robot>");
-    let imported = import_urdf(&text, &defaults(), &mut Diagnostics::new());
+    let imported = import_text(&text, &defaults(), &mut Diagnostics::new());
     let at = imported.and_then(|i| i.bodies[0].mass.clone()).and_then(|mass| mass.place.file);
     assert_eq!(at.map(|at| (at.file.to_string(), at.line, at.column)), Some(("r.urdf".to_string(), 2, 25)));
 }
@@ -57,7 +57,7 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
 /// Where nothing needs inertia, mistakes in it are none.
 #[test]
 fn inertia_may_be_left_out() {
-    let options = UrdfOptions { inertias: Inertias::None, ..defaults() };
+    let options = FileOptions { inertias: Inertias::None, ..defaults() };
     let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
     check_with(&options, text, "body a\nWeld root_joint: ground -> a");
 }
@@ -65,7 +65,7 @@ fn inertia_may_be_left_out() {
 #[test]
 fn what_is_missing_is_shown() {
     check_with(
-        &UrdfOptions { base: Base::Free, ..defaults() },
+        &FileOptions { base: Base::Free, ..defaults() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
            = help: expected `<mass value="…"/>`
@@ -198,7 +198,7 @@ fn links_on_the_ground_need_no_inertia() {
         )
     };
     check(&text, &missing(4));
-    let free = UrdfOptions { base: Base::Free, ..defaults() };
+    let free = FileOptions { base: Base::Free, ..defaults() };
     check_with(&free, &text, &[2, 3, 4].map(missing).concat());
     check_with(
         &locked(&["b"]),

@@ -86,8 +86,8 @@ fn what_is_no_xml_is_shown_some() {
 #[test]
 fn another_format_is_named() {
     for (root, help) in [
-        ("sdf", "this is an SDF file; only URDF can be read"),
-        ("mujoco", "this is an MJCF file; only URDF can be read"),
+        ("sdf", "this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot"),
+        ("mujoco", "this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
         ("Robot", "did you mean `robot`?"),
         ("html", "expected `robot`"),
     ] {

@@ -1,15 +1,20 @@
 //! Text of a file in, text of the description or of the mistakes out.
 
-use super::{Imported, UrdfOptions, import_urdf};
+use super::{FileOptions, Imported, import};
 use crate::diag::Diagnostics;
-use crate::syntax::{Base, Body, Endpoint, Expr, ExprKind, Inertias, Joint, LimitOption, Name};
+use crate::syntax::{
+    Base, Body, Drive, DriveLaw, Endpoint, Expr, ExprKind, FileFormat, Inertias, InputOption, Joint,
+    LimitOption, Name,
+};
 use proc_macro2::Span;
+use std::path::Path;
 
 mod files;
 mod fuzz;
 mod joints;
 mod links;
 mod malformed;
+mod mjcf;
 mod names;
 
 fn name(text: &str) -> Name {
@@ -17,15 +22,16 @@ fn name(text: &str) -> Name {
 }
 
 /// The options that the attribute has when nothing is said.
-fn defaults() -> UrdfOptions {
-    UrdfOptions {
+fn defaults() -> FileOptions {
+    FileOptions {
+        format: FileFormat::Urdf,
         path: name("r.urdf"),
         base: Base::Fixed,
         honour_passive: true,
         follow_mimic: true,
         limits: LimitOption::Honour,
         inertias: Inertias::Check,
-        inputs: false,
+        inputs: InputOption::None,
         lock: Vec::new(),
         snap: None,
         parameters: Vec::new(),
@@ -33,12 +39,12 @@ fn defaults() -> UrdfOptions {
     }
 }
 
-fn locked(joints: &[&str]) -> UrdfOptions {
-    UrdfOptions { lock: joints.iter().map(|joint| name(joint)).collect(), ..defaults() }
+fn locked(joints: &[&str]) -> FileOptions {
+    FileOptions { lock: joints.iter().map(|joint| name(joint)).collect(), ..defaults() }
 }
 
 /// Compares what `text` gives with `expected`, the indentation of lines and empty lines apart.
-fn check_with(options: &UrdfOptions, text: &str, expected: &str) {
+fn check_with(options: &FileOptions, text: &str, expected: &str) {
     let trim = |text: &str| -> String {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         lines.map(|line| format!("{line}\n")).collect()
@@ -56,10 +62,15 @@ fn check_robot(inside: &str, expected: &str) {
     check(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
 }
 
+/// What a text holds that stands alone.
+fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+    import(text, Path::new(""), options, cx)
+}
+
 /// The description, or the mistakes.
-fn run(options: &UrdfOptions, text: &str) -> String {
+fn run(options: &FileOptions, text: &str) -> String {
     let mut cx = Diagnostics::new();
-    let imported = import_urdf(text, options, &mut cx);
+    let imported = import_text(text, options, &mut cx);
     assert_eq!(imported.is_some(), cx.is_empty(), "nothing is given just when there is a mistake");
     match imported {
         Some(imported) => render(&imported),
@@ -70,9 +81,19 @@ fn run(options: &UrdfOptions, text: &str) -> String {
 fn render(imported: &Imported) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
+    let drives = imported.drives.iter().map(render_drive);
+    let left_out = imported.left_out.iter().map(|line| format!("left out {line}"));
     let rounded = imported.snapped.iter().map(|line| format!("rounded {line}"));
     let ground = imported.is_ground.then(|| "the root is the ground".to_string());
-    ground.into_iter().chain(bodies).chain(joints).chain(rounded).map(|line| line + "\n").collect()
+    ground
+        .into_iter()
+        .chain(bodies)
+        .chain(joints)
+        .chain(drives)
+        .chain(rounded)
+        .chain(left_out)
+        .map(|line| line + "\n")
+        .collect()
 }
 
 fn render_body(body: &Body) -> String {
@@ -103,6 +124,20 @@ fn render_joint(joint: &Joint) -> String {
         }
     }
     line + if joint.driven { " driven" } else { "" }
+}
+
+fn render_drive(drive: &Drive) -> String {
+    let terms: Vec<String> =
+        drive.terms.iter().map(|(joint, weight)| format!("{weight} {}", joint.text)).collect();
+    let law = match drive.law {
+        DriveLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
+        DriveLaw::Damper(damping) => format!("damper {damping}"),
+        DriveLaw::Friction(force) => format!("friction {force}"),
+        DriveLaw::Inerter(inertance) => format!("inerter {inertance}"),
+        DriveLaw::Push(force) => format!("push {force}"),
+        DriveLaw::Input(unit) => format!("input in {unit}"),
+    };
+    format!("{}: {law} on {}", drive.name.text, terms.join(" + "))
 }
 
 fn render_end(end: &Endpoint) -> String {

@@ -28,7 +28,7 @@ fn joints_come_depth_first_in_alphabetical_order() {
 
 #[test]
 fn the_root_is_held_or_free() {
-    let free = UrdfOptions { base: Base::Free, inputs: true, ..defaults() };
+    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..defaults() };
     check_with(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
@@ -82,7 +82,7 @@ fn names_are_given_once() {
         "r.urdf:4:13: second link with the name `ground`
          = help: the first is at r.urdf:3:13",
     );
-    let free = UrdfOptions { base: Base::Free, inputs: true, ..defaults() };
+    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..defaults() };
     let both = [link("ground"), link("ground_link")].concat();
     check_with(
         &free,
@@ -194,7 +194,7 @@ fn links_do_not_hang_from_one_another() {
 fn a_long_chain_needs_no_stack() {
     let joints = vec![("revolute", "<mimic joint='j1000'/>"); 999];
     let text = chain(&[joints, vec![("revolute", "")]].concat());
-    let imported = import_urdf(&text, &defaults(), &mut Diagnostics::new());
+    let imported = import_text(&text, &defaults(), &mut Diagnostics::new());
     assert!(imported.is_some_and(|imported| imported.joints.len() == 1001 && imported.bodies.len() == 1001));
 }
 

@@ -1,30 +1,15 @@
 //! `<collision>` → shapes of links that contacts name.
 
-use super::origin::{Origin, read_origin};
+use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, elements, number, numbers, place, required};
 use crate::import::imported::Placed;
-use crate::syntax::{Collision, Endpoint, Name, Shape};
+use crate::import::robot::FileCollision;
+use crate::syntax::Shape;
 
 /// Shapes that a file can name.
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
-
-/// A part of a link's collision geometry.
-pub struct FileCollision {
-    origin: Origin,
-    shape: Shape,
-    place: Place,
-}
-
-impl FileCollision {
-    /// The part on a link of this name.
-    pub(super) fn on(&self, link: &Name) -> Collision {
-        let (at, rotated) = (self.origin.at(), self.origin.rotated());
-        let on = Endpoint { body: link.clone(), at, rotated };
-        Collision { on, shape: self.shape, place: self.place.clone() }
-    }
-}
 
 /// Reads all collision geometry of a link.
 pub(super) fn read(link: Node<'_>, cx: &mut Cx<'_>) -> Vec<FileCollision> {

@@ -1,12 +1,13 @@
 //! `<joint>` → [`FileJoint`]: what the file says of one joint, before locks and followers are looked at.
 
-use super::limit::{FileLimits, read_limits};
-use super::origin::{Origin, read_origin};
+use super::limit::read_limits;
+use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, children, name, number, numbers, place, required};
 use crate::import::imported::Placed;
-use crate::syntax::{Expr, JointKind, LimitOption, Mimic, Name, UrdfOptions};
+use crate::import::robot::{FileJoint, has_axis, has_coordinate};
+use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
 /// URDF's words for the joints, and `spherical`, which simulators take as well.
 const TYPES: [(&str, JointKind); 7] = [
@@ -19,56 +20,8 @@ const TYPES: [(&str, JointKind); 7] = [
     ("spherical", JointKind::Ball),
 ];
 
-/// A joint as the file gives it.
-pub(super) struct FileJoint {
-    /// Its name.
-    pub(super) name: Name,
-    /// Which joint.
-    pub(super) kind: JointKind,
-    /// URDF's word for it.
-    pub(super) word: &'static str,
-    /// The link that carries it.
-    pub(super) parent: Name,
-    /// The link that it carries.
-    pub(super) child: Name,
-    /// Its frame on the parent, which is the child's own frame while the coordinate is zero.
-    pub(super) origin: Origin,
-    /// Its axis, of any length but zero; unused by welds and free joints.
-    pub(super) axis: Placed<[f64; 3]>,
-    /// Whom it follows, if the user wants to know.
-    pub(super) mimic: Option<Mimic>,
-    /// Its limits.
-    pub(super) limits: FileLimits,
-    /// Viscous damping, not zero.
-    pub(super) damping: Option<Expr>,
-    /// Coulomb friction, not zero.
-    pub(super) friction: Option<Expr>,
-}
-
-impl FileJoint {
-    /// True if one number says where the joint stands.
-    pub(super) fn has_coordinate(&self) -> bool {
-        has_coordinate(self.kind)
-    }
-
-    /// True if it moves about or along its axis.
-    pub(super) fn has_axis(&self) -> bool {
-        has_axis(self.kind)
-    }
-}
-
-/// True if one number says where joints of the kind stand.
-fn has_coordinate(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Pin | JointKind::Sleeve)
-}
-
-/// True if joints of the kind move about or along an axis.
-fn has_axis(kind: JointKind) -> bool {
-    !matches!(kind, JointKind::Weld | JointKind::Free | JointKind::Ball)
-}
-
 /// Reads a joint; `None` if it does not say what it joins.
-pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<FileJoint> {
+pub(super) fn read_joint(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<FileJoint> {
     check_attributes(node, &["name", "type"], &[], cx);
     let joint = name(node, "name", cx);
     let kind = read_type(node, cx);
@@ -87,7 +40,21 @@ pub(super) fn read_joint(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>)
     let limit = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore);
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
-    Some(FileJoint { name, kind, word, parent, child, origin, axis, mimic, limits, damping, friction })
+    Some(FileJoint {
+        name,
+        kind,
+        word,
+        parent,
+        child,
+        origin,
+        anchor: [0.0; 3],
+        axis,
+        mimic,
+        held: None,
+        limits,
+        damping,
+        friction,
+    })
 }
 
 fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {

@@ -3,19 +3,8 @@
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, number};
 use crate::import::imported::Placed;
-use crate::syntax::{Expr, ExprKind, Limit, Name};
-
-/// What a file says of the limits of a joint; nothing where it bounds nothing.
-#[derive(Default)]
-pub(super) struct FileLimits {
-    lower: Option<Placed<f64>>,
-    upper: Option<Placed<f64>>,
-    velocity: Option<Placed<f64>>,
-    effort: Option<Placed<f64>>,
-}
-
-/// What to do with limits that are none.
-const IGNORE: &str = "to leave limits out, write `#[mechanism(…, limits = ignore)]`";
+use crate::import::robot::{FileLimits, IGNORE_LIMITS};
+use crate::syntax::Name;
 
 /// Reads the limits of a joint that has one coordinate; `continuous` ones have no ends.
 pub(super) fn read_limits(
@@ -34,13 +23,13 @@ pub(super) fn read_limits(
         && low.value > high.value
     {
         let message = format!("`lower`{name} is {}, above its `upper`, which is {}", low.value, high.value);
-        cx.error(&low.place, message, |d| d.help("without one of the two it is 0").help(IGNORE));
+        cx.error(&low.place, message, |d| d.help("without one of the two it is 0").help(IGNORE_LIMITS));
     }
     let mut size = |which: &str| {
         let found = node.has_attribute(which).then(|| bound(node, which, "inf", cx)).flatten()?;
         if found.value < 0.0 {
             let message = format!("negative `{which}`{name}: {}", found.value);
-            cx.error(&found.place, message, |d| d.help(IGNORE));
+            cx.error(&found.place, message, |d| d.help(IGNORE_LIMITS));
         }
         Some(found)
     };
@@ -58,26 +47,4 @@ fn bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option
         return None;
     }
     number(node, which, cx)
-}
-
-impl FileLimits {
-    /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's motion, and not
-    /// what drives it.
-    pub(super) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
-        let expression =
-            |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));
-        let limit = Limit {
-            name: joint.clone(),
-            on: Expr { kind: ExprKind::Name(joint.text.clone()), place: joint.place.clone() },
-            from: expression(&self.lower),
-            to: expression(&self.upper),
-            max_speed: expression(&self.velocity),
-            max_effort: expression(&self.effort).filter(|_| !follows),
-            restitution: stops
-                .then(|| Expr::number(0.0, &joint.place))
-                .filter(|_| self.lower.is_some() || self.upper.is_some()),
-        };
-        let bounds = [&limit.from, &limit.to, &limit.max_speed, &limit.max_effort];
-        bounds.iter().any(|bound| bound.is_some()).then_some(limit)
-    }
 }

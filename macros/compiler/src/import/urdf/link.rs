@@ -1,9 +1,10 @@
 //! `<link>` → [`Body`].
 
-use super::origin::{Origin, read_origin};
+use super::origin::read_origin;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, name, number, place, required};
-use crate::syntax::{Body, Expr, ExprKind, Inertias, Name, UrdfOptions};
+use crate::import::robot::{Origin, bare_link};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
 /// The entries of the inertia matrix, as URDF names them.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
@@ -13,7 +14,7 @@ const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 pub(super) fn read_link(
     node: Node<'_>,
     stands: impl FnOnce(&str) -> bool,
-    options: &UrdfOptions,
+    options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
@@ -23,16 +24,11 @@ pub(super) fn read_link(
         _ => children(node, ["inertial"], cx),
     };
     let stands = name.as_ref().is_some_and(|name| stands(&name.text));
-    let mut body = bare(name?);
+    let mut body = bare_link(name?);
     if let Some(inertial) = inertial {
         read_inertial(inertial, stands, &mut body, cx);
     }
     Some(body)
-}
-
-/// A link without mass.
-pub(super) fn bare(name: Name) -> Body {
-    Body { name, mass: None, com: None, inertia: None, at: None, frame: None }
 }
 
 /// Reads mass, centre of mass and inertia. A link that says that all are zero is one that says nothing.

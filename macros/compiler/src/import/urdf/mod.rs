@@ -7,48 +7,38 @@
 use super::context::Cx;
 use super::element::{Node, check_element_name, elements, place, tag};
 use crate::import::imported::Imported;
-use crate::syntax::UrdfOptions;
-use robot::Robot;
+use crate::import::robot::{self, MOST, Robot};
+use crate::syntax::FileOptions;
 
-mod assemble;
 mod collision;
-mod figures;
 mod joint;
 mod limit;
 mod link;
-mod motion;
-mod names;
 mod origin;
-mod robot;
-mod snap;
 mod standing;
-mod tree;
-
-/// Links or joints of one file.
-const MOST: usize = 1024;
 
 /// Reads the root element.
-pub(super) fn read(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     if !check_root(node, cx) {
         return None;
     }
     let mut robot = read_robot(node, options, cx)?;
-    names::check_names(&robot, cx);
-    names::declare_world(&mut robot);
-    names::rename_ground(&mut robot, options.base);
-    names::check_ends(&robot, cx);
-    names::check_locks(&robot.joints, &options.lock, cx);
+    robot::check_names(&robot, cx);
+    robot::declare_world(&mut robot);
+    robot::rename_ground(&mut robot, options.base);
+    robot::check_ends(&robot, cx);
+    robot::check_locks(&robot.joints, &options.lock, cx);
     if cx.failed() {
         return None;
     }
-    let order = tree::order_joints(&robot, cx);
-    let motions = motion::resolve_motions(&robot.joints, &options.lock, cx);
+    let order = robot::order_joints(&robot, cx);
+    let motions = robot::resolve_motions(&robot.joints, &options.lock, cx);
     let (Some(order), Some(motions)) = (order, motions) else {
         return None;
     };
     let standing = standing::links(node, options).into_iter().map(ToString::to_string).collect::<Vec<_>>();
-    let mut imported = assemble::assemble(robot, &order, motions, options, cx);
-    figures::make_fields(&mut imported, &standing, options, cx);
+    let mut imported = robot::assemble(robot, &order, motions, options, cx);
+    robot::make_fields(&mut imported, &standing, options, cx);
     (!cx.failed()).then_some(imported)
 }
 
@@ -60,18 +50,19 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     }
     let message = format!("expected `<robot>`, found {}", tag(node));
     cx.error(&place(node, cx), message, |d| match name {
-        "sdf" => d.help("this is an SDF file; only URDF can be read"),
-        "mujoco" => d.help("this is an MJCF file; only URDF can be read"),
+        "sdf" => {
+            d.help("this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot")
+        }
+        "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
         _ => d.suggest(name, ["robot"]),
     });
     false
 }
 
-fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<Robot> {
+fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
     let standing = standing::links(node, options);
-    let mut robot =
-        Robot { links: Vec::new(), joints: Vec::new(), collisions: Vec::new(), snapped: Vec::new() };
+    let mut robot = Robot::default();
     for child in elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
@@ -100,7 +91,7 @@ fn read_robot(node: Node<'_>, options: &UrdfOptions, cx: &mut Cx<'_>) -> Option<
         }
     }
     if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {
-        robot.snapped = robot.joints.iter_mut().flat_map(|joint| snap::snap(joint, tolerance)).collect();
+        robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();
     }
     if counts[0] == 0 && !cx.failed() {
         cx.error(&place(node, cx), "robot without a link", |d| d.help("expected `<link name=\"…\"/>`"));

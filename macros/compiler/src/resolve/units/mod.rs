@@ -13,7 +13,7 @@ mod value;
 mod walk;
 
 use crate::diag::Diagnostics;
-use crate::mechanism::{Chart, Constraint, Coordinate, Measure, Model, Units};
+use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
 use crate::syntax::state::RATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind};
 use infer::{Inference, Meaning, Origin, Reason};
@@ -201,7 +201,11 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             }
         }
     }
-    for (name, _) in &model.inputs {
+    for (name, input) in &model.inputs {
+        if let Input::Sum(_, unit) = input {
+            units.inputs.push(unit.to_string());
+            continue;
+        }
         let dimension = match inference.names.get(name) {
             Some(Meaning::Moving(dimension)) => dimension.clone(),
             _ => si::PLAIN,

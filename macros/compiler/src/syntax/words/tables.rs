@@ -269,13 +269,17 @@ pub const VECTOR: Words = &[("frame axes basis in of expressedin resolved resolv
 pub const NO_WORDS: Words = &[];
 
 const INTEGRATION: &str = "the equations are solved where they are used: `linkwork::integrate` and `linkwork::simulate` hold the methods";
-const ONLY_URDF: &str = "only URDF files can be read: `urdf = \"path/to/robot.urdf\"`";
+const FORMATS: &str =
+    "URDF and MJCF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`";
+const RUN_XACRO: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the result: `urdf = \"path/to/robot.urdf\"`";
 
 /// Arguments of `#[mechanism]`.
 pub const OPTIONS: Words = &[
     ("g grav gravitation gravityvector", "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`"),
     ("file path model robot filename source", "urdf"),
-    ("mjcf sdf xml xacro usd dae", ONLY_URDF),
+    ("sdf xml usd dae sdformat", FORMATS),
+    ("mujoco mjb", "mjcf"),
+    ("xacro", RUN_XACRO),
     ("precision type float real dtype", "scalar"),
     ("floatingbase freebase floating freeflyer rootjoint", "did you mean `base = free`?"),
     ("fixedbase", "did you mean `base = fixed`?"),

@@ -1,19 +1,19 @@
 //! Joints in the file's order → joints in coordinate order, by way of the tree that the links form.
 
-use super::robot::Robot;
+use super::parts::Robot;
 use crate::import::context::{Cx, quote, quote_all};
 use std::collections::BTreeMap;
 
 /// The tree of the links.
-pub(super) struct Order {
+pub(in crate::import) struct Order {
     /// The link that is no joint's child.
-    pub(super) root: usize,
+    pub(in crate::import) root: usize,
     /// Joints, each with its child link: depth first, those of one link in the order of their names.
-    pub(super) joints: Vec<(usize, usize)>,
+    pub(in crate::import) joints: Vec<(usize, usize)>,
 }
 
 /// Orders the joints; `None` if the links do not form one tree. Their names are known to be good.
-pub(super) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
+pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
     let index = |(k, name): (usize, &str)| (name.to_string(), k);
     let links: BTreeMap<String, usize> =
         robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(index).collect();

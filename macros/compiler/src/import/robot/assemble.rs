@@ -1,22 +1,24 @@
 //! The file's links and joints, their order and what moves them → bodies and joints of the language.
 
+use super::drives;
 use super::joint::FileJoint;
 use super::motion::Motion;
 use super::names::unused;
-use super::robot::Robot;
+use super::parts::Robot;
 use super::tree::Order;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
 use crate::syntax::{
-    Base, Body, Endpoint, Expr, GROUND, Joint, JointKind, LimitOption, Name, ROOT_JOINT, UrdfOptions,
+    Base, Body, Endpoint, Expr, FileOptions, GROUND, InputOption, Joint, JointKind, LimitOption, Name,
+    ROOT_JOINT,
 };
 
 /// Puts the robot together. Bodies come in the order of the joints that carry them.
-pub(super) fn assemble(
+pub(in crate::import) fn assemble(
     robot: Robot,
     order: &Order,
     motions: Vec<Motion>,
-    options: &UrdfOptions,
+    options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Imported {
     let is_ground = robot.links[order.root].name.text == GROUND;
@@ -29,6 +31,7 @@ pub(super) fn assemble(
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
+    let drives = drives::resolve(robot.drives, &given);
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     for (joint, child) in &order.joints {
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
@@ -39,7 +42,20 @@ pub(super) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
-    Imported { bodies, joints, limits, fields: Vec::new(), is_ground, collisions, snapped: robot.snapped }
+    Imported {
+        bodies,
+        joints,
+        drives,
+        dissipations: robot.dissipations,
+        gravity: robot.gravity,
+        limits,
+        fields: Vec::new(),
+        is_ground,
+        collisions,
+        snapped: robot.snapped,
+        left_out: robot.left_out,
+        files: Vec::new(),
+    }
 }
 
 /// The joint that holds the root, which no URDF file names.
@@ -56,11 +72,17 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
 }
 
 /// A body's own origin.
-fn end_at(body: Name) -> Endpoint {
+pub(in crate::import) fn end_at(body: Name) -> Endpoint {
     Endpoint { body, at: None, rotated: Vec::new() }
 }
 
-fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) -> Joint {
+/// A joint's end on its child.
+fn place_at(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
+    let at = (anchor != [0.0; 3]).then(|| Expr::vector(anchor, &given.origin.xyz.place));
+    Endpoint { at, ..end_at(given.child.clone()) }
+}
+
+pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) -> Joint {
     Joint {
         name,
         kind,
@@ -79,15 +101,17 @@ fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) ->
     }
 }
 
-fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut Cx<'_>) -> Joint {
+fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
     let mut parent =
         Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() };
     if let Motion::Frozen(coordinate) = motion {
         move_end(&mut parent, &given, coordinate, cx);
-        return bare_joint(given.name, JointKind::Weld, parent, end_at(given.child));
+        let child = place_at(given.anchor, &given);
+        return bare_joint(given.name, JointKind::Weld, parent, child);
     }
     let (alone, has_axis) = (given.has_coordinate(), given.has_axis());
-    let mut joint = bare_joint(given.name, given.kind, parent, end_at(given.child));
+    let child = place_at(given.anchor, &given);
+    let mut joint = bare_joint(given.name, given.kind, parent, child);
     let axis = Expr::vector(given.axis.value, &given.axis.place);
     match given.kind {
         // A planar joint moves in the plane perpendicular to its axis.
@@ -99,7 +123,7 @@ fn build_joint(given: FileJoint, motion: Motion, options: &UrdfOptions, cx: &mut
     (joint.damping, joint.friction) = (given.damping, given.friction);
     match motion {
         Motion::Follows(mimic) => joint.mimic = Some(mimic),
-        _ => joint.driven = options.inputs && alone,
+        _ => joint.driven = options.inputs == InputOption::Joints && alone,
     }
     joint
 }
@@ -142,7 +166,7 @@ fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
 }
 
 /// A vector of unit length; the detour by the largest entry keeps squares from overflow and underflow.
-pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
+pub(in crate::import) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let scaled = vector.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -5,13 +5,13 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
 use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
-use crate::syntax::{Body, Expr, ExprKind, Joint, JointKind, Name, UrdfOptions};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
 /// Makes fields of all figures that are asked for. `standing` are the links that enter no equation.
-pub(super) fn make_fields(
+pub(in crate::import) fn make_fields(
     imported: &mut Imported,
     standing: &[String],
-    options: &UrdfOptions,
+    options: &FileOptions,
     cx: &mut Cx<'_>,
 ) {
     let Imported { bodies, joints, fields, .. } = imported;

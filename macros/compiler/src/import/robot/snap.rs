@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Rounds the frame and the axis of a joint: angles that lie within `tolerance` (rad) of a multiple of a right one,
 /// positions within it (m) of zero, components of the unit axis within it of zero. Returns what it was, by entry.
-pub(super) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
+pub(in crate::import) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
     let mut found = Vec::new();
     let mut report = |entry: &str, from: f64, to: f64| {
         if from != to {

@@ -1,14 +1,13 @@
 //! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file leaves open.
 
 use super::joint::FileJoint;
-use super::link;
-use super::robot::Robot;
+use super::parts::{Robot, bare_link};
 use crate::import::context::{Cx, position, quote};
 use crate::syntax::{Base, GROUND, Name};
 use std::collections::BTreeMap;
 
 /// Reports links and joints that share a name with another.
-pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
     check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
@@ -17,17 +16,17 @@ pub(super) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
 const WORLD: &str = "world";
 
 /// Declares the link `world` if joints begin there and nothing says what it is: it is what the root is held by elsewhere.
-pub(super) fn declare_world(robot: &mut Robot) {
+pub(in crate::import) fn declare_world(robot: &mut Robot) {
     let is_known = robot.links.iter().any(|link| link.name.text == WORLD)
         || robot.joints.iter().any(|joint| joint.child.text == WORLD);
     let used = robot.joints.iter().find(|joint| joint.parent.text == WORLD);
     if let Some(world) = used.filter(|_| !is_known).map(|joint| joint.parent.clone()) {
-        robot.links.push(link::bare(world));
+        robot.links.push(bare_link(world));
     }
 }
 
 /// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called so: it is the ground.
-pub(super) fn rename_ground(robot: &mut Robot, base: Base) {
+pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
     }
@@ -40,7 +39,7 @@ pub(super) fn rename_ground(robot: &mut Robot, base: Base) {
 }
 
 /// The name, with a number if it is taken.
-pub(super) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let mut text = name.to_string();
     for k in 2.. {
         if !is_taken(&text) {
@@ -64,7 +63,7 @@ fn check_unique<'a>(names: impl Iterator<Item = &'a Name>, what: &str, cx: &mut 
 }
 
 /// Reports joints between links that are not there, or from a link to itself, and links with two parents.
-pub(super) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
     let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
@@ -99,7 +98,7 @@ fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
 }
 
 /// Reports locked joints that are not there.
-pub(super) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
     for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());
         let message = format!("unknown joint {} in `lock`", quote(&lock.text));

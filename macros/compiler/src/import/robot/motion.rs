@@ -6,7 +6,7 @@ use crate::syntax::{Mimic, Name};
 use std::collections::BTreeMap;
 
 /// What moves a joint.
-pub(super) enum Motion {
+pub(in crate::import) enum Motion {
     /// It moves on its own.
     Own,
     /// It follows a joint that moves on its own.
@@ -16,10 +16,14 @@ pub(super) enum Motion {
 }
 
 /// Finds out what moves each joint. Locks come first: what follows a locked joint stands still as well.
-pub(super) fn resolve_motions(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) -> Option<Vec<Motion>> {
+pub(in crate::import) fn resolve_motions(
+    joints: &[FileJoint],
+    locks: &[Name],
+    cx: &mut Cx<'_>,
+) -> Option<Vec<Motion>> {
     let index: BTreeMap<&str, usize> =
         joints.iter().enumerate().map(|(k, joint)| (joint.name.text.as_str(), k)).collect();
-    let mut locked = vec![false; joints.len()];
+    let mut locked: Vec<bool> = joints.iter().map(|joint| joint.held.is_some()).collect();
     for lock in locks.iter().filter_map(|lock| index.get(lock.text.as_str())) {
         locked[*lock] = true;
     }
@@ -32,7 +36,7 @@ pub(super) fn resolve_motions(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<
         return None;
     }
     let motions = (0..joints.len()).map(|k| match locked[k] {
-        true => Motion::Frozen(0.0),
+        true => Motion::Frozen(joints[k].held.unwrap_or(0.0)),
         false => follow(k, joints, &leaders, &locked, cx),
     });
     Some(motions.collect())
@@ -114,7 +118,7 @@ fn follow(
         cx.error(&mimic.joint.place, message, |d| d);
     }
     if locked[at] || factor == 0.0 {
-        return Motion::Frozen(offset);
+        return Motion::Frozen(offset + factor * joints[at].held.unwrap_or(0.0));
     }
     let joint = Name { text: joints[at].name.text.clone(), place: mimic.joint.place.clone() };
     Motion::Follows(Mimic { joint, multiplier: factor, offset })

@@ -1,0 +1,429 @@
+//! `<worldbody>` → links and joints, in the order of the file.
+
+use super::defaults::Element;
+use super::frame::{ORIENTATIONS, read_pose};
+use super::geometry;
+use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
+use super::pose::{Pose, about, add, apply, product, roll_pitch_yaw, scale};
+use super::reader::{Reader, give};
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{
+    Node, check_attributes, check_element_name, elements, name, number, place, tag,
+};
+use crate::import::imported::Placed;
+use crate::import::robot::{FileJoint, FileLimits, MOST, Origin, bare_link, unused};
+use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
+
+/// MuJoCo's name of what does not move.
+pub(super) const WORLD: &str = "world";
+
+/// The elements of a body.
+const BODY: [&str; 16] = [
+    "body",
+    "frame",
+    "joint",
+    "freejoint",
+    "inertial",
+    "geom",
+    "site",
+    "camera",
+    "light",
+    "composite",
+    "flexcomp",
+    "replicate",
+    "attach",
+    "plugin",
+    "include",
+    "skin",
+];
+
+/// A body that is still to be read.
+struct Open<'a> {
+    node: Node<'a>,
+    /// The link that carries it.
+    parent: Name,
+    /// The pose of the frames around it.
+    outer: Pose,
+    class: usize,
+}
+
+/// What stands in a body, the frames in it opened.
+#[derive(Default)]
+struct Inside<'a> {
+    bodies: Vec<(Node<'a>, Pose, usize)>,
+    shapes: Vec<(Element<'a>, Pose)>,
+    sites: Vec<(Element<'a>, Pose)>,
+    inertial: Option<Node<'a>>,
+    jointed: Vec<(Node<'a>, usize)>,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads all bodies.
+    pub(super) fn read_world(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
+        let world = Name { text: GROUND.to_string(), place: place(root, cx) };
+        self.robot.links.push(bare_link(world.clone()));
+        // Names that the file gives are not for what has none.
+        let named = |kind: fn(Node<'_>) -> bool| {
+            let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
+            nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
+        };
+        self.joint_names = named(is_joint).collect();
+        self.link_names = named(|node| node.tag_name().name() == "body").collect();
+        self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
+        let worlds: Vec<Node<'a>> =
+            elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
+        if worlds.is_empty() {
+            cx.error(&place(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
+            return None;
+        }
+        let mut open: Vec<Open<'a>> = Vec::new();
+        for node in worlds.into_iter().rev() {
+            let class = self.defaults.class(node, "childclass", 0, cx);
+            let inside = self.inside(node, class, cx);
+            self.add_sites(&inside, GROUND, cx);
+            self.count("geometry of the ground", inside.shapes.len());
+            open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| Open {
+                node,
+                parent: world.clone(),
+                outer,
+                class,
+            }));
+        }
+        self.free_base(&open, cx);
+        // With a stack of its own: a chain may be as long as the file allows.
+        while let Some(next) = open.pop() {
+            if self.robot.links.len() > MOST {
+                cx.error(&place(next.node, cx), format!("more than {MOST} bodies"), |d| d);
+                return None;
+            }
+            let below = self.read_body(next, cx);
+            open.extend(below.into_iter().rev());
+        }
+        self.place_sites(cx);
+        Some(())
+    }
+
+    /// `base = free` is for files that leave open how their body is held.
+    fn free_base(&self, open: &[Open<'a>], cx: &mut Cx<'_>) {
+        if self.options.base != Base::Free {
+            return;
+        }
+        let fits = match open {
+            [one] => !elements(one.node).any(is_joint),
+            _ => false,
+        };
+        if !fits {
+            let found = match open.len() {
+                1 => "its outermost body has joints".to_string(),
+                n => format!("there are {n} outermost bodies"),
+            };
+            let message = format!("`base = free` does not fit this file: {found}");
+            let place = self.options.path.place.clone();
+            cx.error(&place, message, |d| {
+                d.help("bodies of an MJCF file are held as the file says: write `<freejoint/>` into a body, and remove `base`")
+            });
+        }
+    }
+
+    fn read_body(&mut self, open: Open<'a>, cx: &mut Cx<'_>) -> Vec<Open<'a>> {
+        let node = open.node;
+        self.bodies += 1;
+        let mut known = vec!["name", "childclass", "pos", "mocap", "gravcomp", "user", "sleep"];
+        known.extend(ORIENTATIONS);
+        check_attributes(node, &[], &known, cx);
+        let class = self.defaults.class(node, "childclass", open.class, cx);
+        let said = node.attribute("name").and_then(|_| name(node, "name", cx));
+        let body = self.body_name(said, node, cx);
+        let element = self.defaults.element(node, &[], 0, cx);
+        let pose = open.outer.then(&read_pose(&element, &self.settings, cx));
+        let inside = self.inside(node, class, cx);
+        let mut joints = Vec::new();
+        for (child, class) in &inside.jointed {
+            joints.extend(self.read_joint(*child, &body, *class, cx));
+        }
+        if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {
+            joints.extend(self.bare_free(&body));
+        }
+        self.check_compensation(node, cx);
+        let mass = match self.options.inertias {
+            Inertias::None => None,
+            _ => {
+                geometry::of_body(inside.inertial, &inside.shapes, &self.defaults, &pose, &self.settings, cx)
+            }
+        };
+        self.count("geometry of bodies", inside.shapes.len());
+        self.add_sites(&inside, &body.text, cx);
+        self.chain(&open.parent, &body, &pose, joints, cx);
+        let mut link = bare_link(body.clone());
+        if let Some(mass) = &mass {
+            give(&mut link, mass, &mass_place(&inside, node, cx));
+        }
+        self.robot.links.push(link);
+        self.masses.push(mass);
+        let next = inside.bodies.into_iter();
+        next.map(|(node, outer, class)| Open { node, parent: body.clone(), outer, class }).collect()
+    }
+
+    fn body_name(&mut self, said: Option<Name>, node: Node<'a>, cx: &mut Cx<'_>) -> Name {
+        let mut body = said.unwrap_or_else(|| {
+            let text = unused(&format!("body{}", self.bodies), |name| self.link_names.contains(name));
+            Name { text, place: place(node, cx) }
+        });
+        if body.text == GROUND {
+            body.text = unused("ground_link", |name| self.link_names.contains(name));
+        }
+        if body.text == WORLD {
+            let help = "`world` is what does not move: choose another name";
+            cx.error(&body.place, "a body with the name `world`", |d| d.help(help));
+        }
+        self.link_names.insert(body.text.clone());
+        body
+    }
+
+    /// The elements in a body, with the poses of the frames that they stand in.
+    fn inside(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> Inside<'a> {
+        let mut found = Inside::default();
+        self.gather(node, &Pose::ZERO, class, &mut found, cx);
+        found
+    }
+
+    fn gather(
+        &mut self,
+        node: Node<'a>,
+        outer: &Pose,
+        class: usize,
+        found: &mut Inside<'a>,
+        cx: &mut Cx<'_>,
+    ) {
+        for child in elements(node) {
+            match child.tag_name().name() {
+                "frame" => {
+                    let class = self.defaults.class(child, "childclass", class, cx);
+                    let element = self.defaults.element(child, &[], 0, cx);
+                    let pose = outer.then(&read_pose(&element, &self.settings, cx));
+                    // As deep as elements stand in one another, which is limited.
+                    self.gather(child, &pose, class, found, cx);
+                }
+                "body" => found.bodies.push((child, *outer, class)),
+                "geom" => found.shapes.push((self.defaults.element(child, &["geom"], class, cx), *outer)),
+                "site" => found.sites.push((self.defaults.element(child, &["site"], class, cx), *outer)),
+                "inertial" if found.inertial.is_some() => {
+                    cx.error(&place(child, cx), "second `<inertial>` of one body", |d| d);
+                }
+                "inertial" => found.inertial = Some(child),
+                "joint" | "freejoint" if outer.at == [0.0; 3] && outer.axes == Pose::ZERO.axes => {
+                    found.jointed.push((child, class));
+                }
+                "joint" | "freejoint" => {
+                    let help = "write it into the body itself";
+                    cx.error(&place(child, cx), "a joint in a `<frame>` is not supported", |d| d.help(help));
+                }
+                "camera" => self.count("cameras", 1),
+                "light" => self.count("lights", 1),
+                "composite" | "flexcomp" | "replicate" | "attach" | "plugin" => {
+                    let message = format!("{} is not supported", tag(child));
+                    let help =
+                        "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`";
+                    cx.error(&place(child, cx), message, |d| d.help(help));
+                }
+                _ => check_element_name(child, &BODY, cx),
+            }
+        }
+    }
+
+    fn check_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+        if let Some(found) = number(node, "gravcomp", cx).filter(|found| self.passive && found.value != 0.0) {
+            let message = "`gravcomp` is not supported";
+            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        }
+    }
+
+    /// The joints between a body and its parent: one after the other, with massless links between them.
+    fn chain(&mut self, parent: &Name, body: &Name, pose: &Pose, joints: Vec<BodyJoint>, cx: &mut Cx<'_>) {
+        let number = joints.len();
+        let free = joints.iter().find(|joint| joint.kind == JointKind::Free);
+        if let Some(free) = free.filter(|_| number > 1 || parent.text != GROUND) {
+            let message =
+                format!("free joint {} of a body that is held otherwise, too", quote(&free.name.text));
+            let help = "a free body stands in `<worldbody>` and has no other joint";
+            cx.error(&free.name.place, message, |d| d.help(help));
+            return;
+        }
+        if joints.is_empty() {
+            let text = unused(&format!("{}_weld", body.text), |name| self.joint_names.contains(name));
+            self.joint_names.insert(text.clone());
+            let name = Name { text, place: body.place.clone() };
+            self.robot.joints.push(weld(name, parent.clone(), body.clone(), pose));
+            return;
+        }
+        let mut carrier = parent.clone();
+        for (k, joint) in joints.into_iter().enumerate() {
+            let child = if k + 1 == number { body.clone() } else { self.between(body, &joint) };
+            let outer = match (k, joint.kind) {
+                // Its coordinates are its pose in the world.
+                (_, JointKind::Free) => Pose::ZERO,
+                (0, _) => *pose,
+                _ => Pose::ZERO,
+            };
+            if let Some(damping) = &joint.spread {
+                self.spread(&joint, damping, &carrier, &child);
+            }
+            self.references.insert(joint.name.text.clone(), joint.reference);
+            self.robot.joints.push(placed(joint, &carrier, &child, &outer));
+            carrier = child;
+        }
+    }
+
+    /// A massless link between two joints of a body.
+    fn between(&mut self, body: &Name, joint: &BodyJoint) -> Name {
+        let text =
+            unused(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
+        self.link_names.insert(text.clone());
+        let name = Name { text, place: body.place.clone() };
+        self.robot.links.push(bare_link(name.clone()));
+        self.masses.push(None);
+        name
+    }
+
+    /// Damping of all velocities of a ball or a free body: Rayleigh's function `½ d (v·v + ω·ω)`.
+    fn spread(&mut self, joint: &BodyJoint, damping: &Placed<f64>, carrier: &Name, child: &Name) {
+        let at = &damping.place;
+        let named = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
+        let binary = |op, a, b| Expr {
+            kind: ExprKind::Binary(op, Box::new(a), Box::new(b), at.clone()),
+            place: at.clone(),
+        };
+        let half_square = |e: Expr| {
+            let square = Expr::call("dot", vec![e.clone(), e], at);
+            binary(BinaryOp::Mul, Expr::number(damping.value / 2.0, at), square)
+        };
+        let slash = |a, b| binary(BinaryOp::Div, a, b);
+        let turning = Expr::call("omega", vec![slash(named(&child.text), named(&carrier.text))], at);
+        let mut sum = half_square(turning);
+        if joint.kind == JointKind::Free {
+            let path = slash(slash(named(&child.text), named(GROUND)), named(GROUND));
+            sum = binary(BinaryOp::Add, sum, half_square(Expr::call("v", vec![path], at)));
+        }
+        let text = format!("{}_damping", joint.name.text);
+        self.robot.dissipations.push((Name { text, place: at.clone() }, sum));
+    }
+
+    fn bare_free(&mut self, body: &Name) -> Option<BodyJoint> {
+        let text = unused(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
+        self.joint_names.insert(text.clone());
+        let place = body.place.clone();
+        let at = |value| Placed { value, place: place.clone() };
+        Some(BodyJoint {
+            name: Name { text, place: place.clone() },
+            kind: JointKind::Free,
+            word: "free",
+            anchor: at([0.0; 3]),
+            axis: at([0.0, 0.0, 1.0]),
+            reference: 0.0,
+            limits: FileLimits::default(),
+            damping: None,
+            friction: None,
+            spread: None,
+        })
+    }
+
+    /// Sites with names are frames.
+    fn add_sites(&mut self, inside: &Inside<'a>, body: &str, cx: &mut Cx<'_>) {
+        for (site, outer) in &inside.sites {
+            let named = site.node.has_attribute("name").then(|| name(site.node, "name", cx)).flatten();
+            let pose = match site.numbers::<6>("fromto", cx) {
+                Some(ends) => {
+                    let [a, b, c, d, e, f] = ends.value;
+                    Pose { at: scale(add([a, b, c], [d, e, f]), 0.5), ..read_pose(site, &self.settings, cx) }
+                }
+                None => read_pose(site, &self.settings, cx),
+            };
+            if let Some(named) = named {
+                self.sites.push((named, body.to_string(), outer.then(&pose)));
+            }
+        }
+    }
+
+    fn place_sites(&mut self, cx: &mut Cx<'_>) {
+        for (mut site, body, pose) in std::mem::take(&mut self.sites) {
+            if self.robot.links.len() > 2 * MOST {
+                cx.error(&site.place, format!("more than {MOST} bodies and sites"), |d| d);
+                return;
+            }
+            if self.link_names.contains(&site.text) {
+                site.text = unused(&format!("{}_site", site.text), |name| self.link_names.contains(name));
+            }
+            self.link_names.insert(site.text.clone());
+            let text = unused(&format!("{}_weld", site.text), |name| self.joint_names.contains(name));
+            self.joint_names.insert(text.clone());
+            let joint = Name { text, place: site.place.clone() };
+            let parent = Name { text: body, place: site.place.clone() };
+            self.robot.joints.push(weld(joint, parent, site.clone(), &pose));
+            self.robot.links.push(bare_link(site));
+            self.masses.push(None);
+        }
+    }
+}
+
+/// Where the mass properties of a body are said.
+fn mass_place(inside: &Inside<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
+    place(inside.inertial.unwrap_or(node), cx)
+}
+
+/// A joint that holds.
+fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
+    let place = name.place.clone();
+    FileJoint {
+        name,
+        kind: JointKind::Weld,
+        word: "weld",
+        parent,
+        child,
+        origin: origin(pose, &place),
+        anchor: [0.0; 3],
+        axis: Placed { value: [0.0, 0.0, 1.0], place },
+        mimic: None,
+        held: None,
+        limits: FileLimits::default(),
+        damping: None,
+        friction: None,
+    }
+}
+
+/// A joint at its place: in the pose of the file its coordinate is not zero, but its reference.
+fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
+    let axis = joint.axis.value;
+    let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
+    match joint.kind {
+        JointKind::Pin if joint.reference != 0.0 => inner.axes = about(axis, -joint.reference),
+        JointKind::Sleeve => inner.at = add(inner.at, scale(axis, -joint.reference)),
+        _ => {}
+    }
+    let free = joint.kind == JointKind::Free;
+    let pose = if free {
+        Pose::ZERO
+    } else {
+        Pose { at: add(outer.at, apply(&outer.axes, inner.at)), axes: product(&outer.axes, &inner.axes) }
+    };
+    FileJoint {
+        origin: origin(&pose, &joint.anchor.place),
+        name: joint.name,
+        kind: joint.kind,
+        word: joint.word,
+        parent: carrier.clone(),
+        child: child.clone(),
+        anchor: if free { [0.0; 3] } else { joint.anchor.value },
+        axis: joint.axis,
+        mimic: None,
+        held: None,
+        limits: joint.limits,
+        damping: joint.damping,
+        friction: joint.friction,
+    }
+}
+
+fn origin(pose: &Pose, place: &Place) -> Origin {
+    let at = |value| Placed { value, place: place.clone() };
+    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
+}

@@ -1,0 +1,93 @@
+//! Positions and orientations of elements.
+
+use super::defaults::Element;
+use super::pose::{
+    IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
+};
+use super::settings::Settings;
+use crate::import::context::Cx;
+use crate::import::imported::Placed;
+
+/// The ways to say an orientation.
+pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// The pose that an element says.
+pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Pose {
+    let at = element.numbers("pos", cx).map_or([0.0; 3], |at| at.value);
+    Pose { at, axes: read_axes(element, settings, cx) }
+}
+
+/// The orientation that an element says.
+pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Matrix {
+    let Some(node) = element.with_any(&ORIENTATIONS) else { return IDENTITY };
+    let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
+    let [one] = said.as_slice() else {
+        let message = format!("an orientation is said once, but here are `{}`", said.join("` and `"));
+        cx.error(&element.place(said.first().copied().unwrap_or_default(), cx), message, |d| d);
+        return IDENTITY;
+    };
+    read_one(one, element, settings, cx).unwrap_or(IDENTITY)
+}
+
+fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<Matrix> {
+    match which {
+        "quat" => {
+            let quat = element.numbers::<4>("quat", cx)?;
+            let size = quat.value.iter().map(|x| x * x).sum::<f64>().sqrt();
+            check_length(size, "a quaternion", &quat, cx)?;
+            Some(of_quaternion(quat.value.map(|x| x / size)))
+        }
+        "axisangle" => {
+            let found = element.numbers::<4>("axisangle", cx)?;
+            let [x, y, z, angle] = found.value;
+            let size = length([x, y, z]);
+            check_length(size, "an axis", &found, cx)?;
+            Some(about(scale([x, y, z], 1.0 / size), settings.angle(angle)))
+        }
+        "euler" => {
+            let angles = element.numbers::<3>("euler", cx)?.value;
+            Some(settings.euler.iter().zip(angles).fold(IDENTITY, |whole, (axis, angle)| {
+                let unit = match axis.to_ascii_lowercase() {
+                    'x' => [1.0, 0.0, 0.0],
+                    'y' => [0.0, 1.0, 0.0],
+                    _ => [0.0, 0.0, 1.0],
+                };
+                let turn = about(unit, settings.angle(angle));
+                // About carried axes one turn stands behind the other, about fixed ones before it.
+                if axis.is_ascii_lowercase() { product(&whole, &turn) } else { product(&turn, &whole) }
+            }))
+        }
+        "xyaxes" => {
+            let found = element.numbers::<6>("xyaxes", cx)?;
+            let [a, b, c, d, e, f] = found.value;
+            let size = length([a, b, c]);
+            check_length(size, "the x axis", &found, cx)?;
+            let x = scale([a, b, c], 1.0 / size);
+            let y = add([d, e, f], scale(x, -dot(x, [d, e, f])));
+            let size = length(y);
+            check_length(size, "the y axis, without what it has of x,", &found, cx)?;
+            let y = scale(y, 1.0 / size);
+            Some(super::pose::transpose(&[x, y, cross(x, y)]))
+        }
+        _ => {
+            let z = element.numbers::<3>("zaxis", cx)?;
+            let size = length(z.value);
+            check_length(size, "the z axis", &z, cx)?;
+            Some(of_z(scale(z.value, 1.0 / size)))
+        }
+    }
+}
+
+/// Reports what has no direction.
+fn check_length<const N: usize>(
+    size: f64,
+    what: &str,
+    found: &Placed<[f64; N]>,
+    cx: &mut Cx<'_>,
+) -> Option<()> {
+    if size < 1e-14 || !size.is_finite() {
+        cx.error(&found.place, format!("{what} of length {size} has no direction"), |d| d);
+        return None;
+    }
+    Some(())
+}

@@ -1,0 +1,250 @@
+//! Mass properties of a body: those that it says, or those of its geometry.
+
+use super::defaults::{Defaults, Element};
+use super::frame::read_pose;
+use super::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
+use super::settings::{Settings, Source};
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, numbers, place};
+use std::f64::consts::PI;
+
+/// Mass properties in body axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mass {
+    /// Mass, kg.
+    pub(super) mass: f64,
+    /// Centre of mass, m.
+    pub(super) com: Vector,
+    /// Inertia about it, kg·m².
+    pub(super) inertia: Matrix,
+}
+
+/// Masses below this are none.
+const NOTHING: f64 = 1e-15;
+
+const DENSITY: f64 = 1000.0;
+
+/// Shapes without a volume.
+const FLAT: [&str; 2] = ["plane", "hfield"];
+
+impl Mass {
+    /// The same seen from the frame that this one has `pose` in.
+    pub(super) fn placed(&self, pose: &Pose) -> Mass {
+        Mass {
+            com: add(pose.at, super::pose::apply(&pose.axes, self.com)),
+            inertia: turned(&pose.axes, &self.inertia),
+            ..*self
+        }
+    }
+}
+
+/// Adds masses that are fixed to each other.
+pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
+    if let [one] = parts {
+        return Some(*one);
+    }
+    let mass: f64 = parts.iter().map(|part| part.mass).sum();
+    if mass <= 0.0 {
+        return None;
+    }
+    let com =
+        scale(parts.iter().fold([0.0; 3], |sum, part| add(sum, scale(part.com, part.mass))), 1.0 / mass);
+    let mut inertia = [[0.0; 3]; 3];
+    for part in parts {
+        let r = add(part.com, scale(com, -1.0));
+        for (i, row) in inertia.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let unit = if i == j { dot(r, r) } else { 0.0 };
+                *entry += part.inertia[i][j] + part.mass * (unit - r[i] * r[j]);
+            }
+        }
+    }
+    Some(Mass { mass, com, inertia })
+}
+
+/// Mass properties of a body, by `<inertial>` or by its geometry with the poses of that in the body.
+pub(super) fn of_body(
+    inertial: Option<Node<'_>>,
+    shapes: &[(Element<'_>, Pose)],
+    defaults: &Defaults<'_>,
+    pose: &Pose,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<Mass> {
+    let said = inertial.filter(|_| settings.source != Source::Geometry || shapes.is_empty());
+    let found = match said {
+        Some(node) => read_inertial(node, defaults, settings, cx),
+        None if settings.source == Source::Inertial => None,
+        None => {
+            let parts: Vec<Mass> = shapes
+                .iter()
+                .filter_map(|(shape, outer)| Some(of_shape(shape, settings, cx)?.placed(outer)))
+                .filter(|part| part.mass > NOTHING)
+                .collect();
+            sum(&parts)
+        }
+    };
+    bounded(found, pose, settings)
+}
+
+/// Mass and principal moments are at least what the file wants, and those of bodies that there can be, if it wants that.
+fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
+    if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
+        return found;
+    }
+    // MuJoCo puts the mass of a body that has none where its parent has the body itself.
+    let zero = Mass { mass: 0.0, com: pose.at, inertia: [[0.0; 3]; 3] };
+    let found = found.unwrap_or(zero);
+    let (moments, axes) = principal(&found.inertia);
+    let mut moments = moments.map(|moment| moment.max(settings.least_inertia));
+    let [a, b, c] = moments;
+    if settings.balance && (a + b < c || a + c < b || b + c < a) {
+        moments = [(a + b + c) / 3.0; 3];
+    }
+    let bounded = Mass { mass: found.mass.max(settings.least_mass), ..found };
+    Some(match moments == [a, b, c] && moments == principal(&found.inertia).0 {
+        true => bounded,
+        false => Mass { inertia: turned(&axes, &diagonal(moments)), ..bounded },
+    })
+}
+
+fn diagonal(moments: Vector) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { moments[i] } else { 0.0 }))
+}
+
+const INERTIAL: [&str; 9] =
+    ["pos", "mass", "diaginertia", "fullinertia", "quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// Reads `<inertial>`.
+fn read_inertial(
+    node: Node<'_>,
+    defaults: &Defaults<'_>,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<Mass> {
+    check_attributes(node, &["pos", "mass"], &INERTIAL, cx);
+    let element = defaults.element(node, &[], 0, cx);
+    let mass = element.number("mass", cx)?.value;
+    let Pose { at: com, axes } = read_pose(&element, settings, cx);
+    if let Some(full) = numbers::<6>(node, "fullinertia", cx) {
+        if node.has_attribute("diaginertia") {
+            cx.error(&full.place, "`fullinertia` and `diaginertia` of one body", |d| {
+                d.help("remove one of the two")
+            });
+        } else if axes != IDENTITY {
+            let help = "MuJoCo takes the axes of `fullinertia` for those of the body";
+            cx.error(&full.place, "`fullinertia` with an orientation", |d| d.help(help));
+        }
+        let [xx, yy, zz, xy, xz, yz] = full.value;
+        return Some(Mass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
+    }
+    let moments = numbers(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
+    Some(Mass { mass, com, inertia: turned(&axes, &diagonal(moments)) })
+}
+
+/// Mass properties of a shape in its body's axes; nothing of one without mass.
+fn of_shape(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<Mass> {
+    let group = shape.number("group", cx).map_or(0.0, |group| group.value);
+    if group < settings.groups[0] || group > settings.groups[1] {
+        return None;
+    }
+    let said = shape.number("mass", cx).map(|mass| mass.value);
+    let density = shape.number("density", cx).map_or(DENSITY, |density| density.value);
+    let kind = shape.text("type").unwrap_or("sphere");
+    if said == Some(0.0) || (said.is_none() && density == 0.0) || FLAT.contains(&kind) {
+        return None;
+    }
+    if shape.choice("shellinertia", cx) == Some(true) {
+        return refuse(shape, "`shellinertia`", cx);
+    }
+    if shape.with("mesh").is_some() || kind == "mesh" || kind == "sdf" {
+        return refuse(shape, "a mesh", cx);
+    }
+    let (pose, half) = extent(shape, settings, cx)?;
+    let size = shape.some("size", [0.0; 3], cx);
+    let [x, y, z] = size.as_ref().map_or([0.0; 3], |size| size.value);
+    // Between two points, what is not round is square.
+    let y = if half.is_some() { x } else { y };
+    let z = match kind {
+        // The half length stands second where a shape is round.
+        "capsule" | "cylinder" => half.unwrap_or(y),
+        _ => half.unwrap_or(z),
+    };
+    let used: &[f64] = match kind {
+        "sphere" => &[x],
+        "capsule" | "cylinder" => &[x, z],
+        "box" | "ellipsoid" => &[x, y, z],
+        _ => {
+            let known = ["sphere", "capsule", "cylinder", "ellipsoid", "box", "mesh", "plane", "hfield"];
+            let message = format!("unknown shape {}", quote(kind));
+            cx.error(&shape.place("type", cx), message, |d| d.suggest(kind, known));
+            return None;
+        }
+    };
+    if used.iter().any(|length| *length <= 0.0) {
+        let message = format!(
+            "a `{kind}` of size `{}` has no volume",
+            used.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+        );
+        cx.error(&shape.place("size", cx), message, |d| d.help("expected half lengths and radii above zero"));
+        return None;
+    }
+    let (volume, moments) = solid(kind, [x, y, z]);
+    let mass = said.unwrap_or(density * volume);
+    let inertia = diagonal(scale(moments, mass));
+    Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
+}
+
+/// Where a shape is, and its half length, if both are said by two points.
+fn extent(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<(Pose, Option<f64>)> {
+    let Some(ends) = shape.numbers::<6>("fromto", cx) else {
+        return Some((read_pose(shape, settings, cx), None));
+    };
+    let [a, b, c, d, e, f] = ends.value;
+    let along = [a - d, b - e, c - f];
+    let size = length(along);
+    if size < 1e-14 {
+        cx.error(&ends.place, "`fromto` from a point to itself", |d| d.help("expected two points"));
+        return None;
+    }
+    let at = scale(add([a, b, c], [d, e, f]), 0.5);
+    Some((Pose { at, axes: of_z(scale(along, 1.0 / size)) }, Some(size / 2.0)))
+}
+
+/// Volume, and moments of inertia of the unit mass, of a solid with these half lengths.
+fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
+    let round = |xx: f64, zz: f64| [xx, xx, zz];
+    match kind {
+        "sphere" => (4.0 / 3.0 * PI * x.powi(3), [0.4 * x * x; 3]),
+        "capsule" => {
+            let height = 2.0 * z;
+            let (ball, tube) = (4.0 / 3.0 * PI * x.powi(3), PI * x * x * height);
+            let volume = ball + tube;
+            let (ball, tube) = (ball / volume, tube / volume);
+            let across = tube * (3.0 * x * x + height * height) / 12.0;
+            let caps = ball * (0.4 * x * x + height * (3.0 * x + 2.0 * height) / 8.0);
+            (volume, round(across + caps, tube * x * x / 2.0 + ball * 0.4 * x * x))
+        }
+        "cylinder" => {
+            let height = 2.0 * z;
+            (PI * x * x * height, round((3.0 * x * x + height * height) / 12.0, x * x / 2.0))
+        }
+        "ellipsoid" => {
+            let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
+            (4.0 / 3.0 * PI * x * y * z, scale(moments, 0.2))
+        }
+        _ => {
+            let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
+            (8.0 * x * y * z, scale(moments, 1.0 / 3.0))
+        }
+    }
+}
+
+/// Reports a shape whose mass properties are not computed.
+fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
+    let message = format!("the mass properties of {what} are not computed");
+    cx.error(&place(shape.node, cx), message, |d| d.help(NEEDS_INERTIAL));
+    None
+}
+
+const NEEDS_INERTIAL: &str = "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them";

@@ -1,0 +1,184 @@
+//! `<include file="…"/>` → one text, of pieces that know from which file they are.
+//!
+//! Each file is parsed on its own first, so that what is wrong with one is told at its own place; and each stands once, so that
+//! the whole is never longer than all files together.
+
+use crate::diag::Diagnostics;
+use crate::import::context::{Cx, Piece, position, quote};
+use crate::import::element::{Node, check_attributes, name};
+use crate::import::{LARGEST_FILE, file, xml};
+use crate::syntax::{FileFormat, Name};
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+
+/// Files that include one another, each in the next.
+const DEEPEST: usize = 32;
+/// Files of one mechanism.
+const MOST: usize = 256;
+
+/// A file that was read.
+pub(super) struct Read {
+    /// Its text.
+    pub(super) text: String,
+    /// Its path, as a message names it.
+    pub(super) shown: String,
+    /// Where it is.
+    pub(super) path: PathBuf,
+}
+
+/// The files, and the text that they make.
+pub(super) struct Whole {
+    /// The first one is the file that the user names.
+    pub(super) files: Vec<Read>,
+    /// The text.
+    pub(super) text: String,
+    /// What of it comes from which file.
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// What is still to be copied, last first.
+enum Step {
+    /// Bytes of a file.
+    Copy { file: usize, from: usize, to: usize },
+    /// What another file has inside its root, and how deep it is included.
+    Include { by: usize, at: Name, depth: usize },
+    /// The file is through: what includes it again does so twice, not in a circle.
+    Leave,
+}
+
+/// Reads a file with all that it includes.
+pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
+    let first = Read { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
+    let mut whole = Whole { files: vec![first], text: String::new(), pieces: Vec::new() };
+    let mut places = vec![name.clone()];
+    let mut open = vec![0];
+    let mut steps = scan(&whole.files, 0, name, true, 0, cx)?;
+    while let Some(step) = steps.pop() {
+        match step {
+            Step::Copy { file, from, to } => whole.copy(file, from, to, name, cx)?,
+            Step::Leave => {
+                open.pop();
+            }
+            Step::Include { by, at, depth } => {
+                let found = find(&whole.files, by, &at, cx)?;
+                if let Some(known) = whole.files.iter().position(|read| read.path == found.path) {
+                    report_again(known, &open, &whole.files, &places, &at, cx);
+                    return None;
+                }
+                if depth > DEEPEST || whole.files.len() >= MOST {
+                    let what = if depth > DEEPEST { "files inside one another" } else { "included files" };
+                    let most = if depth > DEEPEST { DEEPEST } else { MOST };
+                    cx.error(at.place, format!("more than {most} {what}"));
+                    return None;
+                }
+                let file = whole.files.len();
+                whole.files.push(found);
+                places.push(at.clone());
+                open.push(file);
+                steps.push(Step::Leave);
+                steps.extend(scan(&whole.files, file, &at, false, depth, cx)?);
+            }
+        }
+    }
+    Some(whole)
+}
+
+impl Whole {
+    fn copy(&mut self, file: usize, from: usize, to: usize, name: &Name, cx: &mut Diagnostics) -> Option<()> {
+        let piece = self.files.get(file)?.text.get(from..to)?;
+        self.pieces.push(Piece { start: self.text.len(), file, offset: from });
+        self.text.push_str(piece);
+        if self.text.len() > LARGEST_FILE {
+            file::report(&file::too_large(self.text.len() as u64), name, cx);
+            return None;
+        }
+        Some(())
+    }
+}
+
+fn report_again(
+    known: usize,
+    open: &[usize],
+    files: &[Read],
+    places: &[Name],
+    at: &Name,
+    cx: &mut Diagnostics,
+) {
+    let shown = files.get(known).map_or("", |read| read.shown.as_str());
+    if open.contains(&known) {
+        let error = cx.error(at.place.clone(), format!("{} includes itself", quote(shown)));
+        let rest = open.iter().skip_while(|file| **file != known).skip(1);
+        for by in rest.filter_map(|file| places.get(*file)) {
+            error.help(format!("by way of {} at {}", quote(&by.text), position(&by.place)));
+        }
+        return;
+    }
+    let first = places.get(known).map(|by| position(&by.place)).unwrap_or_default();
+    cx.error(at.place.clone(), format!("{} is included twice", quote(shown)))
+        .help(format!("the first time is at {first}; MJCF takes a file once: copy it under another name"));
+}
+
+/// The pieces of a file, last first: the whole of it, or what its root holds.
+fn scan(
+    files: &[Read],
+    file: usize,
+    name: &Name,
+    entire: bool,
+    depth: usize,
+    cx: &mut Diagnostics,
+) -> Option<Vec<Step>> {
+    let read = files.get(file)?;
+    let shown = Name { text: read.shown.clone(), place: name.place.clone() };
+    let cx = &mut Cx::new(&read.text, &shown, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(&read.text, &declared, FileFormat::Mjcf, cx)?;
+    let root = document.root_element();
+    if declared.get().is_some() {
+        let message = "prefixes of names are not declared";
+        cx.error(&cx.place(root.range().start), message, |d| d.help("MJCF has none"));
+        return None;
+    }
+    let mut at = if entire { 0 } else { root.first_child().map_or(0, |child| child.range().start) };
+    let end = match entire {
+        true => read.text.len(),
+        false => root.last_child().map_or(0, |child| child.range().end),
+    };
+    let mut steps = Vec::new();
+    for node in root.descendants().filter(|node| is_include(*node)) {
+        check_attributes(node, &["file"], &[], cx);
+        let written = self::name(node, "file", cx)?;
+        steps.push(Step::Copy { file, from: at, to: node.range().start });
+        steps.push(Step::Include { by: file, at: written, depth: depth + 1 });
+        at = node.range().end;
+    }
+    steps.push(Step::Copy { file, from: at, to: end });
+    steps.reverse();
+    (!cx.failed()).then_some(steps)
+}
+
+fn is_include(node: Node<'_>) -> bool {
+    node.is_element() && node.tag_name().name() == "include"
+}
+
+/// Reads an included file: beside the one that the user names, or else beside the one that includes it.
+fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Read> {
+    let beside = |file: usize| {
+        let read = files.get(file)?;
+        let shown = Path::new(&read.shown).with_file_name(&at.text);
+        Some((read.path.with_file_name(&at.text), shown.to_string_lossy().into_owned()))
+    };
+    let first = beside(0)?;
+    let (path, shown) = match beside(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
+        Some(other) => other,
+        None => first,
+    };
+    let name = Name { text: shown.clone(), place: at.place.clone() };
+    let text = file::read_named(&path, &name, FileFormat::Mjcf, cx)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\0').to_string();
+    Some(Read { text, shown, path: plain(&path) })
+}
+
+/// A path without detours, so that one file has one.
+fn plain(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
+}

@@ -1,0 +1,227 @@
+//! `<mujoco>` → bodies and joints in coordinate order.
+//!
+//! What would change the equations of motion without contact is taken over, or is a mistake at its place; what would not is left
+//! out, and the generated documentation lists it.
+
+use super::context::{Cx, quote};
+use super::element::{Node, elements, place, tag};
+use super::xml;
+use crate::diag::Diagnostics;
+use crate::import::imported::Imported;
+use crate::import::robot::{self, Order};
+use crate::syntax::{DriveLaw, Expr, FileFormat, FileOptions, GROUND, JointKind};
+use defaults::Defaults;
+use reader::Reader;
+use settings::Settings;
+use std::cell::OnceCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+mod actuator;
+mod body;
+mod defaults;
+mod equality;
+mod frame;
+mod geometry;
+mod include;
+mod joint;
+mod pose;
+mod reader;
+mod settings;
+mod tendon;
+
+/// What a file may hold.
+const SECTIONS: [&str; 18] = [
+    "compiler",
+    "option",
+    "size",
+    "visual",
+    "statistic",
+    "default",
+    "custom",
+    "extension",
+    "asset",
+    "worldbody",
+    "contact",
+    "deformable",
+    "equality",
+    "tendon",
+    "actuator",
+    "sensor",
+    "keyframe",
+    "include",
+];
+
+/// Sections that the motion does not depend on, and what they hold.
+const ASIDE: [(&str, &str); 3] =
+    [("contact", "pairs and exceptions of contact"), ("sensor", "sensors"), ("keyframe", "keyframes")];
+
+/// Reads the text of the file at `path`.
+pub(super) fn import(
+    text: &str,
+    path: &Path,
+    options: &FileOptions,
+    cx: &mut Diagnostics,
+) -> Option<Imported> {
+    let whole = include::read_whole(text, path, &options.path, cx)?;
+    let files: Vec<(&str, &str)> =
+        whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
+    let cx = &mut Cx::of_pieces(&files, whole.pieces, options.path.place.span, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(&whole.text, &declared, FileFormat::Mjcf, cx)?;
+    let mut imported = read(document.root_element(), options, cx)?;
+    imported.files = whole.files.into_iter().skip(1).map(|file| file.path).collect();
+    Some(imported)
+}
+
+fn read(root: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+    if !check_root(root, cx) {
+        return None;
+    }
+    for node in elements(root) {
+        check_section(node, cx);
+    }
+    let settings = Settings::read(root, cx);
+    let defaults = Defaults::read(root, cx);
+    let mut reader = Reader::new(options, settings, defaults);
+    check_medium(&reader, cx);
+    reader.read_world(root, cx)?;
+    reader.scale_masses();
+    robot::check_names(&reader.robot, cx);
+    let tendons = reader.tendons(root, cx);
+    reader.equalities(root, &tendons, cx);
+    reader.actuators(root, &tendons, cx);
+    for (section, what) in ASIDE {
+        let nodes = elements(root).filter(|node| node.tag_name().name() == section);
+        reader.count(what, nodes.map(|node| elements(node).count()).sum());
+    }
+    let gravity = &reader.settings.gravity;
+    reader.robot.gravity = Some(Expr::vector(gravity.value, &gravity.place));
+    reader.robot.left_out = left_out(&reader);
+    finish(reader, options, cx)
+}
+
+/// Puts together what was read.
+fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+    let mut robot = reader.robot;
+    robot::check_locks(&robot.joints, &options.lock, cx);
+    check_finite(&robot, cx);
+    if cx.failed() {
+        return None;
+    }
+    if let Some(tolerance) = options.snap {
+        robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();
+    }
+    let motions = robot::resolve_motions(&robot.joints, &options.lock, cx)?;
+    let links: BTreeMap<&str, usize> =
+        robot.links.iter().enumerate().map(|(k, link)| (link.name.text.as_str(), k)).collect();
+    let children = robot.joints.iter().enumerate();
+    let joints =
+        children.filter_map(|(k, joint)| Some((k, *links.get(joint.child.text.as_str())?))).collect();
+    let order = Order { root: 0, joints };
+    let standing = standing(&robot, options);
+    let closing = std::mem::take(&mut robot.closing);
+    let mut imported = robot::assemble(robot, &order, motions, options, cx);
+    robot::make_fields(&mut imported, &standing, options, cx);
+    imported.joints.extend(closing);
+    (!cx.failed()).then_some(imported)
+}
+
+/// Reports what overflows: products of numbers that are each fine.
+fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
+    let literals = |e: &Expr| e.parts().into_iter().filter_map(Expr::literal).all(f64::is_finite);
+    for link in &robot.links {
+        if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(literals) {
+            let message = format!(
+                "body {} is too large, too heavy or too far away for numbers",
+                quote(&link.name.text)
+            );
+            cx.error(&link.name.place, message, |d| d);
+        }
+    }
+    for joint in &robot.joints {
+        if !joint.origin.xyz.value.iter().chain(&joint.origin.rpy.value).all(|x| x.is_finite()) {
+            let message = format!("joint {} is too far away for numbers", quote(&joint.name.text));
+            cx.error(&joint.name.place, message, |d| d);
+        }
+    }
+    for drive in &robot.drives {
+        let law = match drive.law {
+            DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
+            DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
+                x.is_finite()
+            }
+            DriveLaw::Input(_) => true,
+        };
+        if !law || !drive.terms.iter().all(|(_, weight)| weight.is_finite()) {
+            let message = format!("a force of {} is too large for numbers", quote(&drive.name.text));
+            cx.error(&drive.name.place, message, |d| d);
+        }
+    }
+}
+
+/// Names of the links that nothing lets move.
+fn standing(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
+    let mut standing = BTreeSet::from([GROUND]);
+    for joint in &robot.joints {
+        let held =
+            joint.kind == JointKind::Weld || options.lock.iter().any(|lock| lock.text == joint.name.text);
+        if held && standing.contains(joint.parent.text.as_str()) {
+            standing.insert(&joint.child.text);
+        }
+    }
+    standing.into_iter().map(str::to_string).collect()
+}
+
+/// True if the file is one of MuJoCo's.
+fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
+    let name = node.tag_name().name();
+    if name == "mujoco" {
+        return true;
+    }
+    let message = format!("expected `<mujoco>`, found {}", tag(node));
+    cx.error(&place(node, cx), message, |d| match name {
+        "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
+        "sdf" => {
+            d.help("this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot")
+        }
+        "mujocoinclude" => d.help("this is a part of a model: name the file that includes it"),
+        _ => d.suggest(name, ["mujoco"]),
+    });
+    false
+}
+
+fn check_section(node: Node<'_>, cx: &mut Cx<'_>) {
+    let name = node.tag_name().name();
+    if name == "deformable" && elements(node).next().is_some() {
+        cx.error(&place(node, cx), "deformable bodies are not supported", |d| {
+            d.help("remove `<deformable>`")
+        });
+    }
+    if !SECTIONS.contains(&name) {
+        let message = format!("unknown element {}", tag(node));
+        cx.error(&place(node, cx), message, |d| d.suggest(name, SECTIONS));
+    }
+}
+
+fn check_medium(reader: &Reader<'_>, cx: &mut Cx<'_>) {
+    for (which, place) in reader.settings.medium.iter().filter(|_| reader.passive) {
+        let message = format!("the `{which}` of a medium that bodies move through is not supported");
+        cx.error(place, message, |d| d.help(joint::IGNORE_PASSIVE));
+    }
+}
+
+/// What the generated documentation lists.
+fn left_out(reader: &Reader<'_>) -> Vec<String> {
+    let mut lines: Vec<String> = reader
+        .counts
+        .iter()
+        .filter(|(_, count)| **count > 0)
+        .map(|(what, count)| match what.starts_with("geometry") {
+            true => format!("{what}, for contact: {count} shapes"),
+            false => format!("{what}: {count}"),
+        })
+        .collect();
+    lines.extend(reader.left_out.iter().cloned());
+    lines
+}

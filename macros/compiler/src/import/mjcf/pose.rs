@@ -1,0 +1,206 @@
+//! Rotations and positions as numbers.
+
+use std::f64::consts::FRAC_PI_2;
+
+/// A vector.
+pub(super) type Vector = [f64; 3];
+
+/// A matrix by rows; of a rotation, its columns are the carried axes.
+pub(super) type Matrix = [[f64; 3]; 3];
+
+/// No rotation.
+pub(super) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// What rounding leaves of zero.
+const ROUNDING: f64 = 1e-15;
+
+/// A frame in another one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    /// Its origin.
+    pub(super) at: Vector,
+    /// Its axes.
+    pub(super) axes: Matrix,
+}
+
+impl Pose {
+    /// The other frame itself.
+    pub(super) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
+
+    /// The pose in the outer frame of what has `inner` in this one.
+    pub(super) fn then(&self, inner: &Pose) -> Pose {
+        Pose { at: add(self.at, apply(&self.axes, inner.at)), axes: product(&self.axes, &inner.axes) }
+    }
+}
+
+/// The sum of vectors.
+pub(super) fn add(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// A vector times a number.
+pub(super) fn scale(a: Vector, factor: f64) -> Vector {
+    a.map(|x| x * factor)
+}
+
+/// The scalar product.
+pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector product.
+pub(super) fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The length of a vector.
+pub(super) fn length(a: Vector) -> f64 {
+    a[0].hypot(a[1]).hypot(a[2])
+}
+
+/// A matrix times a vector.
+pub(super) fn apply(m: &Matrix, v: Vector) -> Vector {
+    m.map(|row| dot(row, v))
+}
+
+/// A product of matrices.
+pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let columns = transpose(b);
+    a.map(|row| columns.map(|column| dot(row, column)))
+}
+
+/// The transpose.
+pub(super) fn transpose(m: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+}
+
+/// A symmetric matrix in the axes in which `m` is a rotation: `m s mᵀ`.
+pub(super) fn turned(m: &Matrix, s: &Matrix) -> Matrix {
+    product(&product(m, s), &transpose(m))
+}
+
+/// The rotation of a quaternion w, x, y, z of unit length.
+pub(super) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
+    [
+        [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+}
+
+/// The rotation about an axis of unit length.
+pub(super) fn about(axis: Vector, angle: f64) -> Matrix {
+    let (s, c) = sin_cos(angle);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let skew = if i == j {
+                0.0
+            } else if (i + 1) % 3 == j {
+                -axis[3 - i - j]
+            } else {
+                axis[3 - i - j]
+            };
+            let unit = if i == j { c } else { 0.0 };
+            unit + s * skew + (1.0 - c) * axis[i] * axis[j]
+        })
+    })
+}
+
+/// Sine and cosine, exact at right angles.
+fn sin_cos(angle: f64) -> (f64, f64) {
+    let (s, c) = angle.sin_cos();
+    let zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
+    (zero(s), zero(c))
+}
+
+/// The shortest rotation that takes z to a direction.
+pub(super) fn of_z(direction: Vector) -> Matrix {
+    let axis = cross([0.0, 0.0, 1.0], direction);
+    let size = length(axis);
+    let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale(axis, 1.0 / size) };
+    about(axis, size.atan2(direction[2]))
+}
+
+/// Roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. One turn after the other is taken off, so that
+/// nothing is lost where two axes meet.
+pub(super) fn roll_pitch_yaw(m: &Matrix) -> Vector {
+    let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
+    let upright = m[0][0].hypot(m[1][0]) < 1e-12;
+    let yaw = if upright { 0.0 } else { round(m[1][0].atan2(m[0][0])) };
+    m = product(&about([0.0, 0.0, 1.0], -yaw), &m);
+    let pitch = round((-m[2][0]).atan2(m[0][0]));
+    m = product(&about([0.0, 1.0, 0.0], -pitch), &m);
+    let roll = round(m[2][1].atan2(m[1][1]));
+    [roll, pitch, yaw]
+}
+
+/// A right angle where rounding misses it.
+fn round(angle: f64) -> f64 {
+    let right = (angle / FRAC_PI_2).round() * FRAC_PI_2;
+    // Adding zero turns −0 into 0.
+    if (angle - right).abs() < ROUNDING { right + 0.0 } else { angle }
+}
+
+/// Eigenvalues of a symmetric matrix, and its eigenvectors as columns: Jacobi's method.
+pub(super) fn principal(s: &Matrix) -> (Vector, Matrix) {
+    let (mut s, mut axes) = (*s, IDENTITY);
+    for _ in 0..64 {
+        let largest = [(0, 1), (0, 2), (1, 2)]
+            .into_iter()
+            .max_by(|a, b| s[a.0][a.1].abs().total_cmp(&s[b.0][b.1].abs()));
+        let Some((i, j)) = largest.filter(|(i, j)| s[*i][*j] != 0.0) else { break };
+        let angle = 0.5 * (2.0 * s[i][j]).atan2(s[j][j] - s[i][i]);
+        let (sin, cos) = angle.sin_cos();
+        let mut turn = IDENTITY;
+        (turn[i][i], turn[j][j], turn[i][j], turn[j][i]) = (cos, cos, sin, -sin);
+        s = product(&product(&transpose(&turn), &s), &turn);
+        (s[i][j], s[j][i]) = (0.0, 0.0);
+        axes = product(&axes, &turn);
+    }
+    ([s[0][0], s[1][1], s[2][2]], axes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: &Matrix, b: &Matrix) -> bool {
+        a.iter().flatten().zip(b.iter().flatten()).all(|(x, y)| (x - y).abs() < 4e-15)
+    }
+
+    fn of_rpy([roll, pitch, yaw]: Vector) -> Matrix {
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        product(&product(&about(z, yaw), &about(y, pitch)), &about(x, roll))
+    }
+
+    #[test]
+    fn angles_of_a_rotation_give_it_back_even_where_two_axes_meet() {
+        let angles = [0.0, 1e-9, 0.3, FRAC_PI_2 - 1e-9, FRAC_PI_2, 2.5, -FRAC_PI_2, -3.0];
+        for roll in angles {
+            for pitch in angles {
+                for yaw in angles {
+                    let m = of_rpy([roll, pitch, yaw]);
+                    assert!(near(&of_rpy(roll_pitch_yaw(&m)), &m), "{roll} {pitch} {yaw}");
+                }
+            }
+        }
+        assert_eq!(roll_pitch_yaw(&of_quaternion([0.5, 0.5, 0.5, 0.5])), [FRAC_PI_2, 0.0, FRAC_PI_2]);
+    }
+
+    #[test]
+    fn quaternions_and_turns_about_an_axis_agree() {
+        let (axis, angle) = (scale([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
+        let [x, y, z] = scale(axis, (angle / 2.0).sin());
+        assert!(near(&about(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
+        assert!((apply(&of_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn principal_axes_make_the_matrix_diagonal() {
+        let s = [[3.0, 0.4, -0.2], [0.4, 2.0, 0.1], [-0.2, 0.1, 5.0]];
+        let (values, axes) = principal(&s);
+        let diagonal: Matrix =
+            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { values[i] } else { 0.0 }));
+        assert!(near(&turned(&axes, &diagonal), &s));
+    }
+}

@@ -1,0 +1,212 @@
+//! `<compiler>` and `<option>`: how the rest of the file is to be read.
+
+use super::defaults::{choice, some};
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, elements, number, numbers, place};
+use crate::import::imported::Placed;
+
+/// Where mass properties come from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// From `<inertial>`, and from the geometry of bodies without.
+    Auto,
+    /// From the geometry.
+    Geometry,
+    /// From `<inertial>`.
+    Inertial,
+}
+
+/// What holds for the whole file.
+pub(super) struct Settings {
+    /// Angles are in degrees.
+    pub(super) degrees: bool,
+    /// Order of Euler angles: axes, capital if fixed.
+    pub(super) euler: [char; 3],
+    /// What has a range is limited.
+    pub(super) autolimits: bool,
+    /// Where mass properties come from.
+    pub(super) source: Source,
+    /// Groups of geometry that have mass.
+    pub(super) groups: [f64; 2],
+    /// Inertias that no body can have become those of balls.
+    pub(super) balance: bool,
+    /// Least mass of a body.
+    pub(super) least_mass: f64,
+    /// Least principal moment of a body.
+    pub(super) least_inertia: f64,
+    /// Mass of all bodies together.
+    pub(super) total_mass: Option<f64>,
+    /// Folder of meshes.
+    pub(super) meshes: String,
+    /// Gravity.
+    pub(super) gravity: Placed<[f64; 3]>,
+    /// What pushes bodies through a medium: its density, viscosity and wind.
+    pub(super) medium: Vec<(&'static str, Place)>,
+    /// Springs, dampers and friction are on.
+    pub(super) passive: bool,
+    /// Friction is on.
+    pub(super) friction: bool,
+    /// Couplings and loops are on.
+    pub(super) equality: bool,
+    /// Actuators are on.
+    pub(super) actuation: bool,
+}
+
+const COMPILER: [&str; 20] = [
+    "angle",
+    "eulerseq",
+    "autolimits",
+    "inertiafromgeom",
+    "inertiagrouprange",
+    "balanceinertia",
+    "boundmass",
+    "boundinertia",
+    "settotalmass",
+    "meshdir",
+    "assetdir",
+    "coordinate",
+    "fusestatic",
+    "discardvisual",
+    "texturedir",
+    "strippath",
+    "usethread",
+    "fitaabb",
+    "alignfree",
+    "exactmeshinertia",
+];
+
+impl Settings {
+    /// Reads all `<compiler>` and `<option>` elements of the root.
+    pub(super) fn read(root: Node<'_>, cx: &mut Cx<'_>) -> Settings {
+        let mut all = Settings {
+            degrees: true,
+            euler: ['x', 'y', 'z'],
+            autolimits: true,
+            source: Source::Auto,
+            groups: [0.0, 5.0],
+            balance: false,
+            least_mass: 0.0,
+            least_inertia: 0.0,
+            total_mass: None,
+            meshes: String::new(),
+            gravity: Placed { value: [0.0, 0.0, -9.81], place: place(root, cx) },
+            medium: Vec::new(),
+            passive: true,
+            friction: true,
+            equality: true,
+            actuation: true,
+        };
+        for node in elements(root) {
+            match node.tag_name().name() {
+                "compiler" => all.read_compiler(node, cx),
+                "option" => all.read_option(node, cx),
+                _ => {}
+            }
+        }
+        all
+    }
+
+    fn read_compiler(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+        check_attributes(node, &[], &COMPILER, cx);
+        let word = |attribute: &str| node.attribute(attribute).map(str::trim);
+        let mut unknown = |attribute: &str, expected: &str| {
+            let value = node.attribute_node(attribute);
+            let at = value.map_or(node.range().start, |value| value.range_value().start);
+            let found = quote(node.attribute(attribute).unwrap_or_default());
+            let message = format!("unknown `{attribute}` {found}");
+            cx.error(&cx.place(at), message, |d| d.help(format!("expected {expected}")));
+        };
+        match word("angle") {
+            Some("radian") => self.degrees = false,
+            Some("degree") => self.degrees = true,
+            Some(_) => unknown("angle", "`degree` or `radian`"),
+            None => {}
+        }
+        if word("coordinate").is_some_and(|word| word != "local") {
+            unknown(
+                "coordinate",
+                "`local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
+            );
+        }
+        if let Some(order) = word("eulerseq") {
+            let mut axes = order.chars();
+            match [axes.next(), axes.next(), axes.next(), axes.next()] {
+                [Some(a), Some(b), Some(c), None]
+                    if [a, b, c].iter().all(|axis| "xyzXYZ".contains(*axis)) =>
+                {
+                    self.euler = [a, b, c];
+                }
+                _ => unknown("eulerseq", "three letters of `x`, `y`, `z`, capital about fixed axes"),
+            }
+        }
+        if let Some(word) = word("inertiafromgeom") {
+            match word {
+                "auto" => self.source = Source::Auto,
+                "true" => self.source = Source::Geometry,
+                "false" => self.source = Source::Inertial,
+                _ => unknown("inertiafromgeom", "`true`, `false` or `auto`"),
+            }
+        }
+        self.autolimits = choice(node, "autolimits", cx).unwrap_or(self.autolimits);
+        self.balance = choice(node, "balanceinertia", cx).unwrap_or(self.balance);
+        if choice(node, "alignfree", cx) == Some(true) {
+            let message = "`alignfree` moves the axes of bodies, which is not supported";
+            cx.error(&place(node, cx), message, |d| d.help("remove it: the motion is the same in any axes"));
+        }
+        if let Some(groups) = numbers(node, "inertiagrouprange", cx) {
+            self.groups = groups.value;
+        }
+        let mut set = |attribute: &str, to: &mut f64| {
+            if let Some(found) = number(node, attribute, cx) {
+                *to = found.value;
+            }
+        };
+        set("boundmass", &mut self.least_mass);
+        set("boundinertia", &mut self.least_inertia);
+        self.total_mass = number(node, "settotalmass", cx)
+            .map(|mass| mass.value)
+            .or(self.total_mass)
+            .filter(|mass| *mass > 0.0);
+        if let Some(folder) = word("assetdir").filter(|_| word("meshdir").is_none()) {
+            self.meshes = folder.to_string();
+        }
+        if let Some(folder) = word("meshdir") {
+            self.meshes = folder.to_string();
+        }
+    }
+
+    fn read_option(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+        if let Some(gravity) = numbers(node, "gravity", cx) {
+            self.gravity = gravity;
+        }
+        for which in ["density", "viscosity", "wind"] {
+            let Some(found) = some(node, which, [0.0; 3], cx) else { continue };
+            self.medium.retain(|(known, _)| *known != which);
+            if found.value != [0.0; 3] {
+                self.medium.push((which, found.place));
+            }
+        }
+        for flag in elements(node).filter(|child| child.tag_name().name() == "flag") {
+            let mut set = |attribute: &str, to: &mut bool| *to = choice(flag, attribute, cx).unwrap_or(*to);
+            set("passive", &mut self.passive);
+            set("frictionloss", &mut self.friction);
+            set("equality", &mut self.equality);
+            set("actuation", &mut self.actuation);
+            let mut gravity = true;
+            set("gravity", &mut gravity);
+            if !gravity {
+                self.gravity.value = [0.0; 3];
+            }
+        }
+        // Wind does nothing without a medium.
+        if self.medium.iter().all(|(which, _)| *which == "wind") {
+            self.medium.clear();
+        }
+    }
+
+    /// An angle of the file, rad.
+    pub(super) fn angle(&self, angle: f64) -> f64 {
+        if self.degrees { angle.to_radians() } else { angle }
+    }
+}

@@ -1,0 +1,35 @@
+//! Force elements on coordinates, after locks: what stands still adds no force, but its share of a length.
+
+use super::joint::FileJoint;
+use super::motion::Motion;
+use crate::syntax::{Drive, DriveLaw};
+use std::collections::BTreeMap;
+
+/// The elements on what still moves. An input on nothing stays: programs count on its entry.
+pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
+    let frozen: BTreeMap<&str, f64> = joints
+        .iter()
+        .flatten()
+        .filter_map(|(joint, motion)| match motion {
+            Motion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
+            _ => None,
+        })
+        .collect();
+    drives.into_iter().filter_map(|drive| without(drive, &frozen)).collect()
+}
+
+/// The element without the joints that stand still.
+fn without(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
+    let mut offset = 0.0;
+    drive.terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {
+        Some(at) => {
+            offset += weight * at;
+            false
+        }
+        None => true,
+    });
+    if let DriveLaw::Spring { free, .. } = &mut drive.law {
+        *free -= offset;
+    }
+    (!drive.terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
+}

@@ -1,0 +1,28 @@
+//! A robot as its file says, whatever its format → bodies and joints in coordinate order.
+//!
+//! Importers read a file into a [`Robot`]; names, locks, followers and the order of coordinates are looked at here. Knows no XML.
+
+mod assemble;
+mod collision;
+mod drives;
+mod figures;
+mod joint;
+mod limit;
+mod motion;
+mod names;
+mod origin;
+mod parts;
+mod snap;
+mod tree;
+
+pub(super) use assemble::assemble;
+pub(super) use collision::FileCollision;
+pub(super) use figures::make_fields;
+pub(super) use joint::{FileJoint, has_axis, has_coordinate};
+pub(super) use limit::{FileLimits, IGNORE_LIMITS};
+pub(super) use motion::resolve_motions;
+pub(super) use names::{check_ends, check_locks, check_names, declare_world, rename_ground, unused};
+pub(super) use origin::Origin;
+pub(super) use parts::{MOST, Robot, bare_link};
+pub(super) use snap::snap;
+pub(super) use tree::{Order, order_joints};

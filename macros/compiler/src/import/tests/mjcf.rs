@@ -1,0 +1,377 @@
+//! MJCF: what is made of it, and what is said of files with mistakes.
+
+use super::*;
+use std::fs;
+use std::path::PathBuf;
+
+fn mjcf() -> FileOptions {
+    FileOptions {
+        format: FileFormat::Mjcf,
+        path: name("r.xml"),
+        inputs: InputOption::Actuators,
+        ..defaults()
+    }
+}
+
+/// What a file with these elements gives; the second line begins with them.
+fn check_model(inside: &str, expected: &str) {
+    check_with(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
+}
+
+/// What a body of a file gives.
+fn check_body(inside: &str, expected: &str) {
+    check_model(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
+}
+
+const BALL: &str = "<geom size='.1' mass='1'/>";
+
+#[test]
+fn joints_of_a_body_stand_one_after_the_other() {
+    check_body(
+        "<joint name='j' pos='1 0 0'/><joint name='k' type='slide' axis='2 0 0' ref='3'/><geom size='1' mass='5'/>",
+        "the root is the ground
+         body b_j
+         body b mass=5 inertia=[[2, 0, 0], [0, 2, 0], [0, 0, 2]]
+         Pin j: ground.at([1, 0, 0]) -> b_j.at([1, 0, 0]) about [0, 0, 1]
+         Sleeve k: b_j.at([-3, 0, 0]) -> b along [1, 0, 0]
+         left out geometry of bodies, for contact: 1 shapes",
+    );
+}
+
+#[test]
+fn what_has_no_name_gets_one() {
+    check_body(
+        "<body><joint type='slide'/></body><body name='body2'/>",
+        "the root is the ground
+         body b
+         body body22
+         body body2
+         Weld b_weld: ground -> b
+         Sleeve body22_slide: b -> body22 along [0, 0, 1]
+         Weld body2_weld: b -> body2",
+    );
+}
+
+#[test]
+fn classes_are_handed_down() {
+    let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/>\
+         <default class='c'><joint type='slide'/></default></default></default>";
+    let body = |inside: &str| {
+        format!("{classes}<worldbody><body name='b' childclass='a'>{inside}{BALL}</body></worldbody>")
+    };
+    let ball = "body b mass=1 inertia=[[0.004000000000000001, 0, 0], [0, 0.004000000000000001, 0], [0, 0, 0.004000000000000001]]";
+    let end = "left out geometry of bodies, for contact: 1 shapes";
+    check_model(
+        &body("<joint name='j'/>"),
+        &format!(
+            "the root is the ground\n{ball}\nPin j: ground -> b about [0, 0, 1] damping=1\nj: inerter 2 on 1 j\n{end}"
+        ),
+    );
+    check_model(
+        &body("<joint name='j' class='c' damping='7'/>"),
+        &format!(
+            "the root is the ground\n{ball}\nSleeve j: ground -> b along [0, 0, 1] damping=7\nj: inerter 2 on 1 j\n{end}"
+        ),
+    );
+    check_model(
+        &body("<joint name='j' class='d'/>"),
+        "r.xml:2:204: unknown class `d`
+         = help: expected `a`, `c` or `main`",
+    );
+}
+
+#[test]
+fn servos_are_inputs_with_springs() {
+    check_model(
+        "<worldbody><body name='b'><joint name='j'/></body></worldbody><actuator>
+         <motor name='m' joint='j' gear='5'/> <position joint='j' kp='4' gear='2'/>
+         <general name='g' joint='j' gainprm='3' biastype='affine' biasprm='1 0 -2'/></actuator>",
+        "the root is the ground
+         body b
+         Pin j: ground -> b about [0, 0, 1]
+         m: input in N·m on 5 j
+         j_position: input in rad on 8 j
+         j_position: spring 4 from 0 on 2 j
+         g: input in any on 3 j
+         g: push 1 on 1 j
+         g: damper 2 on 1 j",
+    );
+}
+
+#[test]
+fn a_joint_follows_or_is_held() {
+    let model = |equality: &str| {
+        format!(
+            "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
+             </body></body></worldbody><equality>{equality}</equality>"
+        )
+    };
+    check_model(
+        &model("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
+        "the root is the ground
+         body b
+         body c
+         Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
+         Sleeve k: b.at([0, 0, -2]) -> c along [0, 0, 1] = -3 j + 10",
+    );
+    check_model(
+        &model("<joint joint1='k' polycoef='5'/>"),
+        "the root is the ground
+         body b
+         body c
+         Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
+         Weld k: b.at([0, 0, 5]) -> c",
+    );
+    check_model(
+        &model("<joint joint1='k' joint2='jj'/>"),
+        "r.xml:2:180: unknown joint `jj`
+         = help: did you mean `j`?",
+    );
+    check_model(
+        &model("<connect body1='b' body2='c'/>"),
+        "r.xml:2:154: the coupling `<connect>` is not supported
+         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+    );
+}
+
+/// What would change the motion is not left out in silence.
+#[test]
+fn what_is_not_supported_is_said() {
+    for (inside, at, message, help) in [
+        (
+            "<joint type='ball' stiffness='1'/>",
+            "1'",
+            "`stiffness` of a `ball` joint is not supported",
+            "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+        ),
+        ("<joint type='hing'/>", "hing'", "unknown joint type `hing`", "did you mean `hinge`?"),
+        (
+            "<geom type='mesh' mesh='m'/>",
+            "<geom",
+            "the mass properties of a mesh are not computed",
+            "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them",
+        ),
+        ("<geom type='bix' size='1 1 1'/>", "bix", "unknown shape `bix`", "did you mean `box`?"),
+        (
+            "<geom type='box' size='1 -1 1'/>",
+            "1 -1",
+            "a `box` of size `1 -1 1` has no volume",
+            "expected half lengths and radii above zero",
+        ),
+        (
+            "<composite type='grid'/>",
+            "<comp",
+            "`<composite>` is not supported",
+            "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`",
+        ),
+        ("<joint axis='0 0 0'/>", "0 0", "axis of zero length has no direction", ""),
+        (
+            "<joint dampng='1'/>",
+            "dampng",
+            "unknown attribute `dampng` of `<joint>`",
+            "did you mean `damping`?",
+        ),
+        ("<bdy/>", "<bdy", "unknown element `<bdy>`", "did you mean `<body>`?"),
+        (
+            "<joint range='2 1'/>",
+            "2 1",
+            "`range` from 2 to 1, which is not above it",
+            "to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+        ),
+        (
+            "<freejoint/><joint/>",
+            "<freejoint",
+            "free joint `b_free` of a body that is held otherwise, too",
+            "a free body stands in `<worldbody>` and has no other joint",
+        ),
+        (
+            "<inertial pos='0 0 0'/>",
+            "<inertial",
+            "`<inertial>` without `mass`",
+            "expected `<inertial pos=\"…\" mass=\"…\"/>`",
+        ),
+        (
+            "<geom size='1' euler='0 0 1' quat='1 0 0 0'/>",
+            "1 0 0 0",
+            "an orientation is said once, but here are `quat` and `euler`",
+            "",
+        ),
+        ("<geom size='1' quat='0 0 0 0'/>", "0 0 0 0", "a quaternion of length 0 has no direction", ""),
+    ] {
+        let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
+        let help = if help.is_empty() { String::new() } else { format!("\n= help: {help}") };
+        check_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
+    }
+}
+
+#[test]
+fn sections() {
+    for (inside, expected) in [
+        (
+            "<worldbdy/>",
+            "r.xml:2:1: unknown element `<worldbdy>`\n= help: did you mean `worldbody`?\nr.xml:1:1: `<mujoco>` without `<worldbody>`",
+        ),
+        (
+            "<worldbody/><option density='1'/>",
+            "r.xml:2:30: the `density` of a medium that bodies move through is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+        ),
+        (
+            "<worldbody/><compiler eulerseq='xyw'/>",
+            "r.xml:2:33: unknown `eulerseq` `xyw`\n= help: expected three letters of `x`, `y`, `z`, capital about fixed axes",
+        ),
+        (
+            "<worldbody/><compiler coordinate='global'/>",
+            "r.xml:2:35: unknown `coordinate` `global`\n= help: expected `local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
+        ),
+        (
+            "<worldbody/><actuator><muscle joint='j'/></actuator>",
+            "r.xml:2:23: actuator `<muscle>` is not supported\n= help: to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`",
+        ),
+    ] {
+        check_model(inside, expected);
+    }
+}
+
+#[test]
+fn another_format_is_named() {
+    for (root, help) in [
+        ("robot", "this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
+        ("sdf", "this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot"),
+        ("mujocoinclude", "this is a part of a model: name the file that includes it"),
+        ("mujco", "did you mean `mujoco`?"),
+    ] {
+        let expected = format!("r.xml:1:1: expected `<mujoco>`, found `<{root}>`\n= help: {help}");
+        check_with(&mjcf(), &format!("<{root}/>"), &expected);
+    }
+}
+
+#[test]
+fn a_free_base_needs_a_body_that_nothing_holds() {
+    let free = FileOptions { base: Base::Free, ..mjcf() };
+    check_with(
+        &free,
+        "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",
+        "the root is the ground\nbody b\nFree root_joint: ground -> b",
+    );
+    check_with(
+        &free,
+        "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>",
+        "`base = free` does not fit this file: its outermost body has joints
+         = help: bodies of an MJCF file are held as the file says: write `<freejoint/>` into a body, and remove `base`",
+    );
+}
+
+/// A folder of files for one test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str, files: &[(&str, &str)]) -> Folder {
+        let folder = std::env::temp_dir().join(format!("linkwork-{test}-{}", std::process::id()));
+        fs::create_dir_all(folder.join("parts")).expect("a folder");
+        for (name, text) in files {
+            fs::write(folder.join(name), text).expect("a file");
+        }
+        Folder(folder)
+    }
+
+    fn answer(&self, text: &str) -> String {
+        let mut cx = Diagnostics::new();
+        match import(text, &self.0, &mjcf(), &mut cx) {
+            Some(imported) => format!("{}{} files", render(&imported), imported.files.len()),
+            None => cx.messages().join("\n"),
+        }
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What is left in the folder for temporary files harms nobody.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn included_files_stand_in_the_place_of_their_elements() {
+    let files = [
+        ("parts/arm.xml", "<mujoco>\n<!-- é --><worldbody><include file='hand.xml'/></worldbody></mujoco>"),
+        ("hand.xml", "<x><body name='hand'><joint name='j'/></body>\n</x>"),
+        ("bad.xml", "<x>\n  <worldbody>\n<body><joint type='no'/></body></worldbody></x>"),
+        ("broken.xml", "<x>\n<y></x>"),
+        ("a.xml", "<x><include file='b.xml'/></x>"),
+        ("b.xml", "<x>\n<include file='parts/../a.xml'/></x>"),
+    ];
+    let folder = Folder::new("includes", &files);
+    let model = |inside: &str| format!("<mujoco>\n{inside}</mujoco>");
+    assert_eq!(
+        folder.answer(&model("<include file='parts/arm.xml'/>")),
+        "the root is the ground\nbody hand\nPin j: ground -> hand about [0, 0, 1]\n2 files"
+    );
+    for (inside, expected) in [
+        (
+            "<include file='bad.xml'/>",
+            "bad.xml:3:20: unknown joint type `no`\n\n= help: expected `hinge`, `slide`, `ball` or `free`",
+        ),
+        ("<include file='broken.xml'/>", "broken.xml:2:4: malformed XML: expected `</y>`, found `</x>`"),
+        (
+            "<include file='a.xml'/>",
+            "b.xml:2:16: `a.xml` includes itself\n\n= help: by way of `b.xml` at a.xml:1:19",
+        ),
+        ("<include file='hand.xml'/><include file='hand.xml'/>", "r.xml:2:42: `hand.xml` is included twice"),
+        ("<include file='parts'/>", "r.xml:2:16: `parts` is a directory, expected an MJCF file"),
+        (
+            "<include file='hend.xml'/>",
+            "r.xml:2:16: there is no file `hend.xml`\n\n= help: did you mean `hand.xml`?",
+        ),
+        (
+            "<include fil='hand.xml'/>",
+            "r.xml:2:10: unknown attribute `fil` of `<include>`\n\n= help: did you mean `file`?",
+        ),
+    ] {
+        let answer = folder.answer(&model(inside));
+        assert!(answer.starts_with(expected), "{answer}");
+    }
+}
+
+#[test]
+fn hostile_files_get_an_answer() {
+    let deep =
+        format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(300), "</body>".repeat(300));
+    assert!(run(&mjcf(), &deep).contains("more than 256 elements inside one another"));
+    let chain = format!(
+        "<mujoco><worldbody>{}{}</worldbody></mujoco>",
+        "<body><joint type='slide'/>".repeat(250),
+        "</body>".repeat(250)
+    );
+    assert!(run(&mjcf(), &chain).contains("Sleeve body250_slide"));
+    let many = format!("<mujoco><worldbody>{}</worldbody></mujoco>", "<body/>".repeat(2000));
+    assert!(run(&mjcf(), &many).contains("more than 1024 bodies"));
+    let entity = "<!DOCTYPE x [<!ENTITY a 'b'>]><mujoco/>";
+    assert!(run(&mjcf(), entity).contains("an MJCF file has no document type and no entities of its own"));
+    check_body(
+        "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
+        "r.xml:2:24: body `b` is too large, too heavy or too far away for numbers",
+    );
+}
+
+const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" settotalmass="3"/>
+  <default><joint damping=".1"/><default class="a"><geom type="box" size=".1 .2 .3"/></default></default>
+  <worldbody><body name="b" childclass="a" pos="1 2 3" euler="1 0 0"><joint name="j" axis="0 1 1" ref=".1"/>
+    <joint name="k" type="slide" range="0 1" stiffness="2"/><geom quat="1 1 0 0"/>
+    <frame pos="1 0 0"><body name="c"><joint name="l" type="ball" damping="1"/><site name="s"/>
+      <inertial pos="0 0 1" mass="1" fullinertia="1 1 1 0 0 0"/></body></frame></body></worldbody>
+  <tendon><fixed name="t" stiffness="1"><joint joint="j" coef="2"/><joint joint="k" coef="3"/></fixed></tendon>
+  <equality><joint joint1="k" joint2="j" polycoef="1 2"/></equality>
+  <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/></actuator></mujoco>"#;
+
+#[test]
+fn damage_never_panics() {
+    super::fuzz::damage_gets_an_answer(&mjcf(), FILE, "ground");
+}
+
+#[test]
+fn every_beginning_of_a_file_gets_an_answer() {
+    for end in 0..FILE.len() {
+        assert!(!run(&mjcf(), &FILE[..end]).contains("the root is"));
+    }
+    assert!(run(&mjcf(), FILE).contains("the root is"));
+}

@@ -1,0 +1,119 @@
+//! MJCF files of `data/mjcf` against MuJoCo's own figures, `data/mujoco`.
+
+use linkwork::prelude::*;
+use linkwork::{Limits, Mechanism};
+use support::compare::assert_close;
+use support::table::Record;
+
+/// MuJoCo finds principal axes to some 1e-11 only.
+const TOLERANCE: f64 = 1e-10;
+/// Forward dynamics: the condition of the mass matrix enters.
+const FORWARD: f64 = 1e-9;
+
+#[mechanism(mjcf = "data/mjcf/everything.xml")]
+struct Everything;
+
+#[mechanism(mjcf = "data/mjcf/free_bodies.xml")]
+struct FreeBodies;
+
+#[mechanism(mjcf = "data/mjcf/coupled.xml")]
+struct Coupled;
+
+fn check<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let cases = Record::load(&format!("mujoco/{name}.json")).records("cases");
+    assert_eq!(cases.len(), 4);
+    for (i, case) in cases.iter().enumerate() {
+        let of = |what: &str| format!("{name}, case {i}: {what}");
+        let (q, v, u) = (&case.vector("q"), &case.vector("v"), &case.vector("u"));
+        let mass_matrix = case.symmetric::<NV>("M");
+        assert_close(of("mass matrix"), robot.mass_matrix(q).as_slice(), mass_matrix.as_slice(), TOLERANCE);
+        let bias = robot.bias_forces(q, v);
+        assert_close(of("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
+        let forces = robot.generalized_forces(q, v, u);
+        assert_close(of("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
+        // MuJoCo's friction is a constraint, which is left out there; here it is a force.
+        let tau = forces + case.vector("friction");
+        let a = robot.forward_dynamics(q, v, &tau);
+        assert_close(of("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
+    }
+}
+
+/// Placements of bodies and sites.
+macro_rules! check_frames {
+    ($robot:ident, $name:literal) => {
+        for (i, case) in Record::load(concat!("mujoco/", $name, ".json")).records("cases").iter().enumerate()
+        {
+            let placements = $robot.frame_placements(&case.vector("q"));
+            for (frame, expected) in case.named("frames") {
+                let index = $robot::FRAMES.iter().position(|known| *known == frame);
+                let placement = placements[index.unwrap_or_else(|| panic!("no frame `{frame}`"))];
+                let rotation = placement.rotation.matrix().transpose();
+                let found = [rotation.as_slice(), placement.translation.vector.as_slice()].concat();
+                assert_close(format!("{}, case {i}: {frame}", $name), &found, &expected, TOLERANCE);
+            }
+        }
+    };
+}
+
+#[test]
+fn joints_shapes_classes_and_servos() {
+    assert_eq!(
+        Everything::VELOCITIES,
+        ["yaw", "pitch", "reach", "roll.wx", "roll.wy", "roll.wz", "body4_slide", "spin", "tilt"]
+    );
+    assert_eq!(Everything::INPUTS, ["yaw", "pitch_servo", "reach_velocity", "tilt", "belt", "cord"]);
+    check(&Everything, "everything");
+    check_frames!(Everything, "everything");
+}
+
+#[test]
+fn bodies_that_fly_and_masses_that_are_scaled() {
+    assert_eq!(FreeBodies::NU, 0);
+    assert!((FreeBodies.total_mass() - 7.5).abs() > 1.0, "what stands on the ground moves nothing");
+    check(&FreeBodies, "free_bodies");
+    check_frames!(FreeBodies, "free_bodies");
+}
+
+#[test]
+fn joints_that_follow_and_that_are_held() {
+    assert_eq!(Coupled::VELOCITIES, ["turn", "left"]);
+    assert_eq!(Coupled::INPUTS, ["squeeze"]);
+    check(&Coupled, "coupled");
+    check_frames!(Coupled, "coupled");
+}
+
+/// What the options leave out.
+#[test]
+fn options() {
+    #[mechanism(mjcf = "data/mjcf/coupled.xml", mimic = independent, inputs = joints, passive = ignore)]
+    struct Independent;
+    #[mechanism(mjcf = "data/mjcf/coupled.xml", inputs = none, lock = ["left"], gravity = -3.7 * z)]
+    struct Locked;
+
+    assert_eq!(Independent::VELOCITIES, ["turn", "left", "right", "flap"]);
+    assert_eq!(Independent::INPUTS, Independent::VELOCITIES);
+    let (q, v) = ([0.3, 0.1, 0.2, -0.4].into(), [0.5, -1.0, 2.0, 0.7].into());
+    assert_eq!(Independent.dissipated_power(&q, &v), 0.0);
+    // The rotor is no passive force.
+    let with_rotor = Coupled.mass_matrix(&[0.0, 0.02].into())[3];
+    assert!(with_rotor > 7.5 * 7.5 * 0.01);
+
+    // What follows a joint that stands still stands, too.
+    assert_eq!((Locked::NV, Locked::NU), (1, 0));
+    let fall = Locked.bias_forces(&[0.0].into(), &[0.0].into())[0];
+    let there = Coupled.bias_forces(&[0.0, 0.0].into(), &[0.0, 0.0].into())[0];
+    assert!((fall / there - 3.7 / 9.81).abs() < 1e-12, "{fall} {there}");
+}
+
+/// Limits are in the file's units, and those of motors are what their gears make of them.
+#[test]
+fn limits() {
+    let (lower, upper) = (Everything.lower_limits(), Everything.upper_limits());
+    assert_close("angles", &[lower[0], upper[0]], &[-90.0, 120.0].map(f64::to_radians), 1e-15);
+    assert_eq!([lower[2], upper[2], lower[1]], [-0.1, 0.4, f64::NEG_INFINITY]);
+    let efforts = Everything.effort_limits();
+    assert_eq!([efforts[0], efforts[8]], [24.0, 9.0]);
+}
