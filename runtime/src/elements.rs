@@ -401,6 +401,11 @@ pub enum Slipping {}
 /// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
 /// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
+/// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
+///
+/// The height of a terrain is an expression of `u` and `w`, the place along the body's x and y, and of parameters:
+/// `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a [`Table`](crate::Table). Where a sphere touches
+/// is found by Newton's method from straight below, so hollows are to be wider than the sphere.
 ///
 /// A plane is that of a half space, and a cylinder without a length, a tube and a cone go on without end. The rim of a circle or a
 /// torus that lies flat on a plane touches it by its centre.

@@ -9,3 +9,4 @@ mod fuzz;
 mod laws;
 mod mechanisms;
 mod robots;
+mod terrain;

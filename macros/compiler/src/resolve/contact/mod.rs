@@ -10,10 +10,12 @@ mod force;
 mod slipping;
 mod surface;
 pub use force::stands_alone;
+mod terrain;
 mod unilateral;
 
 pub use slipping::check_pressed;
 pub use surface::arguments_of;
+pub use terrain::PLACE;
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;

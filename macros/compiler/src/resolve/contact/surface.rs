@@ -1,5 +1,6 @@
 //! Surfaces of bodies, as contacts name them: `body.form(arguments)`.
 
+use super::terrain::Terrain;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Rule;
@@ -35,6 +36,8 @@ pub enum Form<'g> {
     Funnel(Expr<'g>, Vec3<'g>),
     /// A surface given by its points.
     Sheet(Sheet<'g>),
+    /// A height over x and y.
+    Terrain(Box<Terrain<'g>>),
     /// A point, which can only be in contact.
     Point,
     /// A box: its lengths along the body's axes.
@@ -62,7 +65,7 @@ pub struct Surface<'g> {
 }
 
 /// The surfaces with their arguments.
-const FORMS: [(&str, &[&str]); 14] = [
+const FORMS: [(&str, &[&str]); 15] = [
     ("circle", &["radius", "axis"]),
     ("torus", &["radius", "tube_radius", "axis"]),
     ("sphere", &["radius"]),
@@ -75,6 +78,7 @@ const FORMS: [(&str, &[&str]); 14] = [
     ("cone", &["half_angle", "axis"]),
     ("funnel", &["half_angle", "axis"]),
     ("surface", &["u", "w", "point"]),
+    ("terrain", &["height"]),
     ("cuboid", &["a", "b", "c"]),
     ("capsule", &["radius", "length", "axis"]),
 ];
@@ -120,6 +124,10 @@ impl<'g> Builder<'_, 'g> {
             let home = home?;
             let form = Form::Sheet(self.sheet(&home, [u, w, point], cx)?);
             return Some(Surface { home, form });
+        }
+        if let ("terrain", [height]) = (word.text.as_str(), arguments.as_slice()) {
+            let terrain = self.terrain(height, cx);
+            return Some(Surface { home: home?, form: Form::Terrain(Box::new(terrain?)) });
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
         for (argument, name) in arguments.iter().zip(names) {

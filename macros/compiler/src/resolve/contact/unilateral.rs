@@ -1,6 +1,7 @@
 //! Contacts that open and close: surfaces of bodies, and coordinates at their bounds.
 
 use super::surface::{Form, Surface};
+use super::terrain::Terrain;
 use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
@@ -21,7 +22,7 @@ const PARALLEL: f64 = 1e-12;
 /// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
 const FLAT: f64 = 1e-24;
 
-const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends";
+const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
 /// A point where two surfaces may touch.
 struct Point<'g> {
@@ -220,6 +221,9 @@ impl<'g> Builder<'_, 'g> {
         let turned_a = |v| self.of_first(pair, v).value;
         let turned_b = |v| self.of_second(pair, v).value;
         let c = pair.center.value - pair.base.value;
+        if let Form::Terrain(terrain) = &pair.b.form {
+            return self.grounded(pair, terrain, c, &turned_b);
+        }
         let Form::Plane(n) = &pair.b.form else {
             return self.round(pair, c, &turned_b).into_iter().collect();
         };
@@ -234,13 +238,7 @@ impl<'g> Builder<'_, 'g> {
         let half = g.num(0.5);
         match &pair.a.form {
             Form::Point => vec![touch(Vec3::zero(g))],
-            Form::Cuboid(lengths) => (0..8)
-                .map(|k| {
-                    let side = |axis: usize| if k >> axis & 1 == 0 { -half } else { half };
-                    let corner = Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)));
-                    touch(turned_a(corner))
-                })
-                .collect(),
+            Form::Cuboid(lengths) => corners(lengths).map(|corner| touch(turned_a(corner))).into(),
             Form::Drum(radius, length, axis) => {
                 let rim = rim(*axis, normal, &turned_a);
                 let ends = [-half, half].map(|side| turned_a(*axis * (*length * side)));
@@ -254,6 +252,33 @@ impl<'g> Builder<'_, 'g> {
             Form::Cone(..) => Vec::new(),
             form => farthest(form, normal, FLAT, &turned_a).map(|far| touch(-far)).into_iter().collect(),
         }
+    }
+
+    /// Where a sphere, a point, the ends of a capsule or the corners of a box touch a terrain.
+    fn grounded(
+        &self,
+        pair: &Pair<'g>,
+        terrain: &Terrain<'g>,
+        c: Vec3<'g>,
+        turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> Vec<Touch<'g>> {
+        let g = self.scope.graph;
+        let turned_a = |v| self.of_first(pair, v).value;
+        let (radius, places) = match &pair.a.form {
+            Form::Point => (g.zero(), vec![Vec3::zero(g)]),
+            Form::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
+            Form::Cuboid(lengths) => (g.zero(), corners(lengths).map(turned_a).into()),
+            Form::Capsule(radius, length, axis) => {
+                (*radius, [-0.5, 0.5].map(|side| turned_a(*axis * (*length * side))).into())
+            }
+            _ => return Vec::new(),
+        };
+        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned_b(Vec3::axis(g, k)));
+        let touches = places.into_iter().map(|place| {
+            let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), turned_b);
+            Touch { point: touch.point + place, ..touch }
+        });
+        touches.collect()
     }
 
     /// Where a sphere, a point or a capsule touches what is no plane.
@@ -304,6 +329,14 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
+/// The corners of a box.
+fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
+    std::array::from_fn(|k| {
+        let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
+        Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)))
+    })
+}
+
 /// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn further each. Where
 /// the rim lies flat, every one is lowest: one of the body's own is chosen.
 fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
@@ -347,12 +380,16 @@ impl<'g> Form<'g> {
                 Form::Plane(_)
                     | Form::Cone(..)
                     | Form::Sheet(_)
+                    | Form::Terrain(_)
                     | Form::Bowl(_)
                     | Form::Cylinder(..)
                     | Form::Tube(..)
                     | Form::Funnel(..)
             ),
             Form::Capsule(..) => matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..)),
+            Form::Terrain(_) => {
+                matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..) | Form::Cuboid(_))
+            }
             Form::Cuboid(_) | Form::Drum(..) => matches!(self, Form::Sphere(_)),
             Form::Sphere(_)
             | Form::Bowl(_)

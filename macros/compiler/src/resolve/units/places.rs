@@ -7,7 +7,7 @@ use super::si::{
     STRENGTH, TIME,
 };
 use super::unify::Dimension;
-use crate::resolve::contact::arguments_of;
+use crate::resolve::contact::{PLACE, arguments_of};
 use crate::resolve::inertia::SOLIDS;
 use crate::syntax::contact::collision;
 use crate::syntax::{
@@ -307,6 +307,10 @@ impl<'a> Places<'a> {
                 "axis" | "normal" => self.add(argument, &PLAIN, "1"),
                 "half_angle" => self.add(argument, &PLAIN, "rad"),
                 "u" | "w" => {}
+                "height" => {
+                    let locals = PLACE.map(|name| (name, LENGTH.clone())).into();
+                    self.tasks.push(Task { e: argument, dimension: LENGTH.clone(), unit: "m", locals });
+                }
                 _ => self.add(argument, &LENGTH, "m"),
             }
         }

@@ -75,7 +75,7 @@ pub const ELEMENTS: Words = &[
     ("rope cable tendon string chain wire muscle thread", ONE_SIDED),
     ("limits range bounds jointlimit jointlimits", "Limit"),
     ("stop endstop bumper hardstop", END_STOP),
-    ("contact contacts collision collider impact", TOUCH),
+    ("contact contacts collision collider impact terrain heightfield heightmap hfield", TOUCH),
     (
         "wheel roller tire tyre",
         "a wheel is a `Body` on a joint, and a `Rolling`: `#[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]`",
