@@ -85,6 +85,42 @@ fn joints_that_follow_and_that_are_held() {
     check_frames!(Coupled, "coupled");
 }
 
+/// A connection keeps two points together, a weld two bodies; the conditions of a plane loop out of its plane are redundant.
+#[test]
+fn loops() {
+    #[mechanism(mjcf = "data/mjcf/loops.xml")]
+    struct Loops;
+
+    assert_eq!((Loops::NV, Loops::NC, Loops::NS), (16, 2 + 6 + 3, 5));
+    for (i, case) in Record::load("mujoco/loops.json").records("cases").iter().enumerate() {
+        let (q, v) = (case.vector("q"), case.vector("v"));
+        assert!(Loops.constraint_residuals(&q).amax() < 1e-12, "case {i}");
+        assert!(Loops.constraint_rates(&q, &v).amax() < 1e-12, "case {i}");
+        let (a, _) = Loops.constrained_dynamics(&q, &v, &SVector::zeros());
+        assert_close(format!("loops, case {i}"), a.as_slice(), &case.numbers("a"), 1e-7);
+    }
+}
+
+/// A contact names the shapes of the file: here a box stands on its corners, and a ball beside it.
+#[test]
+fn geometry_for_contact() {
+    #[mechanism(mjcf = "data/mjcf/contacts.xml")]
+    struct Standing {
+        #[contact(collision(), ground.plane(z), friction = 0.5)]
+        floor: Contact,
+    }
+
+    let mut q = Standing {}.neutral();
+    (q[2], q[9]) = (0.5, 0.4);
+    let gaps = Standing {}.contact_gaps(&q);
+    // Eight corners of the box, the ends of the capsule, the egg.
+    let expected = [0.4, 0.4, 0.4, 0.4, 0.6, 0.6, 0.6, 0.6, 0.7 - 0.05, 0.9 - 0.05, 0.4 - 0.2];
+    let mut found: Vec<f64> = gaps.iter().copied().collect();
+    found[..8].sort_by(f64::total_cmp);
+    found[8..10].sort_by(f64::total_cmp);
+    assert_close("gaps", &found, &expected, 1e-12);
+}
+
 /// What the options leave out.
 #[test]
 fn options() {

@@ -112,3 +112,23 @@ fn the_guide_runs() {
     assert!(built.success());
     assert!(Command::new(here.join("main")).status().unwrap().success());
 }
+
+/// The format is what the file's name says, or else what the file looks like.
+#[test]
+fn robots_are_read_in_their_formats() {
+    let here = folder("formats");
+    let model = "<mujoco><worldbody><body name='b'><joint name='j'/><geom size='0.1'/></body></worldbody>\
+                 <actuator><motor name='m' joint='j'/></actuator></mujoco>";
+    for name in ["arm.xml", "arm.mjcf", "arm.urdf"] {
+        std::fs::write(here.join(name), model).unwrap();
+    }
+    for name in ["arm.xml", "arm.mjcf"] {
+        let (status, shown, _) = linkwork(&here, &["show", name]);
+        assert!(status == 0 && shown.contains("m  N·m"), "{shown}");
+    }
+    let (status, _, said) = linkwork(&here, &["check", "arm.urdf"]);
+    assert!(
+        status == 1 && said.starts_with("arm.urdf:1:1: error: expected `<robot>`, found `<mujoco>`"),
+        "{said}"
+    );
+}

@@ -478,6 +478,8 @@ pub enum Shape {
     Cylinder(f64, f64),
     /// Radius, and distance of the centres of the spheres, along z.
     Capsule(f64, f64),
+    /// Half lengths along the axes.
+    Ellipsoid([f64; 3]),
     /// Triangles of another file.
     Mesh,
 }

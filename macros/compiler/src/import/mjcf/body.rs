@@ -1,18 +1,18 @@
 //! `<worldbody>` → links and joints, in the order of the file.
 
-use super::defaults::Element;
+use super::defaults::{Element, choice};
 use super::frame::{ORIENTATIONS, read_pose};
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
-use super::pose::{Pose, about, add, apply, product, roll_pitch_yaw, scale};
-use super::reader::{Reader, give};
+use super::pose::{Pose, about, add, apply, product, scale};
+use super::reader::{Reader, give, origin};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{
     Node, check_attributes, check_element_name, elements, name, number, place, tag,
 };
 use crate::import::imported::Placed;
-use crate::import::robot::{FileJoint, FileLimits, MOST, Origin, bare_link, unused};
+use crate::import::robot::{FileJoint, FileLimits, MOST, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
 /// MuJoCo's name of what does not move.
@@ -45,15 +45,20 @@ struct Open<'a> {
     parent: Name,
     /// The pose of the frames around it.
     outer: Pose,
+    /// The pose of the parent in the world, as the file has it.
+    world: Pose,
     class: usize,
 }
+
+/// A shape or a site, and the pose of the frames in the body that it stands in.
+pub(super) type Shaped<'a> = (Element<'a>, Pose);
 
 /// What stands in a body, the frames in it opened.
 #[derive(Default)]
 struct Inside<'a> {
     bodies: Vec<(Node<'a>, Pose, usize)>,
-    shapes: Vec<(Element<'a>, Pose)>,
-    sites: Vec<(Element<'a>, Pose)>,
+    shapes: Vec<Shaped<'a>>,
+    sites: Vec<Shaped<'a>>,
     inertial: Option<Node<'a>>,
     jointed: Vec<(Node<'a>, usize)>,
 }
@@ -87,6 +92,7 @@ impl<'a> Reader<'a> {
                 node,
                 parent: world.clone(),
                 outer,
+                world: Pose::ZERO,
                 class,
             }));
         }
@@ -129,6 +135,7 @@ impl<'a> Reader<'a> {
     fn read_body(&mut self, open: Open<'a>, cx: &mut Cx<'_>) -> Vec<Open<'a>> {
         let node = open.node;
         self.bodies += 1;
+        let mocap = choice(node, "mocap", cx) == Some(true);
         let mut known = vec!["name", "childclass", "pos", "mocap", "gravcomp", "user", "sleep"];
         known.extend(ORIENTATIONS);
         check_attributes(node, &[], &known, cx);
@@ -137,6 +144,7 @@ impl<'a> Reader<'a> {
         let body = self.body_name(said, node, cx);
         let element = self.defaults.element(node, &[], 0, cx);
         let pose = open.outer.then(&read_pose(&element, &self.settings, cx));
+        let world = open.world.then(&pose);
         let inside = self.inside(node, class, cx);
         let mut joints = Vec::new();
         for (child, class) in &inside.jointed {
@@ -148,21 +156,30 @@ impl<'a> Reader<'a> {
         self.check_compensation(node, cx);
         let mass = match self.options.inertias {
             Inertias::None => None,
-            _ => {
-                geometry::of_body(inside.inertial, &inside.shapes, &self.defaults, &pose, &self.settings, cx)
-            }
+            _ => geometry::of_body(
+                inside.inertial,
+                &inside.shapes,
+                &self.defaults,
+                &mut self.meshes,
+                (&pose, &self.settings),
+                cx,
+            ),
         };
-        self.count("geometry of bodies", inside.shapes.len());
         self.add_sites(&inside, &body.text, cx);
+        if mocap {
+            self.mocap.insert(body.text.clone());
+        }
         self.chain(&open.parent, &body, &pose, joints, cx);
         let mut link = bare_link(body.clone());
         if let Some(mass) = &mass {
             give(&mut link, mass, &mass_place(&inside, node, cx));
         }
+        self.add_collisions(self.robot.links.len(), &inside.shapes, cx);
         self.robot.links.push(link);
         self.masses.push(mass);
+        self.poses.insert(body.text.clone(), world);
         let next = inside.bodies.into_iter();
-        next.map(|(node, outer, class)| Open { node, parent: body.clone(), outer, class }).collect()
+        next.map(|(node, outer, class)| Open { node, parent: body.clone(), outer, world, class }).collect()
     }
 
     fn body_name(&mut self, said: Option<Name>, node: Node<'a>, cx: &mut Cx<'_>) -> Name {
@@ -340,6 +357,7 @@ impl<'a> Reader<'a> {
                 None => read_pose(site, &self.settings, cx),
             };
             if let Some(named) = named {
+                self.poses_of_sites.insert(named.text.clone(), (body.to_string(), outer.then(&pose)));
                 self.sites.push((named, body.to_string(), outer.then(&pose)));
             }
         }
@@ -421,9 +439,4 @@ fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJ
         damping: joint.damping,
         friction: joint.friction,
     }
-}
-
-fn origin(pose: &Pose, place: &Place) -> Origin {
-    let at = |value| Placed { value, place: place.clone() };
-    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
 }

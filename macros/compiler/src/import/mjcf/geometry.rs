@@ -2,6 +2,7 @@
 
 use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
+use super::mesh::Meshes;
 use super::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
 use super::settings::{Settings, Source};
 use crate::import::context::{Cx, quote};
@@ -63,12 +64,12 @@ pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
 }
 
 /// Mass properties of a body, by `<inertial>` or by its geometry with the poses of that in the body.
-pub(super) fn of_body(
-    inertial: Option<Node<'_>>,
-    shapes: &[(Element<'_>, Pose)],
-    defaults: &Defaults<'_>,
-    pose: &Pose,
-    settings: &Settings,
+pub(super) fn of_body<'a>(
+    inertial: Option<Node<'a>>,
+    shapes: &[(Element<'a>, Pose)],
+    defaults: &Defaults<'a>,
+    meshes: &mut Meshes<'a>,
+    (pose, settings): (&Pose, &Settings),
     cx: &mut Cx<'_>,
 ) -> Option<Mass> {
     let said = inertial.filter(|_| settings.source != Source::Geometry || shapes.is_empty());
@@ -78,7 +79,7 @@ pub(super) fn of_body(
         None => {
             let parts: Vec<Mass> = shapes
                 .iter()
-                .filter_map(|(shape, outer)| Some(of_shape(shape, settings, cx)?.placed(outer)))
+                .filter_map(|(shape, outer)| Some(of_shape(shape, meshes, settings, cx)?.placed(outer)))
                 .filter(|part| part.mass > NOTHING)
                 .collect();
             sum(&parts)
@@ -143,7 +144,12 @@ fn read_inertial(
 }
 
 /// Mass properties of a shape in its body's axes; nothing of one without mass.
-fn of_shape(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<Mass> {
+fn of_shape<'a>(
+    shape: &Element<'a>,
+    meshes: &mut Meshes<'a>,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<Mass> {
     let group = shape.number("group", cx).map_or(0.0, |group| group.value);
     if group < settings.groups[0] || group > settings.groups[1] {
         return None;
@@ -157,9 +163,28 @@ fn of_shape(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option
     if shape.choice("shellinertia", cx) == Some(true) {
         return refuse(shape, "`shellinertia`", cx);
     }
-    if shape.with("mesh").is_some() || kind == "mesh" || kind == "sdf" {
-        return refuse(shape, "a mesh", cx);
+    if kind == "mesh" {
+        let found = meshes.of_shape(shape, cx)?;
+        let found = found.of_mass(said.unwrap_or(density * found.mass));
+        return Some(found.placed(&read_pose(shape, settings, cx)));
     }
+    if shape.with("mesh").is_some() || kind == "sdf" {
+        return refuse(shape, "a shape that is fitted to a mesh", cx);
+    }
+    let (pose, size) = dimensions(kind, shape, settings, cx)?;
+    let (volume, moments) = solid(kind, size);
+    let mass = said.unwrap_or(density * volume);
+    let inertia = diagonal(scale(moments, mass));
+    Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
+}
+
+/// Where a shape is, and its half lengths, those that it has: a radius stands first, the half of its length last.
+pub(super) fn dimensions(
+    kind: &str,
+    shape: &Element<'_>,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<(Pose, Vector)> {
     let (pose, half) = extent(shape, settings, cx)?;
     let size = shape.some("size", [0.0; 3], cx);
     let [x, y, z] = size.as_ref().map_or([0.0; 3], |size| size.value);
@@ -189,10 +214,7 @@ fn of_shape(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option
         cx.error(&shape.place("size", cx), message, |d| d.help("expected half lengths and radii above zero"));
         return None;
     }
-    let (volume, moments) = solid(kind, [x, y, z]);
-    let mass = said.unwrap_or(density * volume);
-    let inertia = diagonal(scale(moments, mass));
-    Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
+    Some((pose, [x, y, z]))
 }
 
 /// Where a shape is, and its half length, if both are said by two points.
@@ -247,4 +269,4 @@ fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
     None
 }
 
-const NEEDS_INERTIAL: &str = "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them";
+pub(super) const NEEDS_INERTIAL: &str = "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them";

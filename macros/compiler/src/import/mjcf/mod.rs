@@ -11,6 +11,7 @@ use crate::import::imported::Imported;
 use crate::import::robot::{self, Order};
 use crate::syntax::{DriveLaw, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
+use mesh::Meshes;
 use reader::Reader;
 use settings::Settings;
 use std::cell::OnceCell;
@@ -19,12 +20,14 @@ use std::path::Path;
 
 mod actuator;
 mod body;
+mod contact;
 mod defaults;
 mod equality;
 mod frame;
 mod geometry;
 mod include;
 mod joint;
+mod mesh;
 mod pose;
 mod reader;
 mod settings;
@@ -69,12 +72,12 @@ pub(super) fn import(
     let cx = &mut Cx::of_pieces(&files, whole.pieces, options.path.place.span, cx);
     let declared = OnceCell::new();
     let document = xml::parse(&whole.text, &declared, FileFormat::Mjcf, cx)?;
-    let mut imported = read(document.root_element(), options, cx)?;
-    imported.files = whole.files.into_iter().skip(1).map(|file| file.path).collect();
+    let mut imported = read(document.root_element(), path.parent().unwrap_or(path), options, cx)?;
+    imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
     Some(imported)
 }
 
-fn read(root: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     if !check_root(root, cx) {
         return None;
     }
@@ -83,13 +86,14 @@ fn read(root: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Import
     }
     let settings = Settings::read(root, cx);
     let defaults = Defaults::read(root, cx);
-    let mut reader = Reader::new(options, settings, defaults);
+    let meshes = Meshes::list(root, folder, &settings, &defaults, cx);
+    let mut reader = Reader::new(options, settings, defaults, meshes);
     check_medium(&reader, cx);
     reader.read_world(root, cx)?;
     reader.scale_masses();
     robot::check_names(&reader.robot, cx);
     let tendons = reader.tendons(root, cx);
-    reader.equalities(root, &tendons, cx);
+    reader.equalities(root, cx);
     reader.actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
         let nodes = elements(root).filter(|node| node.tag_name().name() == section);
@@ -121,9 +125,11 @@ fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     let order = Order { root: 0, joints };
     let standing = standing(&robot, options);
     let closing = std::mem::take(&mut robot.closing);
+    let files = reader.meshes.files;
     let mut imported = robot::assemble(robot, &order, motions, options, cx);
     robot::make_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
+    imported.files = files;
     (!cx.failed()).then_some(imported)
 }
 

@@ -27,6 +27,12 @@ impl Pose {
     /// The other frame itself.
     pub(super) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
 
+    /// The pose of the other frame in this one.
+    pub(super) fn back(&self) -> Pose {
+        let axes = transpose(&self.axes);
+        Pose { at: scale(apply(&axes, self.at), -1.0), axes }
+    }
+
     /// The pose in the outer frame of what has `inner` in this one.
     pub(super) fn then(&self, inner: &Pose) -> Pose {
         Pose { at: add(self.at, apply(&self.axes, inner.at)), axes: product(&self.axes, &inner.axes) }

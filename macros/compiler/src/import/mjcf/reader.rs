@@ -2,10 +2,12 @@
 
 use super::defaults::Defaults;
 use super::geometry::Mass;
-use super::pose::{Pose, scale};
+use super::mesh::Meshes;
+use super::pose::{Pose, roll_pitch_yaw, scale};
 use super::settings::Settings;
 use crate::diag::Place;
-use crate::import::robot::Robot;
+use crate::import::imported::Placed;
+use crate::import::robot::{Origin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,6 +16,8 @@ pub(super) struct Reader<'a> {
     pub(super) options: &'a FileOptions,
     pub(super) settings: Settings,
     pub(super) defaults: Defaults<'a>,
+    /// Its meshes.
+    pub(super) meshes: Meshes<'a>,
     /// Springs, dampers and friction are taken over.
     pub(super) passive: bool,
     pub(super) robot: Robot,
@@ -25,6 +29,12 @@ pub(super) struct Reader<'a> {
     pub(super) rests: BTreeMap<String, f64>,
     pub(super) left_out: Vec<String>,
     pub(super) counts: BTreeMap<&'static str, usize>,
+    /// Where each body is in the world, in the pose of the file.
+    pub(super) poses: BTreeMap<String, Pose>,
+    /// The body of each site, and where on it the site is.
+    pub(super) poses_of_sites: BTreeMap<String, (String, Pose)>,
+    /// Bodies that programs move.
+    pub(super) mocap: BTreeSet<String>,
     /// Mass properties by link.
     pub(super) masses: Vec<Option<Mass>>,
     /// Bodies so far: that is the number which MuJoCo gives the last one.
@@ -34,12 +44,18 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Nothing is read yet.
-    pub(super) fn new(options: &'a FileOptions, settings: Settings, defaults: Defaults<'a>) -> Reader<'a> {
+    pub(super) fn new(
+        options: &'a FileOptions,
+        settings: Settings,
+        defaults: Defaults<'a>,
+        meshes: Meshes<'a>,
+    ) -> Reader<'a> {
         let passive = options.honour_passive && settings.passive;
         Reader {
             options,
             settings,
             defaults,
+            meshes,
             passive,
             robot: Robot::default(),
             joint_names: BTreeSet::new(),
@@ -48,6 +64,9 @@ impl<'a> Reader<'a> {
             rests: BTreeMap::new(),
             left_out: Vec::new(),
             counts: BTreeMap::new(),
+            poses: BTreeMap::new(),
+            poses_of_sites: BTreeMap::new(),
+            mocap: BTreeSet::new(),
             masses: vec![None],
             bodies: 0,
             sites: Vec::new(),
@@ -90,4 +109,10 @@ pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
         .collect();
     let zero = mass.inertia.iter().flatten().all(|entry| *entry == 0.0);
     link.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: place.clone() });
+}
+
+/// A frame in the words of all formats.
+pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
+    let at = |value| Placed { value, place: place.clone() };
+    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
 }

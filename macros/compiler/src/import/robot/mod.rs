@@ -15,7 +15,7 @@ mod parts;
 mod snap;
 mod tree;
 
-pub(super) use assemble::assemble;
+pub(super) use assemble::{assemble, bare_joint};
 pub(super) use collision::FileCollision;
 pub(super) use figures::make_fields;
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};

@@ -128,9 +128,53 @@ fn a_joint_follows_or_is_held() {
          = help: did you mean `j`?",
     );
     check_model(
-        &model("<connect body1='b' body2='c'/>"),
-        "r.xml:2:154: the coupling `<connect>` is not supported
+        &model("<flex flex='b'/>"),
+        "r.xml:2:154: the coupling `<flex>` is not supported
          = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+    );
+}
+
+/// At the pose of the file the two ends are one place.
+#[test]
+fn loops_are_closed() {
+    let model = |equality: &str| {
+        format!(
+            "<worldbody><body name='b' pos='1 0 0' euler='90 0 0'/><body name='c' mocap='true'/><body name='d' pos='0 0 2'>\
+             <site name='s' pos='0 0 3'/></body></worldbody><equality>{equality}</equality>"
+        )
+    };
+    let start = "the root is the ground
+         body b
+         body c
+         body d
+         body s
+         Weld b_weld: ground.at([1, 0, 0]).rotated(x(1.5707963267948966)) -> b
+         Weld c_weld: ground -> c
+         Weld d_weld: ground.at([0, 0, 2]) -> d
+         Weld s_weld: d.at([0, 0, 3]) -> s";
+    check_model(
+        &model("<connect body1='b' body2='d' anchor='1 2 4'/>"),
+        &format!("{start}\nBall connect1: b.at([1, 2, 4]) -> d.at([2, -4, 0])"),
+    );
+    check_model(&model("<weld body1='d'/>"), &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"));
+    check_model(
+        &model("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
+        &format!("{start}\nWeld w: d.at([1, 2, 3]) -> b"),
+    );
+    check_model(
+        &model("<connect site1='s' site2='s'/>"),
+        "r.xml:2:194: body `d` closes a loop with itself
+         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+    );
+    check_model(
+        &model("<weld body1='c' body2='b'/>"),
+        "r.xml:2:181: `c` is a mocap body, which nothing here moves
+         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+    );
+    check_model(
+        &model("<weld body1='e'/>"),
+        "r.xml:2:181: unknown body `e`
+         = help: expected `b`, `c` or `d`",
     );
 }
 
@@ -145,10 +189,12 @@ fn what_is_not_supported_is_said() {
             "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
         ),
         ("<joint type='hing'/>", "hing'", "unknown joint type `hing`", "did you mean `hinge`?"),
+        ("<geom type='mesh' mesh='m'/>", "m'/>", "unknown mesh `m`", ""),
+        ("<geom type='mesh'/>", "<geom", "a shape of type `mesh` without `mesh`", ""),
         (
-            "<geom type='mesh' mesh='m'/>",
+            "<geom type='box' mesh='m'/>",
             "<geom",
-            "the mass properties of a mesh are not computed",
+            "the mass properties of a shape that is fitted to a mesh are not computed",
             "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them",
         ),
         ("<geom type='bix' size='1 1 1'/>", "bix", "unknown shape `bix`", "did you mean `box`?"),
@@ -328,6 +374,28 @@ fn included_files_stand_in_the_place_of_their_elements() {
         ),
     ] {
         let answer = folder.answer(&model(inside));
+        assert!(answer.starts_with(expected), "{answer}");
+    }
+}
+
+#[test]
+fn meshes_that_cannot_be_read() {
+    let files = [("a.obj", "v 0 0 0\nf 1 1 1\n"), ("b.stl", "solid ascii"), ("c.dae", "<COLLADA/>")];
+    let folder = Folder::new("meshes", &files);
+    for (asset, expected) in [
+        ("file='a.obj'", "r.xml:1:28: mesh `a.obj` has no volume"),
+        ("file='b.stl'", "r.xml:1:28: mesh `b.stl` is damaged, or not what its name says"),
+        (
+            "file='c.dae'",
+            "r.xml:1:28: mesh `c.dae` is of a format that is not read: expected `.stl`, `.obj` or `.msh`",
+        ),
+        ("file='no.stl'", "r.xml:1:28: cannot read the mesh `no.stl`: "),
+        ("name='no'", "r.xml:1:16: the mass of a mesh without `file` is not computed"),
+    ] {
+        let stem = asset.split(['\'', '.']).nth(1).unwrap_or_default();
+        let answer = folder.answer(&format!(
+            "<mujoco><asset><mesh {asset}/></asset><worldbody><body><geom type='mesh' mesh='{stem}'/></body></worldbody></mujoco>"
+        ));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }

@@ -67,6 +67,7 @@ impl<'g> Builder<'_, 'g> {
             Shape::Cuboid(edges) => Form::Cuboid(edges.map(length)),
             Shape::Cylinder(radius, along) => Form::Drum(length(radius), length(along), z),
             Shape::Capsule(radius, along) => Form::Capsule(length(radius), length(along), z),
+            Shape::Ellipsoid(radii) => Form::Ellipsoid(radii.map(length)),
             Shape::Mesh => return None,
         };
         Some(Surface { home: Placed { pose, ..home }, form })
