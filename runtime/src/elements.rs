@@ -417,7 +417,15 @@ pub enum Slipping {}
 /// `friction`, the coefficient of Coulomb's friction, and `restitution`, the part of the speed of approach with which
 /// surfaces leave each other, are zero unless given, and may be expressions of parameters. Contacts are no constraints: the
 /// functions of the dynamics are those of bodies that move freely, and the module [`contact`](crate::contact) says what contacts do
-/// to them. The points of one declaration are named `name.0`, `name.1`, ….
+/// to them.
+///
+/// Surfaces may yield instead: with `stiffness = k`, N/m, they press with `k δ (1 + d δ̇)` where they overlap by `δ`, and with
+/// `hertz = k`, N/m^1.5, with `k δ^1.5 (1 + d δ̇)` as round bodies do. `dissipation = d`, s/m, is zero unless given; surfaces never
+/// pull (Hunt and Crossley, J. Appl. Mech. 42, 1975). Friction is `μ` times that against the slip, and falls off below
+/// `speed = …`, 1e-3 m/s unless given. Such a contact is a force element: it is part of forward and inverse dynamics, energies and all
+/// derivatives, moves with every method of integration, and is not among `CONTACTS`.
+///
+/// The points of one declaration are named `name.0`, `name.1`, ….
 pub enum Contact {}
 
 /// State of first order: the lag of an engine or an actuator, a filter.

@@ -9,4 +9,5 @@ mod fuzz;
 mod laws;
 mod mechanisms;
 mod robots;
+mod soft;
 mod terrain;

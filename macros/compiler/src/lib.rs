@@ -440,7 +440,7 @@ impl Source {
                 false => requests,
             },
             constraints,
-            contacts: if description.contacts.is_empty() { [0; 2] } else { [1; 2] },
+            contacts: if description.contacts.iter().all(|c| c.soft.is_some()) { [0; 2] } else { [1; 2] },
             bodies: outline.bodies.len(),
             // How many base parameters there are, only the equations could tell.
             base: 7 * nv,

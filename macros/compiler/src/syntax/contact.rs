@@ -1,10 +1,10 @@
 //! Contacts: two surfaces that may part, strike, slide and stick.
 
 use super::arguments::Arguments;
-use super::{Contact, Description, Expr, ExprKind, Name};
+use super::{Contact, Description, Expr, ExprKind, Name, Softness};
 use crate::diag::Diagnostics;
 
-const KEYS: [&str; 2] = ["friction", "restitution"];
+const KEYS: [&str; 6] = ["friction", "restitution", "stiffness", "hertz", "dissipation", "speed"];
 
 /// How a contact is written.
 pub const EXAMPLE: &str = "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]";
@@ -18,12 +18,13 @@ pub fn read_contact(
 ) {
     let friction = arguments.take_expr("friction", cx);
     let restitution = arguments.take_expr("restitution", cx);
+    let soft = read_softness(&name, restitution.as_ref(), arguments, cx);
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();
     arguments.finish("a Contact", &KEYS, cx);
     match (surfaces.next(), surfaces.next(), surfaces.next()) {
         (Some(first), Some(second), None) => {
-            description.contacts.push(Contact { name, first, second, friction, restitution });
+            description.contacts.push(Contact { name, first, second, friction, restitution, soft });
         }
         (Some(only), None, _) => {
             cx.error(only.place, "expected two surfaces, found one").help(format!("write `{EXAMPLE}`"));
@@ -37,6 +38,38 @@ pub fn read_contact(
         }
         _ => {}
     }
+}
+
+/// How the surfaces yield, if they do.
+fn read_softness(
+    name: &Name,
+    restitution: Option<&Expr>,
+    arguments: &mut Arguments,
+    cx: &mut Diagnostics,
+) -> Option<Softness> {
+    let [linear, hertz, dissipation, speed] =
+        ["stiffness", "hertz", "dissipation", "speed"].map(|key| arguments.take_expr(key, cx));
+    let (stiffness, hertz) = match (linear, hertz) {
+        (Some(linear), None) => (linear, false),
+        (None, Some(hertz)) => (hertz, true),
+        (Some(_), Some(hertz)) => {
+            cx.error(hertz.place, format!("`{}` has two stiffnesses", name.text))
+                .help("`stiffness` is force by overlap, `hertz` force by its power of 3/2: write one");
+            return None;
+        }
+        (None, None) => {
+            if let Some(e) = dissipation.or(speed) {
+                cx.error(e.place, format!("`{}` is rigid: nothing yields in it", name.text))
+                    .help("add `stiffness = …`, N/m, where surfaces yield");
+            }
+            return None;
+        }
+    };
+    if let Some(e) = restitution {
+        cx.error(e.place.clone(), "surfaces that yield have no coefficient of restitution")
+            .help("`dissipation`, s/m, takes energy from their impacts");
+    }
+    Some(Softness { stiffness, hertz, dissipation, speed })
 }
 
 /// The word for what a file says of a link's shape.

@@ -346,6 +346,21 @@ pub struct Contact {
     pub friction: Option<Expr>,
     /// Coefficient of restitution; zero if absent.
     pub restitution: Option<Expr>,
+    /// The surfaces yield instead of being rigid.
+    pub soft: Option<Softness>,
+}
+
+/// How surfaces yield.
+#[derive(Clone, Debug)]
+pub struct Softness {
+    /// Force by overlap, or by its power of 3/2.
+    pub stiffness: Expr,
+    /// The power is that of bodies with round surfaces (Hertz).
+    pub hertz: bool,
+    /// Dissipation by speed of approach (Hunt and Crossley); none if absent.
+    pub dissipation: Option<Expr>,
+    /// Speed of slip below which friction falls off.
+    pub speed: Option<Expr>,
 }
 
 /// A frame: axes without a place.

@@ -8,6 +8,7 @@ mod cones;
 mod contact_point;
 mod force;
 mod slipping;
+mod soft;
 mod surface;
 pub use force::stands_alone;
 mod terrain;

@@ -25,13 +25,13 @@ const FLAT: f64 = 1e-24;
 const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
 /// A point where two surfaces may touch.
-struct Point<'g> {
+pub(super) struct Point<'g> {
     /// Distance.
-    gap: Expr<'g>,
+    pub(super) gap: Expr<'g>,
     /// Normal and tangents, towards the first surface, each with the rate along it.
-    rates: [(Vec3<'g>, Expr<'g>); 3],
+    pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
     /// The link in whose axes the directions are.
-    ancestor: Option<LinkId>,
+    pub(super) ancestor: Option<LinkId>,
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -60,7 +60,11 @@ impl<'g> Builder<'_, 'g> {
             None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
             _ => self.touching(&contact.second, cx),
         };
+        let soft = contact.soft.as_ref().map(|soft| self.softness(soft, cx));
         let (Some(firsts), Some(seconds), Some(laws)) = (firsts, seconds, laws) else { return };
+        if let Some(None) = soft {
+            return;
+        }
         let place = contact.first.place.to(&contact.second.place);
         let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
         let mut points: Vec<Point<'g>> = Vec::new();
@@ -87,7 +91,10 @@ impl<'g> Builder<'_, 'g> {
         for (k, point) in apart.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
-            self.add_point(name, point, laws, &mut forces);
+            match soft.as_ref().and_then(Option::as_ref) {
+                Some(soft) => self.add_soft_point(point, laws.0, soft, &mut forces),
+                None => self.add_point(name, point, laws, &mut forces),
+            }
         }
         self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), forces);
     }

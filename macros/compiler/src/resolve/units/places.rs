@@ -83,6 +83,13 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
         places.surface(&contact.first);
         places.surface(&contact.second);
         places.all(contact.friction.iter().chain(&contact.restitution), &PLAIN, "1");
+        if let Some(soft) = &contact.soft {
+            let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
+            let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));
+            places.maybe([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
+            places.maybe(&soft.dissipation, TIME.over(&LENGTH), "s/m");
+            places.all(&soft.speed, &SPEED, "m/s");
+        }
     }
     for (_, e) in &d.energies {
         places.add(e, &ENERGY, "J");

@@ -1,0 +1,89 @@
+//! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient of restitution
+//! interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth in the slip.
+
+use super::unilateral::Point;
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Extreme, Vec3};
+use crate::kinematics::velocity_gradient;
+use crate::mechanism::{LinkId, Load, Rule};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context};
+use crate::syntax::{self, Softness};
+
+/// The speed of slip below which friction falls off, m/s.
+const SPEED: f64 = 1e-3;
+
+/// An overlap that is none, m: keeps the derivative of its root finite.
+const NONE: f64 = 1e-30;
+
+/// How surfaces yield.
+pub(super) struct Soft<'g> {
+    stiffness: Expr<'g>,
+    hertz: bool,
+    dissipation: Expr<'g>,
+    speed: Expr<'g>,
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// Reads how surfaces yield; `None` after a mistake.
+    pub(super) fn softness(&self, soft: &Softness, cx: &mut Diagnostics) -> Option<Soft<'g>> {
+        let g = self.scope.graph;
+        let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
+            let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+            let positive = rule == Rule::Positive;
+            if let Some(n) = value.value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
+                let must = if positive { "must be positive" } else { "cannot be negative" };
+                cx.error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
+                return None;
+            }
+            self.scope.require(rule, || format!("the {what} of a contact"), &[value]);
+            Some(value)
+        };
+        let stiffness = read(&soft.stiffness, "stiffness", Rule::Positive);
+        let dissipation = match &soft.dissipation {
+            Some(e) => read(e, "dissipation", Rule::NotNegative),
+            None => Some(g.zero()),
+        };
+        let speed = match &soft.speed {
+            Some(e) => read(e, "speed", Rule::Positive),
+            None => Some(g.num(SPEED)),
+        };
+        Some(Soft { stiffness: stiffness?, hertz: soft.hertz, dissipation: dissipation?, speed: speed? })
+    }
+
+    /// Adds what acts at a point: energy of the overlap, what takes energy from its rate, and friction.
+    pub(super) fn add_soft_point(
+        &mut self,
+        point: &Point<'g>,
+        friction: Expr<'g>,
+        soft: &Soft<'g>,
+        forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
+    ) {
+        let g = self.scope.graph;
+        let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
+        let root = if soft.hertz { (overlap + g.num(NONE)).sqrt() } else { g.num(1.0) };
+        let elastic = soft.stiffness * overlap * root;
+        let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
+        self.model.potentials.push(energy);
+        let [(normal, rate), tangents @ ..] = point.rates;
+        // Surfaces do not pull at each other.
+        let damping = (-(elastic * soft.dissipation * rate)).extreme(Extreme::Max, -elastic);
+        let pressure = elastic + damping;
+        if !soft.dissipation.is_zero() {
+            self.model.loads.push(Load { rate, force: damping, dissipative: true });
+        }
+        forces.push((point.ancestor, normal * pressure));
+        if friction.is_zero() {
+            return;
+        }
+        let slip = tangents.iter().fold(soft.speed.square(), |sum, (_, rate)| sum + rate.square()).sqrt();
+        for (direction, rate) in tangents {
+            if velocity_gradient(rate).is_empty() {
+                continue;
+            }
+            let force = -(friction * pressure * rate / slip);
+            self.model.loads.push(Load { rate, force, dissipative: true });
+            forces.push((point.ancestor, direction * force));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Contacts whose surfaces yield.
+
+use linkwork::prelude::*;
+
+#[mechanism(gravity = -g * z, derivatives)]
+struct Ball {
+    g: f64,
+    mass: f64,
+    stiffness: f64,
+    dissipation: f64,
+    #[particle(mass = mass)]
+    ball: Particle,
+    #[joint(ground -> ball, along = z)]
+    height: Sleeve,
+    #[contact(ball, ground.plane(z), stiffness = stiffness, dissipation = dissipation)]
+    floor: Contact,
+    #[output(contact_force(floor))]
+    load: Vector,
+}
+
+#[mechanism(gravity = -g * z, derivatives)]
+struct Round {
+    g: f64,
+    mass: f64,
+    stiffness: f64,
+    dissipation: f64,
+    #[particle(mass = mass)]
+    ball: Particle,
+    #[joint(ground -> ball, along = z)]
+    height: Sleeve,
+    #[contact(ball, ground.plane(z), hertz = stiffness, dissipation = dissipation)]
+    floor: Contact,
+}
+
+/// They stand as deep as their weight presses them in, and the contact's force is the weight.
+#[test]
+fn bodies_stand_as_deep_as_they_are_heavy() {
+    let m = Ball { g: 9.81, mass: 2.0, stiffness: 5e4, dissipation: 0.3 };
+    let depth = m.mass * m.g / m.stiffness;
+    assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-12);
+    assert!((m.load(&[-depth].into(), &[0.0].into())[2] - m.mass * m.g).abs() < 1e-12);
+    assert_eq!(m.load(&[1e-9].into(), &[-1.0].into()).norm(), 0.0);
+    // Pulled out fast, it is let go and not held.
+    assert_eq!(m.load(&[-depth].into(), &[10.0].into())[2], 0.0);
+    let m = Round { g: 9.81, mass: 2.0, stiffness: 5e6, dissipation: 0.3 };
+    let depth = (m.mass * m.g / m.stiffness).powf(2.0 / 3.0);
+    assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-11);
+}
+
+/// When it leaves the ground which it struck at one metre a second, and how fast.
+fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64) {
+    let (mut early, mut late) = (longest * 0.3, longest);
+    for _ in 0..50 {
+        let middle = (early + late) / 2.0;
+        if at(middle).q[0] < 0.0 { early = middle } else { late = middle }
+    }
+    (late, at(late).v[0])
+}
+
+/// An impact lasts half a period of the spring, and 2.9432 times the depth over the speed for round bodies (Johnson, *Contact
+/// Mechanics*, 1985, § 11.4); without dissipation it is elastic.
+#[test]
+fn impacts_last_as_long_as_closed_forms_say() {
+    let method = || DormandPrince::new().tolerance(1e-12, 1e-14);
+    let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation: 0.0 };
+    let at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
+    let (time, speed) = rebound(at, half * 1.5);
+    assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
+    let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
+    let at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
+    let (time, speed) = rebound(at, 4.0 * depth);
+    assert!(
+        (time / depth - 2.943_274).abs() < 1e-5 && (speed - 1.0).abs() < 1e-8,
+        "{} {speed}",
+        time / depth
+    );
+}
+
+/// The coefficient of restitution falls with the speed, by two thirds of the dissipation to first order (Hunt and Crossley, 1975).
+#[test]
+fn restitution_falls_with_the_speed() {
+    for dissipation in [0.003, 0.03] {
+        let restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
+        let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
+        let at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, linear) = rebound(at, 0.05);
+        let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
+        let at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, round) = rebound(at, 0.05);
+        for found in [linear, round] {
+            assert!((found - restitution(1.0)).abs() < dissipation * dissipation, "{dissipation}: {found}");
+        }
+    }
+}
+
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Bowling {
+    friction: f64,
+    #[body(mass = 6, inertia = sphere(6, 0.11))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.11), ground.plane(z), stiffness = 1e6, dissipation = 0.5, friction = friction, speed = 1e-4)]
+    lane: Contact,
+}
+
+/// A ball that slides begins to roll, with 5/7 of its speed.
+#[test]
+fn a_ball_begins_to_roll() {
+    let m = Bowling { friction: 0.2 };
+    let depth = 6.0 * 9.81 / 1e6;
+    let start = [0.0, 0.0, 0.11 - depth, 0.0, 0.0, 0.0, 1.0];
+    let run = simulate(&m)
+        .from(start, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        .method(Rodas::new().tolerance(1e-7, 1e-9))
+        .duration(1.0);
+    let end = run.finish().unwrap();
+    let speed = end.v.fixed_rows::<3>(0).norm();
+    assert!((speed - 10.0 / 7.0).abs() < 1e-3, "{speed}");
+}
+
+/// Its derivatives are those of its accelerations, in the ground and above it.
+#[test]
+fn derivatives_see_what_yields() {
+    let m = Bowling { friction: 0.2 };
+    let tau = SVector::<f64, 6>::zeros();
+    for height in [0.1099, 0.2] {
+        let q = m.integrate(
+            &[0.3, -0.2, height, 0.0, 0.0, 0.0, 1.0].into(),
+            &[0.0, 0.0, 0.0, 0.2, 0.5, -0.3].into(),
+        );
+        let v = SVector::from([0.3, -0.1, 0.02, 0.4, -0.2, 0.1]);
+        let (by_q, by_v, _) = m.forward_dynamics_derivatives(&q, &v, &tau);
+        let h = 1e-7;
+        for k in 0..6 {
+            let mut step = SVector::<f64, 6>::zeros();
+            step[k] = h;
+            let of_q = |s: f64| m.forward_dynamics(&m.integrate(&q, &(step * s)), &v, &tau);
+            let of_v = |s: f64| m.forward_dynamics(&q, &(v + step * s), &tau);
+            let size = by_q.amax().max(by_v.amax()).max(1.0);
+            assert!(((of_q(1.0) - of_q(-1.0)) / (2.0 * h) - by_q.column(k)).amax() < 1e-6 * size);
+            assert!(((of_v(1.0) - of_v(-1.0)) / (2.0 * h) - by_v.column(k)).amax() < 1e-6 * size);
+        }
+    }
+}
