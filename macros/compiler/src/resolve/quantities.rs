@@ -68,6 +68,9 @@ impl<'g> Scope<'_, 'g> {
                 drop(kinematics);
                 return self.rate_of_value(function, argument, cx).map(Value::Scalar);
             }
+            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_news(&name, cx) {
+                return None;
+            }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
             let known: Vec<&str> = known.collect();
             let error = cx.error(argument.place.clone(), "`rate` takes a coordinate");

@@ -240,10 +240,8 @@ pub const TORQUE: Words = &[
 pub const CONTACT: Words = &[
     ("mu muk mus coefficient frictioncoefficient coulomb", "friction"),
     ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),
-    (
-        "stiffness damping k c compliance",
-        "a contact is rigid; one that yields is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch, 0), 2)`",
-    ),
+    ("k compliance rigidity", "stiffness"),
+    ("damping c damper", "dissipation"),
     ("on between surfaces bodies", "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`"),
 ];
 
