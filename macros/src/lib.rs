@@ -85,6 +85,7 @@ use std::path::PathBuf;
 /// | `skip_passes = [pass, …]` | passes over the model that are left out, of `frames` (link frames moved to where placements are sparse), `regroup` (mass properties moved towards the base), `parallel` (links on parallel axes described in common ones) and `limbs` (alike limbs, and joints of one path, as SIMD lanes); none if not given. The functions are the same to rounding, and cost more |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; when it changes, the crate is compiled again |
 /// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes, in the same way |
+/// | `sdf = "path"` | an SDF file of one model, in the same way |
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given. MJCF files say that themselves: `free` is for those with one outermost body and no joint on it |
 /// | `passive = honour` or `ignore` | damping, friction and springs of the file's joints and tendons; honour if not given |
 /// | `mimic = follow` or `independent` | joints with a `mimic` tag, and `<equality>` of MJCF; follow if not given |

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`first_mechanism`] | a pendulum, from its declaration to its motion; a controller |
 //! | [`language`] | all that can stand in a mechanism's struct |
-//! | [`robots`] | mechanisms from URDF and MJCF files |
+//! | [`robots`] | mechanisms from URDF, MJCF and SDF files |
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
 //! | [`contact`] | surfaces and stops that touch and part: impacts, friction that holds |
 //! | [`functions`] | what is generated |

@@ -1,5 +1,5 @@
 #![cfg_attr(not(feature = "std"), no_std)]
-//! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF or MJCF file: an
+//! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF, MJCF or SDF file: an
 //! attribute macro checks the mechanism, derives its equations of motion, and generates functions for them, specialised
 //! for this one mechanism. They do not allocate, do not panic in release builds, and need no standard library.
 //!
@@ -40,7 +40,7 @@
 //! # Where to read on
 //!
 //! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), and has chapters on the
-//! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF and MJCF files,
+//! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
 //! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
 //! [simulating](guide/simulating/index.html), [control](guide/control/index.html), [batches](guide/batches/index.html) of states,
 //! targets [without std](guide/without_std/index.html), [speed](guide/speed/index.html), and the names of things

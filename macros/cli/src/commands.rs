@@ -57,7 +57,9 @@ fn with_input(command: Command) -> Command {
         .arg(
             Arg::new("file")
                 .value_name("FILE")
-                .help("A robot file (URDF or MJCF), or a Rust file with structs that have `#[mechanism]`")
+                .help(
+                    "A robot file (URDF, MJCF or SDF), or a Rust file with structs that have `#[mechanism]`",
+                )
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )

@@ -225,7 +225,9 @@ fn format_of(path: &Path, text: &str) -> FileFormat {
     let is = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
     match () {
         () if is("urdf") => FileFormat::Urdf,
+        () if is("sdf") || is("world") => FileFormat::Sdf,
         () if is("mjcf") || text.contains("<mujoco") => FileFormat::Mjcf,
+        () if text.contains("<sdf") => FileFormat::Sdf,
         () => FileFormat::Urdf,
     }
 }

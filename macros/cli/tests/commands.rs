@@ -126,6 +126,17 @@ fn robots_are_read_in_their_formats() {
         let (status, shown, _) = linkwork(&here, &["show", name]);
         assert!(status == 0 && shown.contains("m  N·m"), "{shown}");
     }
+    let model = "<sdf version='1.9'><model name='m'><link name='a'/><link name='b'/>\
+                 <joint name='turn' type='revolute'><parent>a</parent><child>b</child><axis/></joint></model></sdf>";
+    for name in ["box.xml", "box.sdf", "box.world"] {
+        std::fs::write(here.join(name), model).unwrap();
+        let (status, shown, _) = linkwork(&here, &["show", name]);
+        assert!(status == 0 && shown.contains("turn  N·m"), "{shown}");
+    }
+    let template = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:include filename='a'/></robot>";
+    std::fs::write(here.join("arm.urdf.xacro"), template).unwrap();
+    let (status, _, said) = linkwork(&here, &["check", "arm.urdf.xacro"]);
+    assert!(status == 1 && said.contains("expand the file first: `xacro robot.urdf.xacro"), "{said}");
     let (status, _, said) = linkwork(&here, &["check", "arm.urdf"]);
     assert!(
         status == 1 && said.starts_with("arm.urdf:1:1: error: expected `<robot>`, found `<mujoco>`"),

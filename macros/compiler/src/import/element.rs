@@ -52,6 +52,9 @@ fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
 
 /// Reports an element whose name is nearly one of `known`.
 pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+    if known.contains(&node.tag_name().name()) {
+        return;
+    }
     if let Some(best) = nearest(node.tag_name().name(), known) {
         let help = format!("did you mean `<{best}>`?");
         cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| d.help(help));
@@ -125,8 +128,34 @@ pub(super) fn numbers<const N: usize>(
     cx: &mut Cx<'_>,
 ) -> Option<Placed<[f64; N]>> {
     let found = node.attribute_node(attribute)?;
-    let (text, start) = (found.value(), found.range_value().start);
-    let place = cx.place(start);
+    read_numbers(found.value(), found.range_value(), attribute, cx)
+}
+
+/// Finite numbers with spaces between them that an element contains.
+pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Placed<[f64; N]>> {
+    match node.children().find(|child| child.is_text()) {
+        Some(text) => read_numbers(text.text().unwrap_or_default(), text.range(), node.tag_name().name(), cx),
+        None => read_numbers("", node.range(), node.tag_name().name(), cx),
+    }
+}
+
+/// The word that an element contains, with its place.
+pub(super) fn word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
+    let found = node.children().find(|child| child.is_text())?;
+    let whole = found.text()?;
+    let before = whole.len() - whole.trim_start().len();
+    let text = whole.trim().to_string();
+    (!text.is_empty()).then(|| Name { text, place: cx.place(found.range().start + before) })
+}
+
+fn read_numbers<const N: usize>(
+    text: &str,
+    range: std::ops::Range<usize>,
+    attribute: &str,
+    cx: &mut Cx<'_>,
+) -> Option<Placed<[f64; N]>> {
+    let start = range.start;
+    let place = cx.place(start + text.len() - text.trim_start().len());
     if text.contains(',') {
         // One habit is one mistake, however many vectors of the file have it.
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
@@ -143,7 +172,7 @@ pub(super) fn numbers<const N: usize>(
         return None;
     }
     // References (`&#32;`) in the value move its words away from their places in the file.
-    let verbatim = cx.slice(found.range_value()) == Some(text);
+    let verbatim = cx.slice(range) == Some(text);
     let mut value = [0.0; N];
     let mut good = true;
     for (k, word) in text.split_ascii_whitespace().enumerate() {

@@ -1,7 +1,7 @@
 //! Files of other formats → the lists of bodies and joints of a [`Description`](crate::syntax::Description),
 //! with line and column of every word and number.
 //!
-//! Knows XML, URDF and MJCF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
+//! Knows XML, URDF, MJCF and SDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
 //! limits, transmissions or the extensions of simulators.
 
 use crate::diag::Diagnostics;
@@ -15,7 +15,9 @@ mod element;
 mod file;
 mod imported;
 mod mjcf;
+mod pose;
 mod robot;
+mod sdf;
 mod urdf;
 mod xml;
 
@@ -39,7 +41,15 @@ pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnos
     match options.format {
         FileFormat::Urdf => import_urdf(text, options, cx),
         FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
+        FileFormat::Sdf => import_sdf(text, options, cx),
     }
+}
+
+fn import_sdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+    let cx = &mut context::Cx::new(text, &options.path, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(text, &declared, options.format, cx)?;
+    sdf::read(document.root_element(), options, cx)
 }
 
 fn import_urdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {

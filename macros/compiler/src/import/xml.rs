@@ -1,5 +1,5 @@
 //! Text → XML tree, with the limits that keep a hostile file from taking time or memory, and the parser's
-//! errors in our words. Knows of URDF only that it is sometimes made by xacro.
+//! errors in our words. Knows of the formats only that files are sometimes made by xacro.
 
 use super::context::{Cx, quote};
 use crate::diag::Place;
@@ -10,7 +10,8 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 /// Elements inside one another. URDF needs six, MJCF one for each link of a chain.
-const DEEPEST: [(FileFormat, usize); 2] = [(FileFormat::Urdf, 64), (FileFormat::Mjcf, 256)];
+const DEEPEST: [(FileFormat, usize); 3] =
+    [(FileFormat::Urdf, 64), (FileFormat::Mjcf, 256), (FileFormat::Sdf, 64)];
 /// Attributes of one element: the parser compares each with each.
 const MOST_ATTRIBUTES: usize = 64;
 /// Namespace declarations of a file: the parser hands each down the tree.
@@ -58,7 +59,7 @@ pub(super) fn parse<'t>(
         }
     };
     let error = match parse_plain(text) {
-        Ok(document) => return refuse_template(&document, cx).then_some(document),
+        Ok(document) => return refuse_template(&document, format, cx).then_some(document),
         Err(error) => error,
     };
     let at = behind_name(text, root);
@@ -70,7 +71,7 @@ pub(super) fn parse<'t>(
     let error = match &declarations {
         none if none.is_empty() => error,
         some => match parse_plain(declared.get_or_init(|| with(text, at, some))) {
-            Ok(document) => return refuse_template(&document, cx).then_some(document),
+            Ok(document) => return refuse_template(&document, format, cx).then_some(document),
             Err(error) => error,
         },
     };
@@ -214,29 +215,53 @@ fn scan_tag<'t>(
 }
 
 /// Reports a file that xacro has still to expand, once; true if it is none.
-fn refuse_template(document: &Document<'_>, cx: &mut Cx<'_>) -> bool {
+fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>) -> bool {
     for node in document.descendants().filter(Node::is_element) {
         let name = node.tag_name();
         if name.namespace().is_some_and(|uri| uri.contains("xacro")) {
             let message =
                 format!("{} is an instruction to xacro", quote(&format!("<xacro:{}>", name.name())));
-            cx.error(&cx.place(node.range().start), message, |d| d.help(RUN_XACRO));
+            cx.error(&cx.place(node.range().start), message, |d| d.help(run_xacro(format)));
             return false;
         }
-        if !READ.contains(&name.name()) {
-            continue;
-        }
-        let is_expression = |value: &str| value.contains("${") || value.contains("$(");
-        if let Some(attribute) = node.attributes().find(|a| is_expression(a.value())) {
-            let message = format!("{} is an expression of xacro", quote(attribute.value()));
-            cx.error(&cx.place(attribute.range_value().start), message, |d| d.help(RUN_XACRO));
+        if let Some((offset, value)) = expression(node, format) {
+            let message = format!("{} is an expression of xacro", quote(value));
+            cx.error(&cx.place(offset), message, |d| d.help(run_xacro(format)));
             return false;
         }
     }
     true
 }
 
-const RUN_XACRO: &str = "expand the file first: `xacro robot.urdf.xacro > robot.urdf`";
+/// An expression that xacro would have put a value for, and where it is.
+fn expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
+    let is_read = READ.contains(&node.tag_name().name());
+    let is_expression = |value: &str| value.contains("${") || value.contains("$(");
+    let attributes = node.attributes().filter(|_| is_read || format == FileFormat::Sdf);
+    let mut said = attributes.filter(|attribute| is_expression(attribute.value()));
+    if let Some(found) = said.next() {
+        return Some((found.range_value().start, document_slice(node, found.range_value())?));
+    }
+    // What SDF says stands in elements; those with elements in them, and plug-ins, may hold anything.
+    let text = node.first_child().filter(|child| format == FileFormat::Sdf && child.is_text())?;
+    let in_plugin = node.ancestors().any(|above| above.tag_name().name() == "plugin");
+    let found = text.text().filter(|text| is_expression(text) && !in_plugin)?;
+    let before = found.len() - found.trim_start().len();
+    Some((text.range().start + before, document_slice(node, text.range())?.trim()))
+}
+
+fn document_slice<'t>(node: Node<'_, 't>, range: std::ops::Range<usize>) -> Option<&'t str> {
+    node.document().input_text().get(range)
+}
+
+/// What expands a template.
+fn run_xacro(format: FileFormat) -> &'static str {
+    match format {
+        FileFormat::Urdf => "expand the file first: `xacro robot.urdf.xacro > robot.urdf`",
+        FileFormat::Mjcf => "expand the file first: `xacro robot.xml.xacro > robot.xml`",
+        FileFormat::Sdf => "expand the file first: `xacro robot.sdf.xacro > robot.sdf`",
+    }
+}
 
 /// Reports the parser's error.
 fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat, cx: &mut Cx<'_>) {
@@ -258,7 +283,7 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
             "this `&` begins no entity".to_string()
         }
         Error::UnknownNamespace(prefix, _) => {
-            help = (prefix == "xacro").then_some(RUN_XACRO);
+            help = (prefix == "xacro").then_some(run_xacro(format));
             format!("unknown namespace prefix {}", quote(prefix))
         }
         other => other.to_string().replace(&format!(" at {}", other.pos()), "").replace('\'', "`"),
@@ -267,6 +292,7 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
         help = Some(match format {
             FileFormat::Urdf => "a URDF file is XML: `<robot name=\"…\"> … </robot>`",
             FileFormat::Mjcf => "an MJCF file is XML: `<mujoco> … </mujoco>`",
+            FileFormat::Sdf => "an SDF file is XML: `<sdf version=\"…\"> … </sdf>`",
         });
     }
     cx.error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {

@@ -24,7 +24,7 @@ use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type}
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 19] = [
+const OPTIONS: [&str; 20] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -32,6 +32,7 @@ const OPTIONS: [&str; 19] = [
     "scalar",
     "urdf",
     "mjcf",
+    "sdf",
     "base",
     "passive",
     "mimic",

@@ -155,17 +155,20 @@ pub enum FileFormat {
     Urdf,
     /// `mjcf = "…"`
     Mjcf,
+    /// `sdf = "…"`
+    Sdf,
 }
 
 impl FileFormat {
     /// All of them.
-    pub const ALL: [FileFormat; 2] = [FileFormat::Urdf, FileFormat::Mjcf];
+    pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
     /// The word among the attribute's arguments.
     pub fn word(self) -> &'static str {
         match self {
             FileFormat::Urdf => "urdf",
             FileFormat::Mjcf => "mjcf",
+            FileFormat::Sdf => "sdf",
         }
     }
 
@@ -174,6 +177,7 @@ impl FileFormat {
         match self {
             FileFormat::Urdf => "URDF",
             FileFormat::Mjcf => "MJCF",
+            FileFormat::Sdf => "SDF",
         }
     }
 
@@ -182,6 +186,7 @@ impl FileFormat {
         match self {
             FileFormat::Urdf => "a URDF file",
             FileFormat::Mjcf => "an MJCF file",
+            FileFormat::Sdf => "an SDF file",
         }
     }
 
@@ -190,6 +195,7 @@ impl FileFormat {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
             FileFormat::Mjcf => &["xml", "mjcf"],
+            FileFormat::Sdf => &["sdf", "world"],
         }
     }
 }

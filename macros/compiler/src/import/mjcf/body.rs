@@ -4,7 +4,6 @@ use super::defaults::{Element, choice};
 use super::frame::{ORIENTATIONS, read_pose};
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
-use super::pose::{Pose, about, add, apply, product, scale};
 use super::reader::{Reader, give, origin};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
@@ -12,6 +11,7 @@ use crate::import::element::{
     Node, check_attributes, check_element_name, elements, name, number, place, tag,
 };
 use crate::import::imported::Placed;
+use crate::import::pose::{Pose, about, add, apply, product, scale};
 use crate::import::robot::{FileJoint, FileLimits, MOST, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
@@ -403,6 +403,7 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
         axis: Placed { value: [0.0, 0.0, 1.0], place },
         mimic: None,
         held: None,
+        lead: None,
         limits: FileLimits::default(),
         damping: None,
         friction: None,
@@ -435,6 +436,7 @@ fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJ
         axis: joint.axis,
         mimic: None,
         held: None,
+        lead: None,
         limits: joint.limits,
         damping: joint.damping,
         friction: joint.friction,

@@ -1,10 +1,10 @@
 //! Geometry for contact → shapes that contacts name.
 
 use super::body::Shaped;
-use super::pose::Pose;
 use super::reader::{Reader, origin};
 use crate::import::context::Cx;
 use crate::import::element::place;
+use crate::import::pose::Pose;
 use crate::import::robot::FileCollision;
 use crate::syntax::Shape;
 

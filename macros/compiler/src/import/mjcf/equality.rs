@@ -1,10 +1,10 @@
 //! `<equality>`: joints that follow others, and loops that are closed.
 
 use super::defaults::Element;
-use super::pose::{Pose, of_quaternion};
 use super::reader::{Reader, origin};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, place};
+use crate::import::pose::{Pose, of_quaternion};
 use crate::import::robot::{bare_joint, unused};
 use crate::syntax::{Endpoint, GROUND, JointKind, Mimic, Name};
 

@@ -1,12 +1,12 @@
 //! Positions and orientations of elements.
 
 use super::defaults::Element;
-use super::pose::{
-    IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
-};
 use super::settings::Settings;
 use crate::import::context::Cx;
 use crate::import::imported::Placed;
+use crate::import::pose::{
+    IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
+};
 
 /// The ways to say an orientation.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
@@ -67,7 +67,7 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let size = length(y);
             check_length(size, "the y axis, without what it has of x,", &found, cx)?;
             let y = scale(y, 1.0 / size);
-            Some(super::pose::transpose(&[x, y, cross(x, y)]))
+            Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
         _ => {
             let z = element.numbers::<3>("zaxis", cx)?;

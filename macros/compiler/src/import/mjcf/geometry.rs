@@ -3,10 +3,10 @@
 use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
 use super::mesh::Meshes;
-use super::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
 use super::settings::{Settings, Source};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, numbers, place};
+use crate::import::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
 use std::f64::consts::PI;
 
 /// Mass properties in body axes.
@@ -32,7 +32,7 @@ impl Mass {
     /// The same seen from the frame that this one has `pose` in.
     pub(super) fn placed(&self, pose: &Pose) -> Mass {
         Mass {
-            com: add(pose.at, super::pose::apply(&pose.axes, self.com)),
+            com: add(pose.at, crate::import::pose::apply(&pose.axes, self.com)),
             inertia: turned(&pose.axes, &self.inertia),
             ..*self
         }

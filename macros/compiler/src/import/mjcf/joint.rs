@@ -1,11 +1,11 @@
 //! `<joint>` and `<freejoint>` → what one degree of freedom, or a ball, or a free body does.
 
 use super::defaults::Element;
-use super::pose::{Vector, length, scale};
 use super::reader::Reader;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, name, place};
 use crate::import::imported::Placed;
+use crate::import::pose::{Vector, length, scale};
 use crate::import::robot::{FileLimits, unused};
 use crate::syntax::{Drive, DriveLaw, Expr, JointKind, Name};
 

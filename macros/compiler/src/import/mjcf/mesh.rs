@@ -5,10 +5,10 @@
 
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
-use super::pose::{Matrix, Vector, add, apply, cross, dot, length, of_quaternion, scale, transpose};
 use super::settings::Settings;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, place};
+use crate::import::pose::{Matrix, Vector, add, apply, cross, dot, length, of_quaternion, scale, transpose};
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 use std::fs;

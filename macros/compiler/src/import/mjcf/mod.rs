@@ -28,7 +28,6 @@ mod geometry;
 mod include;
 mod joint;
 mod mesh;
-mod pose;
 mod reader;
 mod settings;
 mod tendon;
@@ -188,9 +187,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     let message = format!("expected `<mujoco>`, found {}", tag(node));
     cx.error(&place(node, cx), message, |d| match name {
         "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
-        "sdf" => {
-            d.help("this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot")
-        }
+        "sdf" => d.help("this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
         "mujocoinclude" => d.help("this is a part of a model: name the file that includes it"),
         _ => d.suggest(name, ["mujoco"]),
     });

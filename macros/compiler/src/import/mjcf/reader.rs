@@ -3,10 +3,10 @@
 use super::defaults::Defaults;
 use super::geometry::Mass;
 use super::mesh::Meshes;
-use super::pose::{Pose, roll_pitch_yaw, scale};
 use super::settings::Settings;
 use crate::diag::Place;
 use crate::import::imported::Placed;
+use crate::import::pose::{Pose, roll_pitch_yaw, scale};
 use crate::import::robot::{Origin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};

@@ -68,7 +68,11 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
     };
-    bare_joint(name(&text), kind, end_at(name(GROUND)), end_at(link.clone()))
+    let mut ground = end_at(name(GROUND));
+    if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
+        (ground.at, ground.rotated) = (origin.at(), origin.rotated());
+    }
+    bare_joint(name(&text), kind, ground, end_at(link.clone()))
 }
 
 /// A body's own origin.
@@ -101,30 +105,42 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
     }
 }
 
+/// A joint's end on its parent.
+fn parent_of(given: &FileJoint) -> Endpoint {
+    Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() }
+}
+
 fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
-    let mut parent =
-        Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() };
     if let Motion::Frozen(coordinate) = motion {
+        let mut parent = parent_of(&given);
         move_end(&mut parent, &given, coordinate, cx);
         let child = place_at(given.anchor, &given);
         return bare_joint(given.name, JointKind::Weld, parent, child);
     }
-    let (alone, has_axis) = (given.has_coordinate(), given.has_axis());
-    let child = place_at(given.anchor, &given);
-    let mut joint = bare_joint(given.name, given.kind, parent, child);
-    let axis = Expr::vector(given.axis.value, &given.axis.place);
-    match given.kind {
-        // A planar joint moves in the plane perpendicular to its axis.
-        JointKind::Pin | JointKind::Planar => joint.about.push(axis),
-        JointKind::Sleeve => joint.along.push(axis),
-        _ => {}
-    }
-    joint.normalise_axis = has_axis;
-    (joint.damping, joint.friction) = (given.damping, given.friction);
+    let alone = given.has_coordinate();
+    let mut joint = joint_of(given);
     match motion {
         Motion::Follows(mimic) => joint.mimic = Some(mimic),
         _ => joint.driven = options.inputs == InputOption::Joints && alone,
     }
+    joint
+}
+
+/// The joint with all that the file says of its ends and its axis.
+pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
+    let (parent, child) = (parent_of(&given), place_at(given.anchor, &given));
+    let has_axis = given.has_axis();
+    let mut joint = bare_joint(given.name, given.kind, parent, child);
+    let axis = Expr::vector(given.axis.value, &given.axis.place);
+    match given.kind {
+        // A planar joint moves in the plane perpendicular to its axis.
+        JointKind::Pin | JointKind::Planar | JointKind::Screw => joint.about.push(axis),
+        JointKind::Sleeve => joint.along.push(axis),
+        _ => {}
+    }
+    joint.normalise_axis = has_axis;
+    joint.lead = given.lead;
+    (joint.damping, joint.friction) = (given.damping, given.friction);
     joint
 }
 

@@ -27,6 +27,8 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) mimic: Option<Mimic>,
     /// The coordinate at which it is held.
     pub(in crate::import) held: Option<f64>,
+    /// What a screw advances in a turn.
+    pub(in crate::import) lead: Option<Expr>,
     /// Its limits.
     pub(in crate::import) limits: FileLimits,
     /// Viscous damping, not zero.

@@ -21,6 +21,11 @@ pub(in crate::import) const IGNORE_LIMITS: &str =
     "to leave limits out, write `#[mechanism(…, limits = ignore)]`";
 
 impl FileLimits {
+    /// True if there is any.
+    pub(in crate::import) fn bounds(&self) -> bool {
+        [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
+    }
+
     /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's motion, and not
     /// what drives it.
     pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {

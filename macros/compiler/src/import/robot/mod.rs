@@ -3,6 +3,7 @@
 //! Importers read a file into a [`Robot`]; names, locks, followers and the order of coordinates are looked at here. Knows no XML.
 
 mod assemble;
+mod closing;
 mod collision;
 mod drives;
 mod figures;
@@ -16,6 +17,7 @@ mod snap;
 mod tree;
 
 pub(super) use assemble::{assemble, bare_joint};
+pub(super) use closing::close_loops;
 pub(super) use collision::FileCollision;
 pub(super) use figures::make_fields;
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};

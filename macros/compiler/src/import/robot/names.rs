@@ -93,7 +93,7 @@ fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
     let (link, a, b) = (quote(&second.child.text), quote(&first.name.text), quote(&second.name.text));
     cx.error(&second.child.place, format!("link {link} is the child of two joints, {a} and {b}"), |d| {
         d.help(format!("the first is at {}", position(&first.child.place)))
-            .help("the links of a URDF file form a tree; it has no closed loops")
+            .help("the links of a file form a tree; it has no closed loops")
     });
 }
 

@@ -2,6 +2,7 @@
 
 use super::collision::FileCollision;
 use super::joint::FileJoint;
+use super::origin::Origin;
 use crate::syntax::{Body, Drive, Expr, Joint, Name};
 
 /// Links or joints of one file.
@@ -14,6 +15,8 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) links: Vec<Body>,
     /// Its joints.
     pub(in crate::import) joints: Vec<FileJoint>,
+    /// Where the root stands on the ground, if not in its axes.
+    pub(in crate::import) root: Option<Origin>,
     /// Joints that close loops.
     pub(in crate::import) closing: Vec<Joint>,
     /// Collision geometry: the link's number, what it is.

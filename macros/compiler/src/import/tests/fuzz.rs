@@ -60,7 +60,7 @@ pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &st
         let answer = run(options, &String::from_utf8_lossy(&bytes));
         good += usize::from(answer.contains(sign));
     }
-    assert!((100..3900).contains(&good), "damage should spare some files and not others: {good}");
+    assert!((50..3900).contains(&good), "damage should spare some files and not others: {good}");
 }
 
 #[test]

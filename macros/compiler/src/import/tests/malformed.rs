@@ -86,7 +86,7 @@ fn what_is_no_xml_is_shown_some() {
 #[test]
 fn another_format_is_named() {
     for (root, help) in [
-        ("sdf", "this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot"),
+        ("sdf", "this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
         ("mujoco", "this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
         ("Robot", "did you mean `robot`?"),
         ("html", "expected `robot`"),
@@ -115,6 +115,33 @@ fn a_template_is_refused_once() {
         "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/></robot>",
         "body a\nWeld root_joint: ground -> a",
     );
+}
+
+#[test]
+fn templates_of_other_formats_are_refused() {
+    for (format, word, text, expected) in [
+        (
+            FileFormat::Sdf,
+            "sdf",
+            "<sdf><model name='m'><link name='a'><inertial><mass>${m}</mass></inertial></link></model></sdf>",
+            "r.urdf:1:53: `${m}` is an expression of xacro",
+        ),
+        (
+            FileFormat::Sdf,
+            "sdf",
+            "<sdf xmlns:xacro='http://ros.org/wiki/xacro'><xacro:leg/></sdf>",
+            "r.urdf:1:46: `<xacro:leg>` is an instruction to xacro",
+        ),
+        (
+            FileFormat::Mjcf,
+            "xml",
+            "<mujoco xmlns:xacro='http://ros.org/wiki/xacro'><xacro:leg/></mujoco>",
+            "r.urdf:1:49: `<xacro:leg>` is an instruction to xacro",
+        ),
+    ] {
+        let help = format!("= help: expand the file first: `xacro robot.{word}.xacro > robot.{word}`");
+        check_with(&FileOptions { format, ..defaults() }, text, &format!("{expected}\n{help}"));
+    }
 }
 
 #[test]

@@ -282,7 +282,7 @@ fn sections() {
 fn another_format_is_named() {
     for (root, help) in [
         ("robot", "this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
-        ("sdf", "this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot"),
+        ("sdf", "this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
         ("mujocoinclude", "this is a part of a model: name the file that includes it"),
         ("mujco", "did you mean `mujoco`?"),
     ] {

@@ -16,6 +16,7 @@ mod links;
 mod malformed;
 mod mjcf;
 mod names;
+mod sdf;
 
 fn name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }

@@ -153,7 +153,7 @@ fn a_link_hangs_from_one_joint() {
         &format!("{links}\n{}", joints.join("\n")),
         "r.urdf:5:62: link `c` is the child of two joints, `ac` and `bc`
          = help: the first is at r.urdf:4:62
-         = help: the links of a URDF file form a tree; it has no closed loops",
+         = help: the links of a file form a tree; it has no closed loops",
     );
 }
 

@@ -51,6 +51,7 @@ pub(super) fn read_joint(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>)
         axis,
         mimic,
         held: None,
+        lead: None,
         limits,
         damping,
         friction,

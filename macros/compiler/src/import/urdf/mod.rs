@@ -50,9 +50,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     }
     let message = format!("expected `<robot>`, found {}", tag(node));
     cx.error(&place(node, cx), message, |d| match name {
-        "sdf" => {
-            d.help("this is an SDF file, which cannot be read: look for the URDF or MJCF file of the robot")
-        }
+        "sdf" => d.help("this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
         "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
         _ => d.suggest(name, ["robot"]),
     });

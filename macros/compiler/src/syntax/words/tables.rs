@@ -267,15 +267,15 @@ pub const VECTOR: Words = &[("frame axes basis in of expressedin resolved resolv
 pub const NO_WORDS: Words = &[];
 
 const INTEGRATION: &str = "the equations are solved where they are used: `linkwork::integrate` and `linkwork::simulate` hold the methods";
-const FORMATS: &str =
-    "URDF and MJCF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`";
+const FORMATS: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`, `sdf = \"path/to/robot.sdf\"`";
 const RUN_XACRO: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the result: `urdf = \"path/to/robot.urdf\"`";
 
 /// Arguments of `#[mechanism]`.
 pub const OPTIONS: Words = &[
     ("g grav gravitation gravityvector", "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`"),
     ("file path model robot filename source", "urdf"),
-    ("sdf xml usd dae sdformat", FORMATS),
+    ("xml usd dae", FORMATS),
+    ("sdformat gazebo", "sdf"),
     ("mujoco mjb", "mjcf"),
     ("xacro", RUN_XACRO),
     ("precision type float real dtype", "scalar"),

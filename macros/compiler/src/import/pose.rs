@@ -3,90 +3,90 @@
 use std::f64::consts::FRAC_PI_2;
 
 /// A vector.
-pub(super) type Vector = [f64; 3];
+pub(in crate::import) type Vector = [f64; 3];
 
 /// A matrix by rows; of a rotation, its columns are the carried axes.
-pub(super) type Matrix = [[f64; 3]; 3];
+pub(in crate::import) type Matrix = [[f64; 3]; 3];
 
 /// No rotation.
-pub(super) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(in crate::import) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// What rounding leaves of zero.
 const ROUNDING: f64 = 1e-15;
 
 /// A frame in another one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
+pub(in crate::import) struct Pose {
     /// Its origin.
-    pub(super) at: Vector,
+    pub(in crate::import) at: Vector,
     /// Its axes.
-    pub(super) axes: Matrix,
+    pub(in crate::import) axes: Matrix,
 }
 
 impl Pose {
     /// The other frame itself.
-    pub(super) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
+    pub(in crate::import) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
 
     /// The pose of the other frame in this one.
-    pub(super) fn back(&self) -> Pose {
+    pub(in crate::import) fn back(&self) -> Pose {
         let axes = transpose(&self.axes);
         Pose { at: scale(apply(&axes, self.at), -1.0), axes }
     }
 
     /// The pose in the outer frame of what has `inner` in this one.
-    pub(super) fn then(&self, inner: &Pose) -> Pose {
+    pub(in crate::import) fn then(&self, inner: &Pose) -> Pose {
         Pose { at: add(self.at, apply(&self.axes, inner.at)), axes: product(&self.axes, &inner.axes) }
     }
 }
 
 /// The sum of vectors.
-pub(super) fn add(a: Vector, b: Vector) -> Vector {
+pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
 /// A vector times a number.
-pub(super) fn scale(a: Vector, factor: f64) -> Vector {
+pub(in crate::import) fn scale(a: Vector, factor: f64) -> Vector {
     a.map(|x| x * factor)
 }
 
 /// The scalar product.
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+pub(in crate::import) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The vector product.
-pub(super) fn cross(a: Vector, b: Vector) -> Vector {
+pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The length of a vector.
-pub(super) fn length(a: Vector) -> f64 {
+pub(in crate::import) fn length(a: Vector) -> f64 {
     a[0].hypot(a[1]).hypot(a[2])
 }
 
 /// A matrix times a vector.
-pub(super) fn apply(m: &Matrix, v: Vector) -> Vector {
+pub(in crate::import) fn apply(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
 /// A product of matrices.
-pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub(in crate::import) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transpose(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
 
 /// The transpose.
-pub(super) fn transpose(m: &Matrix) -> Matrix {
+pub(in crate::import) fn transpose(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
 }
 
 /// A symmetric matrix in the axes in which `m` is a rotation: `m s mᵀ`.
-pub(super) fn turned(m: &Matrix, s: &Matrix) -> Matrix {
+pub(in crate::import) fn turned(m: &Matrix, s: &Matrix) -> Matrix {
     product(&product(m, s), &transpose(m))
 }
 
 /// The rotation of a quaternion w, x, y, z of unit length.
-pub(super) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
+pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     [
         [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
@@ -95,7 +95,7 @@ pub(super) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
 }
 
 /// The rotation about an axis of unit length.
-pub(super) fn about(axis: Vector, angle: f64) -> Matrix {
+pub(in crate::import) fn about(axis: Vector, angle: f64) -> Matrix {
     let (s, c) = sin_cos(angle);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -120,7 +120,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 /// The shortest rotation that takes z to a direction.
-pub(super) fn of_z(direction: Vector) -> Matrix {
+pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
     let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale(axis, 1.0 / size) };
@@ -129,7 +129,7 @@ pub(super) fn of_z(direction: Vector) -> Matrix {
 
 /// Roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. One turn after the other is taken off, so that
 /// nothing is lost where two axes meet.
-pub(super) fn roll_pitch_yaw(m: &Matrix) -> Vector {
+pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
     let upright = m[0][0].hypot(m[1][0]) < 1e-12;
     let yaw = if upright { 0.0 } else { round(m[1][0].atan2(m[0][0])) };
@@ -148,7 +148,7 @@ fn round(angle: f64) -> f64 {
 }
 
 /// Eigenvalues of a symmetric matrix, and its eigenvectors as columns: Jacobi's method.
-pub(super) fn principal(s: &Matrix) -> (Vector, Matrix) {
+pub(in crate::import) fn principal(s: &Matrix) -> (Vector, Matrix) {
     let (mut s, mut axes) = (*s, IDENTITY);
     for _ in 0..64 {
         let largest = [(0, 1), (0, 2), (1, 2)]

@@ -1,0 +1,88 @@
+//! `<collision>` → shapes of links that contacts name.
+
+use super::frames::{Frames, read_frame};
+use super::origin;
+use crate::import::context::Cx;
+use crate::import::element::{Node, check_attributes, children, content, elements, place, required, tag};
+use crate::import::robot::FileCollision;
+use crate::syntax::{Name, Shape};
+
+/// Shapes that can touch.
+const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
+
+/// Reads all collision geometry of a link.
+pub(super) fn read(
+    link: Node<'_>,
+    (name, prefix): (&Name, &str),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Vec<FileCollision> {
+    let parts = elements(link).filter(|node| node.tag_name().name() == "collision");
+    parts.filter_map(|part| read_part(part, (name, prefix), frames, cx)).collect()
+}
+
+fn read_part(
+    node: Node<'_>,
+    (name, prefix): (&Name, &str),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<FileCollision> {
+    let geometry = elements(node).find(|child| child.tag_name().name() == "geometry");
+    let geometry = required(geometry, node, "geometry", &[], cx)?;
+    let shape = elements(geometry).find(|child| child.tag_name().name() != "empty")?;
+    let frame = read_frame(node, prefix, &name.text, cx);
+    let pose = frames.resolve(name, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose));
+    let at = place(node, cx);
+    Some(FileCollision { origin: origin(&pose, &at), shape: read_shape(shape, cx)?, place: at })
+}
+
+fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
+    check_attributes(shape, &[], &[], cx);
+    match shape.tag_name().name() {
+        "sphere" => {
+            let [radius] = children(shape, ["radius"], cx);
+            let [radius] = lengths(radius, shape, "radius", cx)?;
+            Some(Shape::Sphere(radius))
+        }
+        "box" => {
+            let [size] = children(shape, ["size"], cx);
+            Some(Shape::Cuboid(lengths(size, shape, "size", cx)?))
+        }
+        "ellipsoid" => {
+            let [radii] = children(shape, ["radii"], cx);
+            Some(Shape::Ellipsoid(lengths(radii, shape, "radii", cx)?))
+        }
+        kind @ ("cylinder" | "capsule") => {
+            let [radius, length] = children(shape, ["radius", "length"], cx);
+            let ([radius], [length]) =
+                (lengths(radius, shape, "radius", cx)?, lengths(length, shape, "length", cx)?);
+            Some(if kind == "cylinder" {
+                Shape::Cylinder(radius, length)
+            } else {
+                Shape::Capsule(radius, length)
+            })
+        }
+        "mesh" => Some(Shape::Mesh),
+        kind => {
+            let message = format!("collision geometry {} is not supported", tag(shape));
+            cx.error(&place(shape, cx), message, |d| d.suggest(kind, SHAPES));
+            None
+        }
+    }
+}
+
+/// Positive lengths, m.
+fn lengths<const N: usize>(
+    child: Option<Node<'_>>,
+    shape: Node<'_>,
+    element: &str,
+    cx: &mut Cx<'_>,
+) -> Option<[f64; N]> {
+    let found = content::<N>(required(child, shape, element, &[], cx)?, cx)?;
+    if let Some(x) = found.value.iter().find(|x| **x <= 0.0) {
+        let help = "sizes of collision geometry are lengths in m";
+        cx.error(&found.place, format!("this length must be positive, but it is {x}"), |d| d.help(help));
+        return None;
+    }
+    Some(found.value)
+}

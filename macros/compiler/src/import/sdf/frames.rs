@@ -1,0 +1,135 @@
+//! Frames that name one another → where each is in the model.
+
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, content, elements, place};
+use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product};
+use crate::syntax::Name;
+use std::collections::BTreeMap;
+
+/// Frames inside one another that a pose is looked up through.
+const DEEPEST: usize = 1024;
+
+/// A frame of the file: a link, a joint, a model, or one that is nothing else.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    /// What its pose is relative to: the whole name of another frame.
+    pub(super) base: Name,
+    /// Its pose there.
+    pub(super) pose: Pose,
+    /// The frame that it moves with; links move by themselves.
+    pub(super) attached: Option<Name>,
+}
+
+/// All frames by their whole names: `arm::wrist` is the link `wrist` of the model `arm` in the outermost one.
+#[derive(Default)]
+pub(super) struct Frames {
+    /// The frames.
+    pub(super) known: BTreeMap<String, Frame>,
+}
+
+/// The frame of the world, and of the outermost model: what all others are at last relative to.
+pub(super) const WORLD: &str = "world";
+
+/// `<pose relative_to="…">` of an element; relative to `base` if nothing is said.
+pub(super) fn read_frame(node: Node<'_>, prefix: &str, base: &str, cx: &mut Cx<'_>) -> Frame {
+    let own = |at: Place| Name { text: base.to_string(), place: at };
+    let Some(found) = elements(node).find(|child| child.tag_name().name() == "pose") else {
+        return Frame { base: own(place(node, cx)), pose: Pose::ZERO, attached: None };
+    };
+    check_attributes(found, &[], &["relative_to", "rotation_format", "degrees", "frame"], cx);
+    let said = ["relative_to", "frame"].into_iter().find_map(|word| found.attribute_node(word));
+    let base = match said.filter(|said| !said.value().trim().is_empty()) {
+        Some(said) => {
+            let text = whole(prefix, said.value().trim());
+            Name { text, place: cx.place(said.range_value().start) }
+        }
+        None => own(place(found, cx)),
+    };
+    let has_text = found.text().is_some_and(|text| !text.trim().is_empty());
+    let pose = if has_text { read_pose(found, cx).unwrap_or(Pose::ZERO) } else { Pose::ZERO };
+    Frame { base, pose, attached: None }
+}
+
+/// The whole name of what is called `name` in the model that `prefix` stands for.
+pub(super) fn whole(prefix: &str, name: &str) -> String {
+    match name {
+        WORLD => WORLD.to_string(),
+        "__model__" => model(prefix),
+        _ => format!("{prefix}{name}"),
+    }
+}
+
+/// The whole name of the frame of a model.
+pub(super) fn model(prefix: &str) -> String {
+    format!("{prefix}__model__")
+}
+
+fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
+    if node.attribute("rotation_format") == Some("quat_xyzw") {
+        let [x, y, z, a, b, c, w] = content(node, cx)?.value;
+        let size = (a * a + b * b + c * c + w * w).sqrt();
+        if size < 1e-14 || !size.is_finite() {
+            let message = format!("a quaternion of length {size} has no direction");
+            cx.error(&place(node, cx), message, |d| d);
+            return None;
+        }
+        return Some(Pose { at: [x, y, z], axes: of_quaternion([w, a, b, c].map(|x| x / size)) });
+    }
+    let [x, y, z, roll, pitch, yaw] = content(node, cx)?.value;
+    let degrees = node.attribute("degrees").is_some_and(|word| matches!(word.trim(), "true" | "1"));
+    let angle = |angle: f64| if degrees { angle.to_radians() } else { angle };
+    let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
+    let axes =
+        turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| product(&whole, &about(axis, angle(turn))));
+    Some(Pose { at: [x, y, z], axes })
+}
+
+impl Frames {
+    /// The link that carries a frame, with the place of what was said; tells of names that there are not, and of circles.
+    pub(super) fn carrier(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
+        let mut at = name.clone();
+        for _ in 0..DEEPEST {
+            if at.text == WORLD {
+                return Some(Name { text: at.text, place: name.place.clone() });
+            }
+            let Some(frame) = self.known.get(&at.text) else {
+                self.report_unknown(&at, cx);
+                return None;
+            };
+            match &frame.attached {
+                Some(next) => at = next.clone(),
+                None => return Some(Name { text: at.text, place: name.place.clone() }),
+            }
+        }
+        let message = format!("the frame {} is attached to itself", quote(&name.text));
+        cx.error(&at.place, message, |d| d);
+        None
+    }
+
+    fn report_unknown(&self, name: &Name, cx: &mut Cx<'_>) {
+        let known = self.known.keys().map(String::as_str).filter(|known| !known.ends_with("__model__"));
+        let message = format!("unknown frame {}", quote(&name.text));
+        cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+    }
+
+    /// Where a frame is in the world; tells of names that there are not, and of circles.
+    pub(super) fn resolve(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
+        let mut pose = Pose::ZERO;
+        let mut at = name.clone();
+        for _ in 0..DEEPEST {
+            if at.text == WORLD {
+                return Some(pose);
+            }
+            let Some(frame) = self.known.get(&at.text) else {
+                self.report_unknown(&at, cx);
+                return None;
+            };
+            pose = frame.pose.then(&pose);
+            at = frame.base.clone();
+        }
+        let message = format!("the frame {} is placed relative to itself", quote(&name.text));
+        cx.error(&at.place, message, |d| d);
+        None
+    }
+}

@@ -1,0 +1,293 @@
+//! `<joint>` → [`FileJoint`]: one, or two with a massless link between them for joints with two axes.
+
+use super::frames::{Frames, model, whole};
+use super::origin;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{
+    Node, check_attributes, children, content, elements, name, place, required, word,
+};
+use crate::import::imported::Placed;
+use crate::import::pose::{Pose, Vector, apply, length};
+use crate::import::robot::{
+    FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, bare_link, has_axis, has_coordinate,
+};
+use crate::syntax::{Drive, DriveLaw, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
+
+/// SDF's words for the joints, and how many axes they have.
+const TYPES: [(&str, JointKind, usize); 8] = [
+    ("revolute", JointKind::Pin, 1),
+    ("continuous", JointKind::Pin, 1),
+    ("prismatic", JointKind::Sleeve, 1),
+    ("screw", JointKind::Screw, 1),
+    ("fixed", JointKind::Weld, 0),
+    ("ball", JointKind::Ball, 0),
+    ("universal", JointKind::Pin, 2),
+    ("revolute2", JointKind::Pin, 2),
+];
+
+/// Limits beyond this are none.
+const ENDLESS: f64 = 1e15;
+
+const IGNORE_PASSIVE: &str =
+    "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+
+/// The link at one end of a joint, by its whole name.
+pub(super) fn end(node: Node<'_>, which: &str, prefix: &str, cx: &Cx<'_>) -> Option<Name> {
+    let found = elements(node).find(|child| child.tag_name().name() == which)?;
+    let said = word(found, cx)?;
+    Some(Name { text: whole(prefix, &said.text), ..said })
+}
+
+/// Reads a joint into the robot.
+pub(super) fn read_joint(
+    (node, joint, prefix): (Node<'_>, &Name, &str),
+    frames: &Frames,
+    options: &FileOptions,
+    robot: &mut Robot,
+    cx: &mut Cx<'_>,
+) -> Option<()> {
+    check_attributes(node, &["name", "type"], &[], cx);
+    let known = ["pose", "parent", "child", "axis", "axis2", "screw_thread_pitch", "thread_pitch"];
+    let [_, parent, child, axis, axis2, lead, old] = children(node, known, cx);
+    required(parent, node, "parent", &[], cx)?;
+    required(child, node, "child", &[], cx)?;
+    let (parent, child) = (end(node, "parent", prefix, cx)?, end(node, "child", prefix, cx)?);
+    let (word, kind, axes) = read_type(node, cx)?;
+    let at = frames.resolve(joint, cx)?;
+    // What a joint joins may be frames on links.
+    let (parent, child) = (frames.carrier(&parent, cx)?, frames.carrier(&child, cx)?);
+    let (outer, inner) = (frames.resolve(&parent, cx)?, frames.resolve(&child, cx)?);
+    let anchor = inner.back().then(&at).at;
+    let base = outer.back().then(&Pose { at: at.at, axes: inner.axes });
+    let number = axes.max(1);
+    let mut carrier = parent;
+    for k in 0..number {
+        let last = k + 1 == number;
+        let (axis, text) = match k {
+            0 => (axis, joint.text.clone()),
+            _ => (axis2, format!("{}_2", joint.text)),
+        };
+        let named = Name { text, place: joint.place.clone() };
+        let carried = match last {
+            true => child.clone(),
+            false => Name { text: format!("{}_1", joint.text), place: joint.place.clone() },
+        };
+        let pose = if k == 0 { base } else { Pose { at: anchor, ..Pose::ZERO } };
+        let said = Said { node, named: &named, axis, word, kind };
+        let mut found = said.read((&at, &inner), prefix, frames, options, robot, cx)?;
+        (found.parent, found.child) = (carrier, carried.clone());
+        (found.origin, found.anchor) = (origin(&pose, &joint.place), anchor);
+        if kind == JointKind::Screw {
+            found.lead = read_lead(node, lead, old, cx);
+        }
+        robot.joints.push(found);
+        if !last {
+            robot.links.push(bare_link(carried.clone()));
+        }
+        carrier = carried;
+    }
+    Some(())
+}
+
+fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind, usize)> {
+    let found = node.attribute_node("type")?;
+    let known = TYPES.iter().find(|(word, ..)| *word == found.value());
+    if known.is_none() {
+        let at = cx.place(found.range_value().start);
+        let (message, known) = match found.value() {
+            "gearbox" => {
+                ("joint type `gearbox` is not supported".to_string(), "couple two joints by `<mimic>`")
+            }
+            other => (format!("unknown joint type {}", quote(other)), ""),
+        };
+        cx.error(&at, message, |d| match known {
+            "" => d.suggest(found.value(), TYPES.map(|(word, ..)| word)),
+            help => d.help(help),
+        });
+    }
+    known.copied()
+}
+
+/// What a screw advances in a turn; the older word for it has another sign and unit.
+fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
+    let Some(lead) = lead else {
+        let at = place(old.unwrap_or(node), cx);
+        cx.error(&at, "screw without `<screw_thread_pitch>`", |d| {
+            d.help("it is what the joint advances in a turn, m")
+        });
+        return None;
+    };
+    let found = content::<1>(lead, cx)?;
+    Some(Expr::number(found.value[0], &found.place))
+}
+
+/// A joint that holds.
+pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
+    let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
+    FileJoint {
+        name,
+        kind: JointKind::Weld,
+        word: "fixed",
+        parent,
+        child,
+        origin,
+        anchor: [0.0; 3],
+        axis,
+        mimic: None,
+        held: None,
+        lead: None,
+        limits: FileLimits::default(),
+        damping: None,
+        friction: None,
+    }
+}
+
+/// What is said of one axis of a joint.
+struct Said<'n> {
+    node: Node<'n>,
+    named: &'n Name,
+    axis: Option<Node<'n>>,
+    word: &'static str,
+    kind: JointKind,
+}
+
+impl Said<'_> {
+    /// The joint, its ends apart.
+    fn read(
+        &self,
+        (at, inner): (&Pose, &Pose),
+        prefix: &str,
+        frames: &Frames,
+        options: &FileOptions,
+        robot: &mut Robot,
+        cx: &mut Cx<'_>,
+    ) -> Option<FileJoint> {
+        let Said { node, named, word, kind, .. } = *self;
+        let own = place(node, cx);
+        let bare = weld(named.clone(), named.clone(), named.clone(), origin(&Pose::ZERO, &own));
+        let mut joint = FileJoint { kind, word, ..bare };
+        let Some(axis) = self.axis.filter(|_| has_axis(kind)) else {
+            if has_axis(kind) {
+                cx.error(&own, format!("a `{word}` joint without an axis"), |d| {
+                    d.help("expected `<axis><xyz>…</xyz></axis>`")
+                });
+            }
+            return Some(joint);
+        };
+        let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
+        let [xyz, limit, dynamics, mimic, old, _] = children(axis, parts, cx);
+        let old = old.is_some_and(|old| {
+            self::word(old, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1"))
+        });
+        if let Some(xyz) = xyz {
+            joint.axis = read_axis(xyz, (at, inner), old, prefix, frames, cx)?;
+        } else {
+            joint.axis.value = apply(&inner.back().then(at).axes, [0.0, 0.0, 1.0]);
+        }
+        if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
+            read_dynamics(dynamics, &mut joint, robot, cx);
+        }
+        if let Some(limit) = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore) {
+            joint.limits = read_limits(limit, word == "continuous", cx);
+        }
+        if let Some(mimic) = mimic.filter(|_| options.follow_mimic) {
+            joint.mimic = read_mimic(mimic, prefix, cx);
+        }
+        Some(joint)
+    }
+}
+
+/// The axis in the axes of the child.
+fn read_axis(
+    node: Node<'_>,
+    (at, inner): (&Pose, &Pose),
+    old: bool,
+    prefix: &str,
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<Placed<Vector>> {
+    check_attributes(node, &[], &["expressed_in"], cx);
+    let found = content::<3>(node, cx)?;
+    if length(found.value) < 1e-14 {
+        cx.error(&found.place, "axis of zero length has no direction", |d| d);
+        return None;
+    }
+    let said = node.attribute_node("expressed_in").filter(|said| !said.value().trim().is_empty());
+    let axes = match said {
+        Some(said) => {
+            let text = whole(prefix, said.value().trim());
+            frames.resolve(&Name { text, place: cx.place(said.range_value().start) }, cx)?
+        }
+        None if old => frames.resolve(&Name { text: model(prefix), place: found.place.clone() }, cx)?,
+        None => *at,
+    };
+    let value = apply(&inner.back().then(&axes).axes, found.value);
+    Some(Placed { value: value.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: found.place })
+}
+
+fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
+    let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
+    let found = children(node, parts, cx);
+    let [damping, friction, stiffness, free] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
+    let alone = has_coordinate(joint.kind);
+    for (which, found) in [("damping", &damping), ("friction", &friction), ("spring_stiffness", &stiffness)] {
+        let Some(found) = found.as_ref().filter(|found| found.value != [0.0]) else { continue };
+        if found.value[0] < 0.0 {
+            let message = format!("negative {which} `{}`", found.value[0]);
+            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        } else if !alone {
+            let message = format!("`{which}` of a `{}` joint is not supported", joint.word);
+            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        }
+    }
+    let expression = |found: Option<Placed<[f64; 1]>>| {
+        let found = found.filter(|found| found.value != [0.0])?;
+        Some(Expr::number(found.value[0], &found.place))
+    };
+    (joint.damping, joint.friction) = (expression(damping), expression(friction));
+    if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.value != [0.0]) {
+        let law =
+            DriveLaw::Spring { stiffness: stiffness.value[0], free: free.map_or(0.0, |free| free.value[0]) };
+        robot.drives.push(Drive { name: joint.name.clone(), terms: vec![(joint.name.clone(), 1.0)], law });
+    }
+}
+
+fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
+    let found = children(node, ["lower", "upper", "velocity", "effort"], cx);
+    let endless = |part: Node<'_>, cx: &Cx<'_>| {
+        word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
+    };
+    let mut number = |part: Option<Node<'_>>| {
+        let part = part.filter(|part| !endless(*part, cx))?;
+        let found = content::<1>(part, cx)?;
+        Some(Placed { value: found.value[0], place: found.place }).filter(|found| found.value.abs() < ENDLESS)
+    };
+    let [lower, upper, velocity, effort] = found.map(&mut number);
+    let end = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
+    // Less than zero stands for none.
+    let size = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
+    let limits =
+        FileLimits { lower: end(lower), upper: end(upper), velocity: size(velocity), effort: size(effort) };
+    if let (Some(low), Some(high)) = (&limits.lower, &limits.upper)
+        && low.value > high.value
+    {
+        let message = format!("`lower` is {}, above `upper`, which is {}", low.value, high.value);
+        cx.error(&low.place, message, |d| d.help(IGNORE_LIMITS));
+    }
+    limits
+}
+
+/// `q = multiplier (q_leader − reference) + offset`.
+fn read_mimic(node: Node<'_>, prefix: &str, cx: &mut Cx<'_>) -> Option<Mimic> {
+    check_attributes(node, &["joint"], &["axis"], cx);
+    let mut leader = name(node, "joint", cx)?;
+    leader.text = match node.attribute("axis") {
+        Some("axis2") => format!("{}_2", whole(prefix, &leader.text)),
+        _ => whole(prefix, &leader.text),
+    };
+    let found = children(node, ["multiplier", "offset", "reference"], cx);
+    let [multiplier, offset, reference] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
+    let of = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
+    let multiplier = of(multiplier, 1.0);
+    Some(Mimic { joint: leader, multiplier, offset: of(offset, 0.0) - multiplier * of(reference, 0.0) })
+}

@@ -1,0 +1,117 @@
+//! `<link>` → [`Body`].
+
+use super::frames::{Frames, WORLD, read_frame};
+use crate::diag::Place;
+use crate::import::context::Cx;
+use crate::import::element::{Node, check_attributes, children, content, elements, place, word};
+use crate::import::pose::{Matrix, Pose, turned};
+use crate::import::robot::bare_link;
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
+
+/// The entries of the inertia matrix, with what they are if nothing is said.
+const INERTIA: [(&str, f64); 6] =
+    [("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0)];
+
+/// Reads a link. What it does not say of its mass is what the format says: 1 kg, and 1 kg·m² about every axis.
+pub(super) fn read_link(
+    node: Node<'_>,
+    name: &Name,
+    frames: &Frames,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<Body> {
+    check_attributes(node, &["name"], &[], cx);
+    frames.resolve(name, cx)?;
+    let mut body = bare_link(name.clone());
+    check_motion(node, options, cx);
+    if options.inertias == Inertias::None {
+        return Some(body);
+    }
+    let [inertial] = children(node, ["inertial"], cx);
+    let at = place(inertial.unwrap_or(node), cx);
+    let [pose, mass, inertia, water] = match inertial {
+        Some(inertial) => {
+            check_computed(inertial, &at, cx);
+            children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
+        }
+        None => [None; 4],
+    };
+    if let Some(water) = water {
+        cx.error(&place(water, cx), "`<fluid_added_mass>` is not supported", |d| d.help("remove it"));
+    }
+    let mass = match mass {
+        Some(mass) => content::<1>(mass, cx)?.value[0],
+        None => 1.0,
+    };
+    let pose = match (pose, inertial) {
+        (Some(pose), Some(inertial)) => {
+            if let Some(said) = pose.attribute_node("relative_to").filter(|said| !said.value().is_empty()) {
+                let at = cx.place(said.range_value().start);
+                cx.error(&at, "the pose of an `<inertial>` is relative to its link", |d| {
+                    d.help("remove `relative_to`")
+                });
+            }
+            read_frame(inertial, "", WORLD, cx).pose
+        }
+        _ => Pose::ZERO,
+    };
+    give(&mut body, mass, &pose, &turned(&pose.axes, &read_inertia(inertia, cx)), &at);
+    if !body.inertia.iter().flat_map(Expr::parts).filter_map(Expr::literal).all(f64::is_finite) {
+        cx.error(&at, "an inertia that is too large for numbers", |d| d);
+    }
+    Some(body)
+}
+
+/// What changes the motion and is not taken over.
+fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
+    for child in elements(node) {
+        let kind = child.tag_name().name();
+        let off = word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
+        if (kind == "gravity" && off) || (kind == "kinematic" && !off) {
+            let message = format!("`<{kind}>` of a link is not supported");
+            cx.error(&place(child, cx), message, |d| {
+                d.help("remove it: gravity acts on all links, and forces move them")
+            });
+        }
+        let decays = kind == "velocity_decay"
+            && elements(child).any(|rate| rate.text().unwrap_or_default().trim().parse::<f64>() != Ok(0.0));
+        if decays && options.honour_passive {
+            cx.error(&place(child, cx), "`<velocity_decay>` of a link is not supported", |d| {
+                d.help("to leave it out, write `#[mechanism(…, passive = ignore)]`")
+            });
+        }
+    }
+}
+
+fn check_computed(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
+    check_attributes(inertial, &[], &["auto"], cx);
+    if inertial.attribute("auto").is_some_and(|auto| matches!(auto, "true" | "1")) {
+        let message = "mass properties by collision geometry are not supported";
+        cx.error(at, message, |d| d.help("write `<mass>` and `<inertia>` instead of `auto`"));
+    }
+}
+
+fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
+    let mut entries = INERTIA.map(|(_, usual)| usual);
+    if let Some(inertia) = inertia {
+        let found = children(inertia, INERTIA.map(|(entry, _)| entry), cx);
+        for (to, from) in entries.iter_mut().zip(found) {
+            if let Some(found) = from.and_then(|from| content::<1>(from, cx)) {
+                *to = found.value[0];
+            }
+        }
+    }
+    let [xx, xy, xz, yy, yz, zz] = entries;
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+/// Gives a link its mass properties.
+fn give(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
+    body.mass = Some(Expr::number(mass, at));
+    body.com = (pose.at != [0.0; 3]).then(|| Expr::vector(pose.at, at));
+    let entry =
+        |i: usize, j: usize| inertia.get(i.min(j)).and_then(|row| row.get(i.max(j))).copied().unwrap_or(0.0);
+    let rows = (0..3).map(|i| Expr::vector(std::array::from_fn(|j| entry(i, j)), at)).collect();
+    let zero = inertia.iter().flatten().all(|entry| *entry == 0.0);
+    body.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: at.clone() });
+}

@@ -1,0 +1,186 @@
+//! SDF: what is said of files with mistakes.
+
+use super::*;
+
+fn sdf() -> FileOptions {
+    FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() }
+}
+
+/// Compares what the elements of a model give, which stand on the second line.
+fn check_model(inside: &str, expected: &str) {
+    check_with(&sdf(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
+}
+
+#[test]
+fn what_is_not_said_is_what_the_format_says() {
+    check_model(
+        "<link name='a'/><link name='b'><pose>0 0 2 0 0 0</pose></link>\
+         <joint name='j' type='revolute'><parent>a</parent><child>b</child><axis/></joint>",
+        "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         Weld root_joint: ground -> a
+         Pin j: a.at([0, 0, 2]) -> b about [0, 0, 1]",
+    );
+}
+
+#[test]
+fn frames_carry_joints_and_joints_close_loops() {
+    check_model(
+        "<link name='a'/><frame name='f' attached_to='a'><pose>1 0 0 0 0 0</pose></frame><link name='b'/><link name='c'/>\
+         <joint name='i' type='fixed'><parent>f</parent><child>b</child></joint>\
+         <joint name='j' type='ball'><parent>a</parent><child>c</child></joint>\
+         <joint name='k' type='revolute'><parent>b</parent><child>c</child><axis><limit><lower>0</lower></limit></axis></joint>\
+         <plugin name='p'/>",
+        "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body f
+         body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body c mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         Weld root_joint: ground -> a
+         Weld f_weld: a.at([1, 0, 0]) -> f
+         Weld i: a -> b
+         Ball j: a -> c
+         Pin k: b -> c about [0, 0, 1]
+         left out limits of k, which closes a loop
+         left out plug-ins, and what they do to the motion: 1",
+    );
+}
+
+#[test]
+fn poses_name_frames_that_there_are() {
+    let model = |pose: &str| {
+        format!(
+            "<link name='a'>{pose}</link><frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"
+        )
+    };
+    for (pose, expected) in [
+        ("<pose relative_to='b'/>", "r.sdf:2:35: unknown frame `b`\n= help: expected `a`, `f` or `g`"),
+        ("<pose relative_to='f'/>", "r.sdf:2:46: the frame `a` is placed relative to itself"),
+        ("<pose relative_to='a'/>", "r.sdf:2:35: the frame `a` is placed relative to itself"),
+        (
+            "<pose>1 2 3</pose>",
+            "r.sdf:2:22: expected 6 numbers in `pose`, found `1 2 3`\n= help: write as many numbers, with spaces between them",
+        ),
+        (
+            "<pose>1 2 3 4 5 x</pose>",
+            "r.sdf:2:32: `x` is not a number\n= help: write digits, as in `-0.5` or `1e-3`",
+        ),
+        (
+            "<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 0</pose>",
+            "r.sdf:2:16: a quaternion of length 0 has no direction",
+        ),
+    ] {
+        let answer = run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model(pose)));
+        let lines: Vec<&str> = answer.lines().filter(|line| !line.is_empty()).collect();
+        let (found, expected) = (lines.join("\n"), expected.lines().collect::<Vec<_>>().join("\n"));
+        assert!(found.starts_with(&expected), "{found}");
+    }
+}
+
+#[test]
+fn what_is_not_supported_is_said() {
+    let joint = |inside: &str| {
+        format!(
+            "<link name='a'/><link name='b'/><joint name='j' {inside}<parent>a</parent><child>b</child></joint>"
+        )
+    };
+    for (inside, expected) in [
+        (
+            "<link name='a'/><include/>".to_string(),
+            "r.sdf:2:17: `<include>` is not supported\n= help: write the file with all that it includes: `gz sdf -p robot.sdf > whole.sdf`",
+        ),
+        (
+            "<static>true</static><link name='a'/>".to_string(),
+            "r.sdf:2:1: the model is static: nothing of it moves\n= help: remove `<static>`",
+        ),
+        (
+            "<link name='a'><gravity>0</gravity></link>".to_string(),
+            "r.sdf:2:16: `<gravity>` of a link is not supported\n= help: remove it: gravity acts on all links, and forces move them",
+        ),
+        (
+            "<link name='a'><inertial auto='true'/></link>".to_string(),
+            "r.sdf:2:16: mass properties by collision geometry are not supported\n= help: write `<mass>` and `<inertia>` instead of `auto`",
+        ),
+        (
+            "<link name='a'/><frame name='a'/>".to_string(),
+            "r.sdf:2:30: second link, joint or frame with the name `a`\n= help: all of them are frames: names of frames differ",
+        ),
+        ("<lnk name='a'/>".to_string(), "r.sdf:2:1: unknown element `<lnk>`\n= help: did you mean `<link>`?"),
+        (String::new(), "r.sdf:1:6: model without a link\n= help: expected `<link name=\"…\"/>`"),
+        (
+            joint("type='gearbox'>"),
+            "r.sdf:2:55: joint type `gearbox` is not supported\n= help: couple two joints by `<mimic>`",
+        ),
+        (
+            joint("type='revolut'>"),
+            "r.sdf:2:55: unknown joint type `revolut`\n= help: did you mean `revolute`?",
+        ),
+        (
+            joint("type='revolute'>"),
+            "r.sdf:2:33: a `revolute` joint without an axis\n= help: expected `<axis><xyz>…</xyz></axis>`",
+        ),
+        (
+            joint("type='screw'><axis/>"),
+            "r.sdf:2:33: screw without `<screw_thread_pitch>`\n= help: it is what the joint advances in a turn, m",
+        ),
+        (
+            joint("type='revolute'><axis><xyz>0 0 0</xyz></axis>"),
+            "r.sdf:2:76: axis of zero length has no direction",
+        ),
+        (
+            joint("type='universal'><axis><dynamics><damping>-1</damping></dynamics></axis><axis2/>"),
+            "r.sdf:2:91: negative damping `-1`\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+        ),
+        (
+            joint("type='revolute'><axis><limit><lower>1</lower><upper>0</upper></limit></axis>"),
+            "r.sdf:2:85: `lower` is 1, above `upper`, which is 0\n= help: to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+        ),
+    ] {
+        check_model(&inside, expected);
+    }
+}
+
+#[test]
+fn another_format_is_named() {
+    for (text, expected) in [
+        (
+            "<robot/>",
+            "r.sdf:1:1: expected `<sdf>`, found `<robot>`\n= help: this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`",
+        ),
+        (
+            "<mujoco/>",
+            "r.sdf:1:1: expected `<sdf>`, found `<mujoco>`\n= help: this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`",
+        ),
+        (
+            "<sdf/>",
+            "r.sdf:1:1: SDF file without a model\n= help: expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`",
+        ),
+        (
+            "<sdf><world><model name='a'/><model name='b'/></world></sdf>",
+            "r.sdf:1:30: SDF file with several models\n= help: a mechanism is one model: put the others into files of their own, or all into one `<model>`",
+        ),
+    ] {
+        check_with(&sdf(), text, expected);
+    }
+}
+
+const FILE: &str = r#"<?xml version="1.0"?><sdf version="1.9"><world name="w"><gravity>0 0 -9</gravity><model name="m">
+  <pose>1 2 3 0 0 1</pose><link name="a"><pose relative_to="f">0 0 1 0 0.1 0</pose></link>
+  <frame name="f" attached_to="__model__"><pose degrees="true">0 0 0 10 20 30</pose></frame>
+  <model name="n"><pose relative_to="a">0 1 0 0 0 0</pose><link name="b"><inertial><mass>2</mass></inertial></link></model>
+  <joint name="j" type="universal"><pose>0 0 0.1 0 0 0</pose><parent>a</parent><child>n::b</child>
+    <axis><xyz expressed_in="f">1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis>
+    <axis2><xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2></joint>
+</model></world></sdf>"#;
+
+#[test]
+fn damage_never_panics() {
+    super::fuzz::damage_gets_an_answer(&sdf(), FILE, "root_joint");
+}
+
+#[test]
+fn every_beginning_of_a_file_gets_an_answer() {
+    for end in 0..FILE.len() {
+        assert!(!run(&sdf(), &FILE[..end]).contains("root_joint"));
+    }
+    assert!(run(&sdf(), FILE).contains("root_joint"));
+}

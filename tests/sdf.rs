@@ -1,0 +1,131 @@
+//! SDF files of `data/sdf` against the same as URDF and as structs.
+
+use linkwork::prelude::*;
+use linkwork::{Limits, frame};
+use support::compare::{assert_close, assert_same_dynamics};
+
+const TOLERANCE: f64 = 1e-12;
+
+#[test]
+fn the_same_arm_as_sdf_and_as_urdf() {
+    #[mechanism(sdf = "data/sdf/arm.sdf")]
+    struct Sdf;
+    #[mechanism(urdf = "data/sdf/arm.urdf")]
+    struct Urdf;
+    #[mechanism(sdf = "data/sdf/arm.sdf", base = free, mimic = independent, passive = ignore)]
+    struct FreeSdf;
+    #[mechanism(urdf = "data/sdf/arm.urdf", base = free, mimic = independent, passive = ignore)]
+    struct FreeUrdf;
+
+    assert_eq!(Sdf::VELOCITIES, Urdf::VELOCITIES);
+    assert_eq!(FreeSdf::INPUTS, ["b_turn", "c_follow", "z_slide"]);
+    assert_same_dynamics(&Sdf, &Urdf, 20, TOLERANCE);
+    assert_same_dynamics(&FreeSdf, &FreeUrdf, 20, TOLERANCE);
+    let q = Sdf.neutral();
+    let ring = Sdf.frame_placement(frame!(Sdf, "hand::ring"), &q).to_homogeneous();
+    let twin = Urdf.frame_placement(frame!(Urdf, "ring"), &q).to_homogeneous();
+    assert_close("ring", ring.as_slice(), twin.as_slice(), TOLERANCE);
+    assert_eq!(Sdf.upper_limits(), Urdf.upper_limits());
+    assert_eq!(Sdf.velocity_limits()[4], f64::INFINITY, "less than zero stands for none");
+}
+
+/// Two axes are two joints with a massless link between them; a screw turns and advances.
+#[test]
+fn other_joints() {
+    #[mechanism(sdf = "data/sdf/joints.sdf", inputs = none)]
+    struct File;
+    #[mechanism(gravity = 0.1 * y - 9.8 * z)]
+    struct Written {
+        #[body]
+        cross_1: Body,
+        #[body(mass = 2, com = -0.3 * z, inertia = diagonal(0.1, 0.2, 0.15))]
+        shaft: Body,
+        #[body(mass = 0.5, inertia = diagonal(0.01, 0.01, 0.02))]
+        nut: Body,
+        #[joint(
+            ground.at([0.5 + 0.1 * cos(0.3) * sin(0.2), 0.1 * sin(0.3) * sin(0.2), 1 + 0.1 * cos(0.2)])
+                .rotated(z(0.3), y(0.2)) -> cross_1.at(0.1 * z),
+            about = x
+        )]
+        cross: Pin,
+        #[joint(cross_1.at(0.1 * z) -> shaft.at(0.1 * z), about = y)]
+        cross_2: Pin,
+        #[joint(shaft.at([0, 0.1, -0.4]) -> nut, about = z, lead = 0.04)]
+        thread: Screw,
+        #[acts(on = cross, stiffness = 5, free_angle = 0.2)]
+        spring: Spring,
+        #[acts(on = cross_2, damping = 0.4)]
+        grease: Dashpot,
+    }
+
+    assert_eq!(File::VELOCITIES, Written::VELOCITIES);
+    assert_same_dynamics(&File, &Written {}, 20, TOLERANCE);
+}
+
+/// A joint to a link that another one carries closes a loop; joints join frames on links, and frames have placements.
+#[test]
+fn linkage() {
+    #[mechanism(sdf = "data/sdf/linkage.sdf")]
+    struct File;
+    #[mechanism(gravity = -9.81 * z)]
+    struct Written {
+        #[body(mass = 0.3, com = 0.15 * z, inertia = diagonal(0.002, 0.002, 0.0001))]
+        crank: Body,
+        #[body(mass = 0.8, com = 0.4 * z, inertia = diagonal(0.02, 0.02, 0.0004))]
+        bar: Body,
+        #[body(mass = 0.1, inertia = diagonal(0.001, 0.001, 0.001))]
+        pin: Body,
+        #[body(mass = 0.5, com = 0.25 * z, inertia = diagonal(0.01, 0.01, 0.0002))]
+        rocker: Body,
+        #[joint(ground.rotated(y(0.2)) -> crank, about = y)]
+        a_drive: Pin,
+        #[joint(crank.at(0.3 * z).rotated(y(1.1)) -> bar, about = y)]
+        b_elbow: Pin,
+        #[joint(bar -> pin)]
+        hold: Weld,
+        #[joint(ground.at(0.8 * x).rotated(y(0.3)) -> rocker, about = y)]
+        c_swing: Pin,
+        // In the file's pose, where the joint stands at zero: the bar is turned by 0.2 + 1.1, the rocker by 0.3.
+        #[joint(
+            rocker.at(0.5 * z).rotated(y(1.0)) -> bar.at(
+                (cos(1.3) * (0.8 + 0.5 * sin(0.3) - 0.3 * sin(0.2)) - sin(1.3) * (0.5 * cos(0.3) - 0.3 * cos(0.2))) * x
+                    + (sin(1.3) * (0.8 + 0.5 * sin(0.3) - 0.3 * sin(0.2)) + cos(1.3) * (0.5 * cos(0.3) - 0.3 * cos(0.2))) * z
+            ),
+            about = y
+        )]
+        d_close: Pin,
+    }
+
+    assert_eq!((File::NV, File::NC, File::NS), (Written::NV, Written::NC, Written::NS));
+    assert_eq!(File::VELOCITIES, Written::VELOCITIES);
+    assert_eq!(File::INPUTS, ["a_drive", "b_elbow", "c_swing"]);
+    let (file, written) = (File, Written {});
+    let q = file.assemble(&[0.1, 0.4, -0.2].into(), &[0]).unwrap();
+    assert!(written.constraint_residuals(&q).amax() < 1e-10);
+    let (v, tau) = ([0.4, -0.3, 0.2].into(), [0.1, 0.2, 0.3].into());
+    let (a, forces) = file.constrained_dynamics(&q, &v, &tau);
+    let (b, twins) = written.constrained_dynamics(&q, &v, &tau);
+    assert_close("accelerations", a.as_slice(), b.as_slice(), TOLERANCE);
+    assert_close("multipliers", forces.as_slice(), twins.as_slice(), TOLERANCE);
+    let end = file.frame_placement(frame!(File, "coupler::end"), &q).translation;
+    let bar = written.frame_placement(frame!(Written, "bar"), &q);
+    let tip = bar.rotation * SVector::from([0.0, 0.0, 0.8]) + bar.translation.vector;
+    assert_close("frame", end.vector.as_slice(), tip.as_slice(), TOLERANCE);
+}
+
+/// A contact names the shapes of the file: a rod and a ball, in the pose of the file.
+#[test]
+fn geometry_for_contact() {
+    #[mechanism(sdf = "data/sdf/linkage.sdf")]
+    struct Standing {
+        #[contact(collision(), ground.plane(z), friction = 0.5)]
+        floor: Contact,
+    }
+
+    let gaps = Standing {}.contact_gaps(&Standing {}.neutral());
+    let (low, high) = (0.02 * 0.2_f64.cos() - 0.02, 0.28 * 0.2_f64.cos() - 0.02);
+    let ball = 0.3 * 0.2_f64.cos() + 0.8 * 1.3_f64.cos() - 0.05;
+    let mut found: Vec<f64> = gaps.iter().copied().collect();
+    found[..2].sort_by(f64::total_cmp);
+    assert_close("gaps", &found, &[low, high, ball], TOLERANCE);
+}
