@@ -27,14 +27,18 @@ pub struct CruisingAircraft {
     /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column z.
     pub product: f64,
     /// Density of the air, kg/m³.
+    #[unit(kg / m3)]
     pub density: f64,
     /// Speed of the cruise, m/s.
     pub cruise: f64,
     /// Wing area, m².
+    #[unit(m2)]
     pub area: f64,
     /// Mean chord, m.
+    #[unit(m)]
     pub chord: f64,
     /// Wing span, m.
+    #[unit(m)]
     pub span: f64,
     /// `C_Xu`.
     pub cx_u: f64,
@@ -153,7 +157,7 @@ pub struct CruisingAircraft {
     airspeed: Scalar,
     #[output(flight_path(velocity))]
     climb: Scalar,
-    #[output(dot(a(airframe / ground / ground), airframe.z) / g - dot(ground.z, airframe.z))]
+    #[output(dot(a(airframe / ground / ground) - g * ground.z, airframe.z))]
     felt: Scalar,
 }
 

@@ -55,7 +55,8 @@ impl Source {
     fn pinned(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
         for (field, unit) in item.fields.iter_mut().zip(units) {
-            if unit != "any" && field.ident.as_ref().is_some_and(|name| name != except) {
+            let is_free = field.attrs.iter().all(|attribute| !attribute.path().is_ident("unit"));
+            if is_free && unit != "any" && field.ident.as_ref().is_some_and(|name| name != except) {
                 let unit: TokenStream =
                     unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
                 field.attrs.push(syn::parse_quote!(#[unit(#unit)]));
@@ -227,12 +228,17 @@ fn a_factor_too_few_is_refused() {
     assert!(refused > 40, "{refused} mistakes");
 }
 
-/// A message names the parameter, or one whose unit follows from it, or shows the definition that it stands in. One of the
+/// A message names the parameter, or one whose unit follows from it, or the definitions that it may stand in. One of the
 /// two entries of a symmetric matrix is refused before, and so is a loop that is locked by a length that is wrong.
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
-    let others =
-        ["` becomes ", "is declared as", "an inertia matrix is symmetric", "this mechanism cannot move"];
+    let others = [
+        "` becomes ",
+        "is declared as",
+        "a factor is missing here or in `",
+        "an inertia matrix is symmetric",
+        "this mechanism cannot move",
+    ];
     messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 

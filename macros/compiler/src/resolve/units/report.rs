@@ -38,11 +38,24 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             if let Some((_, written)) = solid {
                 error.help(format!("write `{written}`"));
             } else if error.is_bare() {
-                error.help("a factor is missing, or two things have one name: name another parameter");
+                error.help(what_is_missing(d, &names));
             }
             cx.add(error);
         }
     }
+}
+
+/// What is wrong where nothing says which of the things is not what it should be: the definitions among them, too.
+fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
+    let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
+    let defined: Vec<String> =
+        names.iter().map(|(_, e)| text(e)).filter(is_defined).map(|name| format!("`{name}`")).collect();
+    let or_there = match defined.split_last() {
+        None => String::new(),
+        Some((last, [])) => format!(" here or in {last}"),
+        Some((last, others)) => format!(" here or in {} or {last}", others.join(", ")),
+    };
+    format!("a factor is missing{or_there}, or two things have one name: name another parameter")
 }
 
 /// The names in what an equation is about, those first that it compares.

@@ -119,17 +119,19 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A product or quotient of any number of factors.
+    /// A product or quotient of any number of factors, those in parentheses among them: `a / (2 * b)` is `a / 2 / b`.
     fn product(&mut self, e: &'a Expr) -> Value {
-        let mut written = Vec::new();
-        let mut at = e;
-        while let ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) = &at.kind {
-            written.push((*op == BinaryOp::Div, &**right));
-            at = left;
+        let mut factors = Vec::new();
+        let mut rest = vec![(false, e)];
+        while let Some((below, at)) = rest.pop() {
+            match &at.kind {
+                ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
+                    rest.push((below != (*op == BinaryOp::Div), &**right));
+                    rest.push((below, &**left));
+                }
+                _ => factors.push((below, self.value(at))),
+            }
         }
-        written.push((false, at));
-        let factors: Vec<(bool, Value)> =
-            written.into_iter().rev().map(|(below, factor)| (below, self.value(factor))).collect();
         self.multiply(&factors)
     }
 
