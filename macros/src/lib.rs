@@ -78,6 +78,7 @@ use std::path::PathBuf;
 /// | `packed` | adds the mass matrix without entries that are always zero, and into a matrix of the caller |
 /// | `prepare` | adds `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | adds a twin of every function of the state for several states at once |
+/// | `drawing` | adds what the mechanism looks like as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
 /// | `equations = lagrange`, `hamilton` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, or no terms at all. If not given, Lagrange's where they are short enough to be read |
 /// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
 /// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given |

@@ -84,6 +84,14 @@ pub trait AsksForPrepare<'a> {}
 )]
 pub trait AsksForBatch<'a> {}
 
+/// A mechanism with the word `drawing`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `drawing`",
+    label = "this needs the word `drawing`",
+    note = "add the word to the attribute: `#[mechanism(…, drawing)]`"
+)]
+pub trait AsksForDrawing<'a> {}
+
 /// A mechanism with loops, rolling or other constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints",

@@ -80,6 +80,8 @@ pub use batch::Batch;
 pub use constraint::{Constrained, ConstraintError};
 pub use contact::Contacts;
 pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
+#[doc(inline)]
+pub use drawing::Drawn;
 pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, RateDerivatives};
 pub use frame::{FrameIndex, Frames, NamedFrame, index_of, placement_difference};
 pub use inertial::{Inertial, Placement};
@@ -107,6 +109,7 @@ pub mod constraint;
 pub mod contact;
 mod derivatives;
 pub mod discrete;
+pub mod drawing;
 pub mod elements;
 mod first_order;
 mod forward;

@@ -55,9 +55,10 @@ pub fn derive_with<'g>(
     let joints = kinematics::joints(model);
     if model.kinematic {
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
-        let functions =
-            functions(model, Requests::default(), passes, &joints, &Extras::default(), Specialisation::None);
-        return sound(model, steps(model, &joints, functions), cx);
+        let asked = Requests { drawing: requests.drawing, ..Requests::default() };
+        let functions = functions(model, asked, passes, &joints, &Extras::default(), Specialisation::None);
+        let constants = drawing(model, requests);
+        return sound(model, Output { constants, ..steps(model, &joints, functions) }, cx);
     }
     let mass = crba::mass_matrix(model, &joints);
     if !singular::check(model, &joints, &mass, cx) || !singular::check_effective(model, &joints, &mass, cx) {
@@ -99,9 +100,15 @@ pub fn derive_with<'g>(
     if requests.sensitivities {
         constants.push(Constant::parameters(&model.parameters));
     }
+    constants.extend(drawing(model, requests));
     let equations = printed(model, &joints, &mass, requests.equations, cx)?;
     let output = Output { equations, prepared, constants, ..steps(model, &joints, functions) };
     sound(model, output, cx)
+}
+
+/// The constant of the word `drawing`.
+fn drawing(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
+    requests.drawing.then(|| Constant::drawing(&model.drawing)).into_iter().collect()
 }
 
 /// Functions, with what leads to the frames.

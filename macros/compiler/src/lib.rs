@@ -113,8 +113,10 @@ pub fn read(
 ) -> Option<Source> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
     let (mut files, before) = (Vec::new(), cx.len());
+    mechanism.description.drawing = mechanism.requests.drawing;
     if let Some(options) = &mut mechanism.file {
         options.collisions = mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
+        options.visuals = mechanism.requests.drawing;
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
         files.extend(text.is_some().then_some(path));
@@ -161,6 +163,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     // Those of the file come first.
     description.limits.splice(0..0, imported.limits);
     description.collisions = imported.collisions;
+    description.visuals = imported.visuals;
     description.drives = imported.drives;
     description.dissipations.splice(0..0, imported.dissipations);
     description.snapped = imported.snapped;
@@ -395,6 +398,9 @@ impl Source {
         if facts.requests.conserved {
             constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
         }
+        if facts.requests.drawing {
+            constants.push(derive::Constant::drawing(&[]));
+        }
         if facts.requests.packed {
             constants.push(derive::Constant::entries(&facts.entries));
         }
@@ -436,7 +442,10 @@ impl Source {
             velocity_inputs: outline.velocity_inputs,
             kinematic,
             requests: match kinematic {
-                true => syntax::Requests { batch: requests.batch, ..syntax::Requests::default() },
+                true => {
+                    let (batch, drawing) = (requests.batch, requests.drawing);
+                    syntax::Requests { batch, drawing, ..syntax::Requests::default() }
+                }
                 false => requests,
             },
             constraints,

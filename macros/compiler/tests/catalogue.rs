@@ -13,7 +13,7 @@ use std::path::Path;
 /// Attribute, name and fields of mechanisms that have, between them, every function.
 const MECHANISMS: [(&str, &str, &str); 7] = [
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
         "m: f64,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -22,7 +22,7 @@ const MECHANISMS: [(&str, &str, &str); 7] = [
         #[output(hinge)] angle: Scalar,",
     ),
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch",
+        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Closed",
         "m: f64,
         #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,

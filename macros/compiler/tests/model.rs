@@ -47,6 +47,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             snap: None,
             parameters: Vec::new(),
             collisions: false,
+            visuals: false,
         };
         if let Some(imported) = import::import(text, Path::new(""), &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;

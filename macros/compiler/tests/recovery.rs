@@ -9,7 +9,7 @@ use syn::{ImplItem, Item, ItemImpl, Type};
 /// A mistake that belongs to no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
-const WORDS: &str = "derivatives, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch";
+const WORDS: &str = "derivatives, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing";
 
 const CART_POLE: &str = "
     m: f64, l: f64,

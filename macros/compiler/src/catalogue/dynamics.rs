@@ -22,6 +22,13 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .alone(),
+    Row::derived(Id::Drawing, "drawing_numbers", &[Need::Drawing], |f| Declaration {
+        timeless: true,
+        shape: Shape::Array(f.drawing),
+        docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the parameters as they are."],
+        ..Declaration::default()
+    })
+    .alone(),
     Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),

@@ -32,6 +32,8 @@ pub enum Need {
     Prepare,
     /// The word `batch`.
     Batch,
+    /// The word `drawing`.
+    Drawing,
     /// A mass matrix that can be inverted: constraints determine no coordinates without inertia.
     RegularMass,
     /// Contacts that slip.
@@ -56,7 +58,7 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 23] = [
+    pub const ALL: [Need; 24] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
@@ -68,6 +70,7 @@ impl Need {
         Need::Packed,
         Need::Prepare,
         Need::Batch,
+        Need::Drawing,
         Need::NoConstraints,
         Need::RegularMass,
         Need::Constraints,
@@ -98,6 +101,7 @@ impl Need {
             Need::Packed => "AsksForPacked",
             Need::Prepare => "AsksForPrepare",
             Need::Batch => "AsksForBatch",
+            Need::Drawing => "AsksForDrawing",
             Need::RegularMass => "HasRegularMass",
             Need::Slipping => "HasSlipping",
             Need::Contacts => "HasContacts",
@@ -149,6 +153,8 @@ pub struct Facts {
     pub contacts: [usize; 2],
     /// How many bounds limits have.
     pub limits: usize,
+    /// How many numbers the drawing has.
+    pub drawing: usize,
     /// How many figures follow from parameters and fulfil conditions.
     pub figures: usize,
     /// How many parameters the struct has.
@@ -194,6 +200,7 @@ impl Facts {
             constraints,
             contacts: [model.contacts.len(), model.contact_rates().len()],
             limits: model.limit_values().len(),
+            drawing: model.drawing_numbers().len(),
             figures: model.figures().len(),
             parameters: model.parameters.len(),
             ..Facts::default()
@@ -216,6 +223,7 @@ impl Facts {
             Need::Packed => self.requests.packed,
             Need::Prepare => self.requests.prepare,
             Need::Batch => self.requests.batch,
+            Need::Drawing => self.requests.drawing,
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::Contacts => self.contacts[0] > 0,

@@ -9,6 +9,7 @@ use super::shape::{Argument, Shape};
 pub enum Id {
     Neutral,
     Limits,
+    Drawing,
     MassMatrix,
     BiasForces,
     InverseDynamics,

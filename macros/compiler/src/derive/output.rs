@@ -3,7 +3,7 @@
 use crate::catalogue::{Argument, Declared, Id, Shape, Structure};
 use crate::expr::print::Written;
 use crate::lower::Program;
-use crate::mechanism::Chart;
+use crate::mechanism::{Chart, Piece};
 
 /// A generated function.
 #[derive(Clone)]
@@ -208,6 +208,31 @@ impl Constant {
             "Name of every entry of [`conserved`](Self::conserved): what keeps its value in every motion without inputs, whatever the parameters are. Found by trying energy, Jacobi's integral and momenta.",
             list,
         )
+    }
+
+    /// What the word `drawing` gives.
+    pub fn drawing(pieces: &[Piece<'_>]) -> Constant {
+        let mut first = 0;
+        let written = pieces.iter().map(|piece| {
+            first += piece.numbers.len();
+            let Piece { name, role, kind, frames: [a, b], .. } = piece;
+            let frame = |frame: &Option<usize>| match frame {
+                Some(k) => format!("::core::option::Option::Some({k})"),
+                None => "::core::option::Option::None".to_string(),
+            };
+            let at = first - piece.numbers.len();
+            format!(
+                "::linkwork::drawing::Piece {{ name: {name:?}, role: ::linkwork::drawing::Role::{role:?}, kind: ::linkwork::drawing::Kind::{kind:?}, frames: [{}, {}], first: {at} }}",
+                frame(a),
+                frame(b)
+            )
+        });
+        Constant {
+            name: "DRAWING",
+            docs: "What the mechanism looks like, piece by piece: solids, surfaces, joints, force elements, inputs.",
+            item: "::linkwork::drawing::Piece",
+            list: written.collect(),
+        }
     }
 
     /// The names of the parameters.

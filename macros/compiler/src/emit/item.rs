@@ -299,6 +299,21 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     );
     write_frames_by_number(&mut text, frames.len(), s);
     text.push_str("}\n");
+    if i.facts.requests.drawing {
+        let _ = writeln!(
+            text,
+            "{ALLOW}impl{} ::linkwork::Drawn<{}, {}> for {}{} {} {{
+            const DRAWING: &'static [::linkwork::drawing::Piece] = &Self::DRAWING;
+            fn drawing_numbers(&self) -> impl ::core::convert::AsRef<[{}]> {{ Self::drawing_numbers(self) }}\n}}",
+            head.generics,
+            s.nq,
+            s.nv,
+            i.shell.ident,
+            head.arguments,
+            head.bounds,
+            s.scalar.name()
+        );
+    }
     for (k, body) in frames.iter().enumerate() {
         let _ = writeln!(
             text,

@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
-use crate::syntax::{Body, Collision, Drive, Expr, Joint, Limit, Name};
+use crate::syntax::{Body, Collision, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 
 /// What a file describes.
@@ -26,6 +26,8 @@ pub struct Imported {
     pub is_ground: bool,
     /// Collision geometry of the links, if it was asked for.
     pub collisions: Vec<Collision>,
+    /// Visual geometry of the links, if it was asked for.
+    pub visuals: Vec<Visual>,
     /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
     pub snapped: Vec<String>,
     /// What is in the file and not in the mechanism.

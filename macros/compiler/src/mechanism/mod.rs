@@ -4,6 +4,7 @@
 
 mod constraint;
 mod contact;
+pub mod drawing;
 mod element;
 mod gradients;
 mod inertia;
@@ -18,6 +19,7 @@ mod units;
 
 pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission};
 pub use contact::Contact;
+pub use drawing::{Piece, PieceKind, Role};
 pub use element::{AccelerationForce, CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
 pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;

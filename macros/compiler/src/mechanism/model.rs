@@ -2,6 +2,7 @@
 
 use super::constraint::{Constraint, SolvedSide};
 use super::contact::Contact;
+use super::drawing::Piece;
 use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::gradients::Gradients;
 use super::inertia::Inertia;
@@ -57,6 +58,8 @@ pub struct Model<'g> {
     pub requirements: Vec<Requirement<'g>>,
     /// Named frames.
     pub frames: Vec<NamedFrame<'g>>,
+    /// What it looks like, if that was asked for.
+    pub drawing: Vec<Piece<'g>>,
     /// Springs.
     pub springs: Vec<Spring<'g>>,
     /// Dashpots.
@@ -147,6 +150,11 @@ impl<'g> Model<'g> {
     /// The bounds of all limits, in their order.
     pub fn limit_values(&self) -> Vec<Expr<'g>> {
         self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
+    }
+
+    /// The numbers of the drawing, piece by piece.
+    pub fn drawing_numbers(&self) -> Vec<Expr<'g>> {
+        self.drawing.iter().flat_map(|piece| &piece.numbers).copied().collect()
     }
 
     /// The rates of all contacts, each with its normal one first.

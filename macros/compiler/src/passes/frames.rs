@@ -129,7 +129,7 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
 /// Everything that is fixed in the links, seen from their new frames: `back` are the old frames there.
 pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     // All fields are named, so that whoever adds one is asked what the frames mean to it. Expressions of the state,
-    // as those of loads and outputs, are complete by now: they do not know the frames.
+    // as those of loads and outputs, are complete by now: they do not know the frames. The drawing is placed in named frames.
     let Model {
         graph: _,
         kinematic: _,
@@ -164,6 +164,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         inertances: _,
         outputs: _,
         released: _,
+        drawing: _,
         limits: _,
         contacts: _,
         requirements: _,

@@ -90,6 +90,9 @@ fn build<'g>(
             builder.find_dependencies(constrained);
             builder.add_frames();
             builder.check_finite(cx);
+            if cx.is_empty() {
+                builder.add_drawing();
+            }
         }
         None => builder.check_actions(cx),
     }
@@ -133,6 +136,7 @@ fn empty_model<'g>(
         contacts: Vec::new(),
         requirements: Vec::new(),
         frames: Vec::new(),
+        drawing: Vec::new(),
         springs: Vec::new(),
         dashpots: Vec::new(),
         frictions: Vec::new(),

@@ -13,6 +13,7 @@ mod closed_form;
 mod closure;
 mod constraint;
 mod contact;
+mod drawing;
 mod drive;
 mod expression;
 mod figures;

@@ -207,6 +207,8 @@ fn empty_description(item: &ItemStruct) -> Description {
         limits: Vec::new(),
         contacts: Vec::new(),
         collisions: Vec::new(),
+        drawing: false,
+        visuals: Vec::new(),
         coordinates: Vec::new(),
         inputs: Vec::new(),
         frames: Vec::new(),
@@ -429,6 +431,7 @@ fn read_options(
         snap,
         parameters,
         collisions: false,
+        visuals: false,
     })
 }
 
@@ -473,7 +476,7 @@ fn read_inertias(
     match arguments.take_word("inertia", &["check", "trust", "none"], cx) {
         Some((word, _)) if word == "trust" => Inertias::Trust,
         Some((word, _)) if word == "none" => {
-            for (word, place) in asked {
+            for (word, place) in asked.iter().filter(|(word, _)| *word != "drawing") {
                 cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
                     "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
                 ));
@@ -557,6 +560,7 @@ fn read_requests(
         packed: is_asked("packed"),
         prepare: is_asked("prepare"),
         batch: is_asked("batch"),
+        drawing: is_asked("drawing"),
         file_parameters: false,
         file_inertials: false,
         target_only: false,

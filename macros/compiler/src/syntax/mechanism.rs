@@ -42,6 +42,8 @@ pub struct Requests {
     pub prepare: bool,
     /// Functions of several states at once, in lanes.
     pub batch: bool,
+    /// What it looks like.
+    pub drawing: bool,
     /// Figures of a file are parameters.
     pub file_parameters: bool,
     /// Mass properties of links are among them.
@@ -238,10 +240,12 @@ pub struct FileOptions {
     pub parameters: Vec<FileFigures>,
     /// Contacts name the collision geometry of links.
     pub collisions: bool,
+    /// Visual geometry is drawn.
+    pub visuals: bool,
 }
 
 /// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 10] = [
+pub(super) const REQUESTS: [&str; 11] = [
     "derivatives",
     "second_derivatives",
     "centroidal",
@@ -252,4 +256,5 @@ pub(super) const REQUESTS: [&str; 10] = [
     "packed",
     "prepare",
     "batch",
+    "drawing",
 ];

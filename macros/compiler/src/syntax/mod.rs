@@ -216,6 +216,10 @@ pub struct Description {
     pub contacts: Vec<Contact>,
     /// Collision geometry of a file's links.
     pub collisions: Vec<Collision>,
+    /// What it looks like is asked for.
+    pub drawing: bool,
+    /// Visual geometry of a file's links, for the drawing.
+    pub visuals: Vec<Visual>,
     /// How constrained motion is solved.
     pub formulation: Formulation,
     /// Numbers of a file that were rounded, as the user asked for.
@@ -497,6 +501,26 @@ pub enum Shape {
     Ellipsoid([f64; 3]),
     /// Triangles of another file.
     Mesh,
+}
+
+/// A part of the visual geometry of a file's link.
+#[derive(Clone, Debug)]
+pub struct Visual {
+    /// The link, and where the shape's centre and axes are on it.
+    pub on: Endpoint,
+    /// The shape.
+    pub shape: Shape,
+    /// Its triangles, if it is a mesh.
+    pub mesh: Option<Mesh>,
+}
+
+/// Triangles of another file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Its path, as the file writes it.
+    pub path: String,
+    /// Factors along the axes.
+    pub scale: [f64; 3],
 }
 
 /// `coordinate = multiplier × other + offset`.

@@ -35,6 +35,7 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         snap: None,
         parameters: Vec::new(),
         collisions: false,
+        visuals: false,
     };
     let imported = import::import(&robot.text(), Path::new(""), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));

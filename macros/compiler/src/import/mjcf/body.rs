@@ -175,6 +175,7 @@ impl<'a> Reader<'a> {
             give(&mut link, mass, &mass_place(&inside, node, cx));
         }
         self.add_collisions(self.robot.links.len(), &inside.shapes, cx);
+        self.add_visuals(self.robot.links.len(), &inside.shapes, cx);
         self.robot.links.push(link);
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);

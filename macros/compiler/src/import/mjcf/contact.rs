@@ -28,7 +28,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn collision(&self, shape: &super::defaults::Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Pose)> {
+    /// The form of a shape, and its pose in the frames around it.
+    pub(super) fn collision(
+        &self,
+        shape: &super::defaults::Element<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<(Shape, Pose)> {
         let kind = shape.text("type").unwrap_or("sphere");
         if kind == "mesh" || shape.with("mesh").is_some() {
             return Some((Shape::Mesh, Pose::ZERO));

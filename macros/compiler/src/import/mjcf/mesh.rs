@@ -9,7 +9,7 @@ use super::settings::Settings;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, place};
 use crate::import::pose::{Matrix, Vector, add, apply, cross, dot, length, of_quaternion, scale, transpose};
-use crate::syntax::Name;
+use crate::syntax::{Mesh, Name};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
@@ -78,6 +78,16 @@ impl<'a> Meshes<'a> {
         let found = self.mass(&element, cx);
         self.read.insert(mesh.text, found);
         found
+    }
+
+    /// What is drawn of a shape that is a mesh, in the axes of its file; nothing of one with axes of its own.
+    pub(super) fn drawn(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
+        let element = self.known.get(shape.text("mesh")?)?;
+        if element.with_any(&["refpos", "refquat"]).is_some() {
+            return None;
+        }
+        let scale = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+        Some(Mesh { path: element.text("file")?.to_string(), scale })
     }
 
     fn mass(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {

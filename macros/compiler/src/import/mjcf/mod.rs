@@ -31,6 +31,7 @@ mod mesh;
 mod reader;
 mod settings;
 mod tendon;
+mod visual;
 
 /// What a file may hold.
 const SECTIONS: [&str; 18] = [

@@ -25,6 +25,9 @@ pub(in crate::import) fn assemble(
     let collisions =
         robot.collisions.iter().filter_map(|(link, part)| Some(part.on(&robot.links.get(*link)?.name)));
     let collisions = collisions.collect();
+    let visuals =
+        robot.visuals.iter().filter_map(|(link, part)| Some(part.on(&robot.links.get(*link)?.name)));
+    let visuals = visuals.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
     let mut given: Vec<Option<(FileJoint, Motion)>> =
@@ -52,6 +55,7 @@ pub(in crate::import) fn assemble(
         fields: Vec::new(),
         is_ground,
         collisions,
+        visuals,
         snapped: robot.snapped,
         left_out: robot.left_out,
         files: Vec::new(),

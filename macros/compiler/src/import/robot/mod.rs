@@ -15,6 +15,7 @@ mod origin;
 mod parts;
 mod snap;
 mod tree;
+mod visual;
 
 pub(super) use assemble::{assemble, bare_joint};
 pub(super) use closing::close_loops;
@@ -28,3 +29,4 @@ pub(super) use origin::Origin;
 pub(super) use parts::{MOST, Robot, bare_link};
 pub(super) use snap::snap;
 pub(super) use tree::{Order, order_joints};
+pub(super) use visual::FileVisual;

@@ -3,6 +3,7 @@
 use super::collision::FileCollision;
 use super::joint::FileJoint;
 use super::origin::Origin;
+use super::visual::FileVisual;
 use crate::syntax::{Body, Drive, Expr, Joint, Name};
 
 /// Links or joints of one file.
@@ -21,6 +22,8 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) closing: Vec<Joint>,
     /// Collision geometry: the link's number, what it is.
     pub(in crate::import) collisions: Vec<(usize, FileCollision)>,
+    /// Visual geometry: the link's number, what it is.
+    pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
     /// Springs, dampers, rotors and motors on coordinates.
     pub(in crate::import) drives: Vec<Drive>,
     /// Rayleigh's functions of what has no coordinate of its own.

@@ -1,14 +1,13 @@
 //! `<collision>` → shapes of links that contacts name.
 
-use super::frames::{Frames, read_frame};
-use super::origin;
+use super::frames::{Frames, origin, read_frame};
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, content, elements, place, required, tag};
 use crate::import::robot::FileCollision;
 use crate::syntax::{Name, Shape};
 
 /// Shapes that can touch.
-const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
+pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
 /// Reads all collision geometry of a link.
 pub(super) fn read(
@@ -36,7 +35,8 @@ fn read_part(
     Some(FileCollision { origin: origin(&pose, &at), shape: read_shape(shape, cx)?, place: at })
 }
 
-fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
+/// What an element of `<geometry>` is.
+pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     check_attributes(shape, &[], &[], cx);
     match shape.tag_name().name() {
         "sphere" => {

@@ -3,7 +3,9 @@
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, content, elements, place};
-use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product};
+use crate::import::imported::Placed;
+use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
+use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -132,4 +134,10 @@ impl Frames {
         cx.error(&at.place, message, |d| d);
         None
     }
+}
+
+/// A pose in the words of all formats.
+pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
+    let at = |value| Placed { value, place: place.clone() };
+    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
 }

@@ -1,7 +1,6 @@
 //! `<joint>` → [`FileJoint`]: one, or two with a massless link between them for joints with two axes.
 
-use super::frames::{Frames, model, whole};
-use super::origin;
+use super::frames::{Frames, model, origin, whole};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{
     Node, check_attributes, children, content, elements, name, place, required, word,

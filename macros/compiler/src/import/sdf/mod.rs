@@ -5,18 +5,18 @@
 
 use super::context::{Cx, quote};
 use super::element::{Node, check_attributes, check_element_name, content, elements, name, place, tag, word};
-use super::pose::{Pose, roll_pitch_yaw};
-use crate::diag::Place;
-use crate::import::imported::{Imported, Placed};
-use crate::import::robot::{self, MOST, Origin, Robot};
+use super::pose::Pose;
+use crate::import::imported::Imported;
+use crate::import::robot::{self, MOST, Robot};
 use crate::syntax::{Expr, FileOptions, GROUND, JointKind, Name};
-use frames::{Frame, Frames, WORLD, model, read_frame};
+use frames::{Frame, Frames, WORLD, model, origin, read_frame};
 use std::collections::{BTreeMap, BTreeSet};
 
 mod collision;
 mod frames;
 mod joint;
 mod link;
+mod visual;
 
 /// What a model holds.
 const MODEL: [&str; 10] =
@@ -53,6 +53,10 @@ pub(super) fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'
     for (node, name, prefix) in &reader.links {
         let number = robot.links.len();
         robot.links.extend(link::read_link(*node, name, &reader.frames, options, cx));
+        if options.visuals {
+            let parts = visual::read(*node, (name, prefix), &reader.frames, cx);
+            robot.visuals.extend(parts.into_iter().map(|part| (number, part)));
+        }
         if options.collisions {
             let parts = collision::read(*node, (name, prefix), &reader.frames, cx);
             robot.collisions.extend(parts.into_iter().map(|part| (number, part)));
@@ -101,7 +105,8 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
     let mut counts = [0; ASIDE.len()];
     for node in root.descendants().filter(Node::is_element) {
         for (count, (element, _)) in counts.iter_mut().zip(ASIDE) {
-            let named = options.collisions && element == "collision";
+            let named =
+                options.collisions && element == "collision" || options.visuals && element == "visual";
             *count += usize::from(node.tag_name().name() == element && !named);
         }
     }
@@ -269,12 +274,6 @@ fn canonical_link(node: Node<'_>, prefix: &str, cx: &Cx<'_>) -> Option<Name> {
         Some(Name { text: frames::whole(prefix, found.attribute("name")?), place: place(found, cx) })
     };
     named("link").or_else(|| named("model"))
-}
-
-/// A pose in the words of all formats.
-fn origin(pose: &Pose, place: &Place) -> Origin {
-    let at = |value| Placed { value, place: place.clone() };
-    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
 }
 
 /// Names of the links that nothing lets move.

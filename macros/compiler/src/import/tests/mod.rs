@@ -37,6 +37,7 @@ fn defaults() -> FileOptions {
         snap: None,
         parameters: Vec::new(),
         collisions: false,
+        visuals: false,
     }
 }
 

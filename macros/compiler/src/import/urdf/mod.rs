@@ -16,6 +16,7 @@ mod limit;
 mod link;
 mod origin;
 mod standing;
+mod visual;
 
 /// Reads the root element.
 pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
@@ -79,6 +80,9 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
             0 => {
                 let number = robot.links.len();
                 robot.links.extend(link::read_link(child, |link| standing.contains(link), options, cx));
+                if options.visuals {
+                    robot.visuals.extend(visual::read(child, cx).into_iter().map(|part| (number, part)));
+                }
                 if options.collisions {
                     robot
                         .collisions

@@ -6,6 +6,7 @@
 mod collision;
 mod cones;
 mod contact_point;
+mod drawing;
 mod force;
 mod slipping;
 mod soft;

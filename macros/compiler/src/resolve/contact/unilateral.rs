@@ -207,7 +207,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Surfaces of one side of a contact: one that rolls, a point, or the collision geometry of a file.
-    fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Surface<'g>>> {
+    pub(super) fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Surface<'g>>> {
         if let Some(link) = collision(e) {
             return self.collisions(e, link, cx);
         }

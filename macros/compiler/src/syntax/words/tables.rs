@@ -300,6 +300,7 @@ pub const REQUESTS: Words = &[
     ),
     ("simd lanes vectorize vectorise parallel", "batch"),
     ("sparse compressed", "packed"),
+    ("draw picture view viewer visual visuals render", "drawing"),
     ("momentum centroid", "centroidal"),
     ("hamiltonian canonical phasespace", "hamilton"),
     ("conservation integrals invariants cyclic", "conserved"),

@@ -1,0 +1,42 @@
+//! Geometry → shapes that are drawn. Nothing that is drawn enters an equation: what has no form is left out.
+
+use super::body::Shaped;
+use super::defaults::Element;
+use super::reader::{Reader, origin};
+use crate::import::context::Cx;
+use crate::import::element::place;
+use crate::import::pose::Pose;
+use crate::import::robot::FileVisual;
+use crate::syntax::{Mesh, Shape};
+
+impl<'a> Reader<'a> {
+    /// Adds the shapes of a link that are to be seen: those that touch nothing, which files have for this, or else all.
+    pub(super) fn add_visuals(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+        if !self.options.visuals {
+            return;
+        }
+        let mut touches = |shape: &Element<'a>| {
+            let mut bits = |attribute: &str| shape.number(attribute, cx).map_or(1.0, |bits| bits.value);
+            bits("contype") != 0.0 || bits("conaffinity") != 0.0
+        };
+        let seen: Vec<&Shaped<'a>> = shapes.iter().filter(|(shape, _)| !touches(shape)).collect();
+        let seen = if seen.is_empty() { shapes.iter().collect() } else { seen };
+        for (shape, outer) in seen {
+            let Some((kind, mesh, pose)) = self.visual(shape, cx) else { continue };
+            let at = place(shape.node, cx);
+            let part = FileVisual { origin: origin(&outer.then(&pose), &at), shape: kind, mesh };
+            self.robot.visuals.push((link, part));
+        }
+    }
+
+    fn visual(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, Pose)> {
+        match shape.text("type").unwrap_or("sphere") {
+            "mesh" => {
+                let pose = super::frame::read_pose(shape, &self.settings, cx);
+                Some((Shape::Mesh, Some(self.meshes.drawn(shape, cx)?), pose))
+            }
+            "plane" | "hfield" | "sdf" => None,
+            _ => self.collision(shape, cx).map(|(kind, pose)| (kind, None, pose)),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! `<visual>` → shapes to draw. Nothing that is drawn enters an equation: what cannot be read is left out.
+
+use crate::import::context::Cx;
+use crate::import::element::{Node, elements, place};
+use crate::import::imported::Placed;
+use crate::import::robot::{FileVisual, Origin};
+use crate::syntax::{Mesh, Shape};
+
+/// Reads all visual geometry of a link.
+pub(super) fn read(link: Node<'_>, cx: &Cx<'_>) -> Vec<FileVisual> {
+    elements(link)
+        .filter(|node| node.tag_name().name() == "visual")
+        .filter_map(|part| read_part(part, cx))
+        .collect()
+}
+
+fn read_part(node: Node<'_>, cx: &Cx<'_>) -> Option<FileVisual> {
+    let child = |name: &str| elements(node).find(|child| child.tag_name().name() == name);
+    let placed = |name| {
+        let value = child("origin").map_or(Some([0.0; 3]), |origin| list(origin, name, [0.0; 3]))?;
+        Some(Placed { value, place: place(node, cx) })
+    };
+    let (shape, mesh) = elements(child("geometry")?).find_map(read_shape)?;
+    Some(FileVisual { origin: Origin { xyz: placed("xyz")?, rpy: placed("rpy")? }, shape, mesh })
+}
+
+fn read_shape(node: Node<'_>) -> Option<(Shape, Option<Mesh>)> {
+    let length = |name: &str| size(node.attribute(name)?);
+    let shape = match node.tag_name().name() {
+        "sphere" => Shape::Sphere(length("radius")?),
+        "cylinder" => Shape::Cylinder(length("radius")?, length("length")?),
+        "capsule" => Shape::Capsule(length("radius")?, length("length")?),
+        "box" => {
+            let edges = list(node, "size", [0.0; 3])?;
+            Shape::Cuboid(edges.iter().all(|x| *x > 0.0).then_some(edges)?)
+        }
+        "mesh" => {
+            let path = node.attribute("filename")?.to_string();
+            return Some((Shape::Mesh, Some(Mesh { path, scale: list(node, "scale", [1.0; 3])? })));
+        }
+        _ => return None,
+    };
+    Some((shape, None))
+}
+
+/// A length that something can have.
+fn size(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0)
+}
+
+/// Three numbers, or what stands for none.
+fn list(node: Node<'_>, name: &str, none: [f64; 3]) -> Option<[f64; 3]> {
+    let Some(text) = node.attribute(name) else { return Some(none) };
+    let numbers = text.split_whitespace().map(|word| word.parse().ok().filter(|x: &f64| x.is_finite()));
+    let numbers: Option<Vec<f64>> = numbers.collect();
+    numbers?.try_into().ok()
+}

@@ -1,0 +1,69 @@
+//! Surfaces that touch, as pieces of the drawing.
+
+use super::surface::{Form, Surface};
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::mechanism::drawing::{entries, rows};
+use crate::mechanism::{Piece, PieceKind, Role};
+use crate::resolve::builder::Builder;
+use crate::syntax::ExprKind;
+
+impl<'g> Builder<'_, 'g> {
+    /// The surfaces of contacts and of pairs that roll or slip, each once.
+    pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) {
+        let mut silent = Diagnostics::unread();
+        let before = pieces.len();
+        let contacts = self.description.contacts.iter();
+        let mut found: Vec<(&str, Surface<'g>)> = Vec::new();
+        for contact in contacts {
+            for side in [&contact.first, &contact.second] {
+                let surfaces = self.touching(side, &mut silent).unwrap_or_default();
+                found.extend(surfaces.into_iter().map(|surface| (contact.name.text.as_str(), surface)));
+            }
+        }
+        for constraint in &self.description.constraints {
+            if let ExprKind::Call(word, pair) = &constraint.value.kind
+                && word.text == constraint.kind.verb()
+            {
+                let surfaces = pair.iter().filter_map(|side| self.surface(side, "", &mut silent));
+                found.extend(surfaces.map(|surface| (constraint.name.text.as_str(), surface)));
+            }
+        }
+        for (name, surface) in found {
+            let Some(piece) = self.surface_piece(name, &surface) else { continue };
+            let is_same = |known: &Piece<'g>| {
+                known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
+            };
+            if !pieces[before..].iter().any(is_same) {
+                pieces.push(piece);
+            }
+        }
+    }
+
+    fn surface_piece(&self, name: &str, Surface { home, form }: &Surface<'g>) -> Option<Piece<'g>> {
+        let (frame, pose) = self.anchor(home.link, &home.pose)?;
+        let at = entries(&[pose.translation]);
+        let round = |axis, numbers: &[Expr<'g>]| {
+            [entries(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
+        };
+        let along_axes =
+            |lengths: &[Expr<'g>; 3]| [at.clone(), rows(&pose.rotation.matrix()), lengths.to_vec()].concat();
+        let (kind, numbers) = match form {
+            Form::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
+            Form::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
+            Form::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
+            Form::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
+            Form::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
+            Form::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
+            Form::Plane(n) => (PieceKind::Plane, round(*n, &[])),
+            Form::Cylinder(r, n) | Form::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
+            Form::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
+            Form::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
+            Form::Cone(half, n) | Form::Funnel(half, n) => (PieceKind::Funnel, round(*n, &[*half])),
+            Form::Point => (PieceKind::Point, at.clone()),
+            // They have no end.
+            Form::Sheet(_) | Form::Terrain(_) => return None,
+        };
+        Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [frame, None], numbers })
+    }
+}

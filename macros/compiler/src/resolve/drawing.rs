@@ -1,0 +1,378 @@
+//! What the word `drawing` asks for: pieces that show what is declared, in the axes of named frames, so that no pass over the
+//! links moves them.
+
+use super::builder::Builder;
+use super::scope::{Allowed, Context, Placed, PlacedKind};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Rotation, Vec3};
+use crate::kinematics::symbols_in;
+use crate::mechanism::drawing::{entries, rows};
+use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
+use crate::syntax::{
+    self, Action, ActionKind, BinaryOp, DriveLaw, Endpoint, ExprKind, GROUND, JointKind, Shape, Target,
+    Visual,
+};
+use std::collections::BTreeSet;
+
+/// A place: the frame that it is fixed in, the ground if none, and where.
+pub type Anchor<'g> = (Option<usize>, Pose<'g>);
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the drawing, if it was asked for.
+    pub fn add_drawing(&mut self) {
+        if !self.description.drawing {
+            return;
+        }
+        // What is read a second time requires nothing a second time.
+        let required = self.scope.requirements.borrow().clone();
+        let context = Context::new(Allowed::Constant, None);
+        let previous = self.scope.context.replace(context);
+        let mut pieces = Vec::new();
+        let shown = self.draw_visuals(&mut pieces);
+        if !self.model.gravity.is_zero() {
+            let numbers = entries(&[Vec3::zero(self.scope.graph), self.model.gravity]);
+            let name = "gravity".to_string();
+            pieces.push(Piece {
+                name,
+                role: Role::Gravity,
+                kind: PieceKind::Gravity,
+                frames: [None, None],
+                numbers,
+            });
+        }
+        self.draw_bodies(&shown, &mut pieces);
+        self.draw_joints(&shown, &mut pieces);
+        self.draw_surfaces(&mut pieces);
+        self.draw_actions(&mut pieces);
+        self.scope.context.replace(previous);
+        self.scope.requirements.replace(required);
+        let is_fixed = |e: &[Expr<'g>]| {
+            symbols_in(e).into_iter().all(|s| matches!(Quantity::of(s), Quantity::Parameter(_)))
+        };
+        pieces.retain(|piece: &Piece<'g>| is_fixed(&piece.numbers));
+        self.model.drawing = pieces;
+    }
+
+    /// A place on a link in the axes of a frame that the link carries; `None` if it carries none.
+    pub(super) fn anchor(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
+        if link.is_none() {
+            return Some((None, pose.clone()));
+        }
+        let at = self.model.frames.iter().position(|frame| frame.link == link)?;
+        Some((Some(at), self.model.frames[at].pose.inverse().then(pose)))
+    }
+
+    /// A body's own frame.
+    fn body_frame(&self, name: &str) -> Option<usize> {
+        self.model.frames.iter().position(|frame| frame.name == name)
+    }
+
+    /// The end of a joint.
+    fn end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
+        let mut silent = Diagnostics::unread();
+        let on_body = self.endpoint(end, &mut silent)?;
+        if end.body.text == GROUND {
+            return Some((None, on_body));
+        }
+        if let Some(frame) = self.body_frame(&end.body.text) {
+            return Some((Some(frame), on_body));
+        }
+        let (link, pose) = self.joint_parent(&end.body, &mut silent)?;
+        self.anchor(link, &pose.then(&on_body))
+    }
+
+    /// The visual geometry of a file; returns the bodies that have any.
+    fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
+        let g = self.scope.graph;
+        for Visual { on, shape, mesh } in &self.description.visuals {
+            let Some((frame, pose)) = self.end(on) else { continue };
+            let z = pose.rotation.to_parent(Vec3::axis(g, 2));
+            let number = |x: f64| g.num(x);
+            let round = |numbers: &[f64]| {
+                let axis = entries(&[pose.translation, z]);
+                axis.into_iter().chain(numbers.iter().map(|x| g.num(*x))).collect()
+            };
+            let along_axes = |lengths: [f64; 3]| {
+                let axes = rows(&pose.rotation.matrix());
+                entries(&[pose.translation]).into_iter().chain(axes).chain(lengths.map(number)).collect()
+            };
+            let (kind, numbers) = match (shape, mesh) {
+                (Shape::Sphere(radius), _) => {
+                    let mut numbers = entries(&[pose.translation]);
+                    numbers.push(number(*radius));
+                    (PieceKind::Sphere, numbers)
+                }
+                (Shape::Cuboid(edges), _) => (PieceKind::Cuboid, along_axes(*edges)),
+                (Shape::Ellipsoid(halves), _) => (PieceKind::Ellipsoid, along_axes(*halves)),
+                (Shape::Cylinder(radius, height), _) => (PieceKind::Cylinder, round(&[*radius, *height])),
+                (Shape::Capsule(radius, height), _) => (PieceKind::Capsule, round(&[*radius, *height])),
+                (Shape::Mesh, Some(mesh)) => (PieceKind::Mesh(mesh.path.clone()), along_axes(mesh.scale)),
+                (Shape::Mesh, None) => continue,
+            };
+            let name = on.body.text.clone();
+            pieces.push(Piece { name, role: Role::Visual, kind, frames: [frame, None], numbers });
+        }
+        pieces.iter().map(|piece| piece.name.clone()).collect()
+    }
+
+    /// Solids and particles, but for bodies that are shown already.
+    fn draw_bodies(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
+        let g = self.scope.graph;
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            let name = &body.name.text;
+            let (Some(frame), Some((mass, com, inertia))) =
+                (self.body_frame(name), self.masses.get(k).copied().flatten())
+            else {
+                continue;
+            };
+            if mass.is_zero() && inertia.diagonal.iter().all(|i| i.is_zero()) || shown.contains(name) {
+                continue;
+            }
+            let mut solids = Vec::new();
+            let complete = match &body.inertia {
+                Some(e) => self.solids(e, &Rotation::identity(g), com, &mut solids),
+                None => false,
+            };
+            if !complete {
+                let tensor = inertia.diagonal.into_iter().chain(inertia.off);
+                let is_point = inertia.diagonal.iter().all(|i| i.is_zero());
+                let kind = if is_point { PieceKind::Point } else { PieceKind::Inertia };
+                let figures = std::iter::once(mass).chain(tensor);
+                let figures: Vec<Expr<'g>> = if is_point { Vec::new() } else { figures.collect() };
+                solids = vec![(kind, entries(&[com]).into_iter().chain(figures).collect())];
+            }
+            pieces.extend(solids.into_iter().map(|(kind, numbers)| Piece {
+                name: name.clone(),
+                role: Role::Body,
+                kind,
+                frames: [Some(frame), None],
+                numbers,
+            }));
+        }
+        for particle in &self.description.particles {
+            let name = particle.name.text.clone();
+            let frames = [self.body_frame(&name), None];
+            let numbers = entries(&[Vec3::zero(g)]);
+            if frames[0].is_some() {
+                pieces.push(Piece { name, role: Role::Body, kind: PieceKind::Point, frames, numbers });
+            }
+        }
+    }
+
+    /// The solids of an inertia about a point; false if it has figures that are no solid's.
+    fn solids(
+        &self,
+        e: &syntax::Expr,
+        turned: &Rotation<'g>,
+        com: Vec3<'g>,
+        found: &mut Vec<(PieceKind, Vec<Expr<'g>>)>,
+    ) -> bool {
+        let mut silent = Diagnostics::unread();
+        match &e.kind {
+            ExprKind::Binary(BinaryOp::Add, a, b, _) => {
+                self.solids(a, turned, com, found) && self.solids(b, turned, com, found)
+            }
+            ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
+                let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
+                self.solids(inner, &turned.clone().then(&rotation), com, found)
+            }
+            ExprKind::Call(solid, arguments) => {
+                let kind = match solid.text.as_str() {
+                    "rod" => PieceKind::Rod,
+                    "ring" => PieceKind::Ring,
+                    "disk" => PieceKind::Disk,
+                    "cylinder" => PieceKind::Cylinder,
+                    "tube" => PieceKind::Tube,
+                    "cone" => PieceKind::Cone,
+                    "capsule" => PieceKind::Capsule,
+                    "sphere" | "shell" => PieceKind::Sphere,
+                    "cuboid" | "box" | "plate" => PieceKind::Cuboid,
+                    "ellipsoid" => PieceKind::Ellipsoid,
+                    _ => return false,
+                };
+                let axial = !matches!(kind, PieceKind::Sphere | PieceKind::Cuboid | PieceKind::Ellipsoid);
+                let (axis, sizes) = match arguments.split_last() {
+                    Some((axis, sizes)) if axial => (Some(axis), sizes),
+                    _ => (None, arguments.as_slice()),
+                };
+                let mut numbers = entries(&[com]);
+                match axis {
+                    Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
+                        Some(axis) => numbers.extend(entries(&[turned.to_parent(axis)])),
+                        None => return false,
+                    },
+                    None if kind == PieceKind::Sphere => {}
+                    None => numbers.extend(rows(&turned.matrix())),
+                }
+                // The mass comes first.
+                for size in sizes.iter().skip(1) {
+                    match self.scope.scalar(size, &mut silent) {
+                        Some(size) => numbers.push(size),
+                        None => return false,
+                    }
+                }
+                if solid.text == "plate" {
+                    numbers.push(self.scope.graph.zero());
+                }
+                found.push((kind, numbers));
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Joints, and bars from the joint that holds a body to its others and to its centre of mass.
+    fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
+        let mut held: Vec<(&str, Vec3<'g>)> = Vec::new();
+        for joint in &self.description.joints {
+            let (Some((parent, on_parent)), Some((_, on_child))) =
+                (self.end(&joint.parent), self.end(&joint.child))
+            else {
+                continue;
+            };
+            for (body, place) in
+                [(&joint.parent.body, on_parent.translation), (&joint.child.body, on_child.translation)]
+            {
+                held.push((&body.text, place));
+            }
+            let Some((kind, axis)) = self.joint_kind(joint) else { continue };
+            let mut numbers = entries(&[on_parent.translation]);
+            numbers.extend(axis.iter().flat_map(|axis| entries(&[on_parent.rotation.to_parent(*axis)])));
+            let name = joint.name.text.clone();
+            pieces.push(Piece { name, role: Role::Joint, kind, frames: [parent, None], numbers });
+        }
+        for (k, body) in self.description.bodies.iter().enumerate() {
+            let name = &body.name.text;
+            let Some(frame) = self.body_frame(name).filter(|_| !shown.contains(name)) else { continue };
+            let mut places = held.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
+            let Some(first) = places.next() else { continue };
+            let com = self.masses.get(k).copied().flatten().map(|(_, com, _)| com);
+            for other in places.chain(com).filter(|other| !(*other - first).is_zero()) {
+                pieces.push(Piece {
+                    name: name.clone(),
+                    role: Role::Link,
+                    kind: PieceKind::Bar,
+                    frames: [Some(frame), Some(frame)],
+                    numbers: entries(&[first, other]),
+                });
+            }
+        }
+    }
+
+    /// How a joint is drawn, with its axis on the parent.
+    fn joint_kind(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
+        let axis = |axes: &[syntax::Expr]| {
+            self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
+        };
+        Some(match joint.kind {
+            JointKind::Pin | JointKind::Screw | JointKind::Collar | JointKind::Planar => {
+                (PieceKind::Hinge, Some(axis(&joint.about)?))
+            }
+            JointKind::Sleeve | JointKind::Slot | JointKind::Stage => {
+                (PieceKind::Slide, Some(axis(&joint.along)?))
+            }
+            JointKind::Universal | JointKind::Ball => (PieceKind::Ball, None),
+            JointKind::Free | JointKind::Weld => return None,
+        })
+    }
+
+    /// Springs, dashpots and inputs.
+    fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
+        for action in &self.description.actions {
+            match &action.kind {
+                ActionKind::Spring { .. } => {
+                    self.draw_element(action, PieceKind::Coil, PieceKind::Spiral, pieces)
+                }
+                ActionKind::Dashpot { .. } => {
+                    self.draw_element(action, PieceKind::Damper, PieceKind::Brake, pieces)
+                }
+                _ => {}
+            }
+        }
+        for (k, (name, input)) in self.model.inputs.iter().enumerate() {
+            let Some((kind, frames, numbers)) = self.input(k, name, input) else { continue };
+            pieces.push(Piece { name: name.clone(), role: Role::Input, kind, frames, numbers });
+        }
+    }
+
+    /// An element between two points or on a joint: `long` if it spans a length, `round` if it turns.
+    fn draw_element(&self, action: &Action, long: PieceKind, round: PieceKind, pieces: &mut Vec<Piece<'g>>) {
+        let found = match &action.on {
+            Target::Between(a, b) => {
+                let mut silent = Diagnostics::unread();
+                let mut place =
+                    |e| self.scope.place(e, &mut silent).and_then(|p| self.anchor(p.link, &p.pose));
+                place(a).zip(place(b)).map(|(a, b)| (long, [a.0, b.0], [a.1.translation, b.1.translation]))
+            }
+            Target::On(on) => self.on_joint(on).map(|(turns, frames, ends, axis)| match turns {
+                true => (round, frames, [ends[0], axis]),
+                false => (long, frames, ends),
+            }),
+        };
+        if let Some((kind, frames, vectors)) = found {
+            let (name, numbers) = (action.name.text.clone(), entries(&vectors));
+            pieces.push(Piece { name, role: Role::Element, kind, frames, numbers });
+        }
+    }
+
+    /// The joint with one coordinate that an expression names: whether it turns, the frames and places of its ends, its axis on
+    /// the parent.
+    #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
+    fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
+        let name = on.name()?;
+        let joint = self.description.joints.iter().find(|joint| joint.name.text == name)?;
+        let ((a, on_a), (b, on_b)) = self.end(&joint.parent).zip(self.end(&joint.child))?;
+        let (kind, axis) = self.joint_kind(joint)?;
+        let axis = on_a.rotation.to_parent(axis?);
+        Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
+    }
+
+    /// The joint that an input of a file drives.
+    fn driven(&self, input: &str) -> Option<&str> {
+        let drives = &self.description.drives;
+        let found =
+            drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
+        found.and_then(|drive| drive.terms.first()).map(|(joint, _)| joint.text.as_str())
+    }
+
+    /// An arrow for an input, if it has one direction.
+    fn input(
+        &self,
+        k: usize,
+        name: &str,
+        input: &Input<'g>,
+    ) -> Option<(PieceKind, [Option<usize>; 2], Vec<Expr<'g>>)> {
+        let g = self.scope.graph;
+        let (link, point, direction, torque) = match input {
+            Input::Named | Input::Sum(..) => return None,
+            Input::Coordinate(_) => {
+                let on = self.description.actions.iter().find(|action| action.name.text == name);
+                let joint = match on.map(|action| &action.on) {
+                    Some(Target::On(on)) => self.on_joint(on),
+                    Some(Target::Between(..)) => None,
+                    None => {
+                        let joint = self.driven(name).unwrap_or(name).to_string();
+                        let place = self.description.name.place.clone();
+                        self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
+                    }
+                };
+                let (turns, [a, _], [at, _], axis) = joint?;
+                let kind = if turns { PieceKind::Torque(k) } else { PieceKind::Force(k) };
+                return Some((kind, [a, a], entries(&[at, axis])));
+            }
+            Input::Force { link, point, along } => (*link, *point, along, false),
+            Input::Torque { link, about } => (*link, Vec3::zero(g), about, true),
+        };
+        let [(axes, direction)] = direction.as_slice() else { return None };
+        let place = Placed {
+            link: Some(link),
+            pose: Pose { rotation: Rotation::identity(g), translation: point },
+            kind: PlacedKind::Point,
+        };
+        let (frame, pose) = self.anchor(place.link, &place.pose)?;
+        let (axes_frame, axes) = self.anchor(*axes, &Pose::identity(g))?;
+        let kind = if torque { PieceKind::Torque(k) } else { PieceKind::Force(k) };
+        let numbers = entries(&[pose.translation, axes.rotation.to_parent(*direction)]);
+        Some((kind, [frame, axes_frame], numbers))
+    }
+}
