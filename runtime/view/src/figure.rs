@@ -1,0 +1,271 @@
+//! What is drawn: pieces that are fixed in frames.
+
+use crate::mesh::{self, Mesh};
+use crate::{Error, text};
+use linkwork::drawing::{Kind, Piece, Role};
+use linkwork::nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use linkwork::{Drawn, Real};
+use std::path::Path;
+
+/// A mechanism as it is drawn: its frames, and pieces fixed in them.
+///
+/// [`Figure::of`] takes those of a mechanism with the word `drawing`; further ones are [added](Figure::add).
+#[derive(Clone, Debug, Default)]
+pub struct Figure {
+    pub(crate) frames: Vec<String>,
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) gravity: [f64; 3],
+}
+
+/// A piece with its numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    pub(crate) name: String,
+    pub(crate) role: Role,
+    pub(crate) kind: Kind,
+    pub(crate) frames: [Option<usize>; 2],
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) mesh: Option<Mesh>,
+    /// It stands for figures that no form is declared for.
+    fitted: bool,
+}
+
+/// A number of any scalar type.
+pub(crate) fn plain<T: Real>(x: T) -> f64 {
+    x.to_subset().unwrap_or(f64::NAN)
+}
+
+impl Figure {
+    /// What a mechanism declares, for its parameters as they are.
+    pub fn of<M, const NQ: usize, const NV: usize>(mechanism: &M) -> Figure
+    where
+        M: Drawn<NQ, NV>,
+    {
+        let numbers = mechanism.drawing_numbers();
+        let numbers: Vec<f64> = numbers.as_ref().iter().map(|x| plain(*x)).collect();
+        Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
+    }
+
+    /// Pieces with their numbers, in frames of these names. Pieces whose numbers are missing or not finite are left out.
+    pub fn from_pieces(frames: Vec<String>, pieces: &[Piece], numbers: &[f64]) -> Figure {
+        let mut figure = Figure { frames, ..Figure::default() };
+        for piece in pieces {
+            let end = piece.first.saturating_add(piece.kind.count());
+            let Some(numbers) = numbers.get(piece.first..end) else { continue };
+            figure.push(piece.name, piece.role, piece.kind, piece.frames, numbers);
+        }
+        figure.fit();
+        figure
+    }
+
+    /// Adds a piece to a frame, to the ground if there is no name. Its numbers are those that [`Kind`] says, m and rad.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such frame, or another number of numbers.
+    pub fn add(
+        mut self,
+        name: &str,
+        kind: Kind,
+        frame: Option<&str>,
+        numbers: &[f64],
+    ) -> Result<Figure, Error> {
+        if numbers.len() != kind.count() {
+            let what = format!("the numbers of `{name}`");
+            return Err(Error::Count { what, expected: kind.count(), found: numbers.len() });
+        }
+        let frame = frame.map(|frame| self.frame(frame)).transpose()?;
+        self.push(name, Role::Visual, kind, [frame; 2], numbers);
+        Ok(self)
+    }
+
+    /// Reads the triangles of a robot's meshes, STL or OBJ, from a folder. A path of the robot's file, `package://name/path` or
+    /// a path of its own, is looked for there with all of it, then with ever fewer of its first folders. Without this call, and
+    /// where no file of the name is found, meshes are left out.
+    ///
+    /// # Errors
+    ///
+    /// If a file of the name is found, and cannot be read as triangles.
+    pub fn meshes(mut self, folder: impl AsRef<Path>) -> Result<Figure, Error> {
+        for shape in &mut self.shapes {
+            if let Kind::Mesh(path) = shape.kind
+                && let Some(found) = mesh::find(folder.as_ref(), path)
+            {
+                shape.mesh = Some(mesh::read(&found)?);
+            }
+        }
+        Ok(self)
+    }
+
+    /// Names of the frames.
+    pub fn frames(&self) -> &[String] {
+        &self.frames
+    }
+
+    /// The number of a frame.
+    pub(crate) fn frame(&self, name: &str) -> Result<usize, Error> {
+        let found = self.frames.iter().position(|known| known == name);
+        found.ok_or_else(|| Error::Frame { name: name.to_string(), known: self.frames.clone() })
+    }
+
+    fn push(&mut self, name: &str, role: Role, kind: Kind, frames: [Option<usize>; 2], numbers: &[f64]) {
+        let known = frames.iter().flatten().all(|frame| *frame < self.frames.len());
+        if !known || numbers.iter().any(|x| !x.is_finite()) {
+            return;
+        }
+        let fitted = kind == Kind::Inertia;
+        let (kind, numbers) = match kind {
+            Kind::Inertia => equivalent(numbers),
+            Kind::Gravity => {
+                self.gravity.copy_from_slice(&numbers[3..]);
+                return;
+            }
+            kind => (kind, numbers.to_vec()),
+        };
+        self.shapes.push(Shape { name: name.to_string(), role, kind, frames, numbers, mesh: None, fitted });
+    }
+
+    /// Ellipsoids that stand for figures are no longer than the links: the inertias of many files are made up.
+    fn fit(&mut self) {
+        let length =
+            |s: &Shape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
+        let bars: Vec<(Option<usize>, f64)> =
+            self.shapes.iter().filter(|s| s.kind == Kind::Bar).map(|s| (s.frames[0], length(s))).collect();
+        let mean = bars.iter().map(|(_, length)| length).sum::<f64>() / bars.len().max(1) as f64;
+        for shape in self.shapes.iter_mut().filter(|s| s.role == Role::Body && s.kind == Kind::Ellipsoid) {
+            let own = bars.iter().filter(|(frame, _)| *frame == shape.frames[0]).map(|(_, length)| *length);
+            let most = own.fold(mean, f64::max) / 2.0;
+            let largest = shape.numbers[12..].iter().copied().fold(0.0, f64::max);
+            if shape.fitted && most > 0.0 && largest > most {
+                shape.numbers[12..].iter_mut().for_each(|half| *half *= most / largest);
+            }
+        }
+    }
+
+    /// The frames that pieces are fixed in.
+    pub(crate) fn used(&self) -> Vec<usize> {
+        (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
+    }
+
+    /// The directions of the axes of joints, if all are parallel: what moves in a plane.
+    pub(crate) fn normal(
+        &self,
+        turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
+    ) -> Option<Vector3<f64>> {
+        let axis = |s: &Shape| turn(s.frames[0], Vector3::from_column_slice(&s.numbers[3..6]));
+        let hinges: Vec<Vector3<f64>> =
+            self.shapes.iter().filter(|s| s.kind == Kind::Hinge).map(axis).collect();
+        let first = hinges.first()?;
+        hinges.iter().all(|other| other.cross(first).norm() < 1e-6).then_some(*first)
+    }
+}
+
+impl Shape {
+    /// Points that it reaches, with the frame of each, and how far beyond.
+    pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
+        let n = &self.numbers;
+        let at = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+        let [a, b] = self.frames;
+        let ends = |half: f64, radius: f64| {
+            vec![(a, at(0) - at(3) * half, radius), (a, at(0) + at(3) * half, radius)]
+        };
+        let norm = |k: usize| at(k).norm();
+        match self.kind {
+            Kind::Rod => ends(n[6] / 2.0, 0.0),
+            Kind::Cylinder | Kind::Capsule => ends(n[7] / 2.0, n[6]),
+            Kind::Cone => ends(n[7] * 0.75, n[6]),
+            Kind::Tube => ends(n[8] / 2.0, n[7]),
+            Kind::Ring | Kind::Disk => vec![(a, at(0), n[6])],
+            Kind::Torus => vec![(a, at(0), n[6] + n[7])],
+            Kind::Sphere => vec![(a, at(0), n[3])],
+            Kind::Cuboid => vec![(a, at(0), norm(12) / 2.0)],
+            Kind::Ellipsoid => vec![(a, at(0), n[12].max(n[13]).max(n[14]))],
+            Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, at(0), 0.0), (b, at(3), 0.0)],
+            Kind::Mesh(_) => match &self.mesh {
+                Some(mesh) => vec![(a, at(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))],
+                None => Vec::new(),
+            },
+            Kind::Plane | Kind::Funnel | Kind::Pipe | Kind::Bowl | Kind::Gravity | Kind::Inertia => {
+                Vec::new()
+            }
+            Kind::Point
+            | Kind::Hinge
+            | Kind::Slide
+            | Kind::Ball
+            | Kind::Spiral
+            | Kind::Brake
+            | Kind::Force(_)
+            | Kind::Torque(_) => vec![(a, at(0), 0.0)],
+        }
+    }
+
+    /// It as data of a page; `renumber` gives the number of a frame there.
+    pub(crate) fn json(&self, renumber: impl Fn(usize) -> usize) -> String {
+        let frame = |k: Option<usize>| k.map_or("-1".to_string(), |k| renumber(k).to_string());
+        let (kind, more) = match self.kind {
+            Kind::Force(k) => ("Force".to_string(), k.to_string()),
+            Kind::Torque(k) => ("Torque".to_string(), k.to_string()),
+            Kind::Mesh(_) => ("Mesh".to_string(), self.mesh.as_ref().map_or("null".to_string(), Mesh::json)),
+            kind => (format!("{kind:?}"), "null".to_string()),
+        };
+        text::list([
+            text::json(&kind),
+            text::json(&format!("{:?}", self.role)),
+            text::json(&self.name),
+            frame(self.frames[0]),
+            frame(self.frames[1]),
+            text::numbers(&self.numbers),
+            more,
+        ])
+    }
+}
+
+/// The homogeneous ellipsoid with a mass and an inertia: with principal moments `I₁ …` its half axes fulfil
+/// `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, as those of plane mechanisms, give flat ones.
+fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
+    let [x, y, z, mass, xx, yy, zz, xy, xz, yz] = *numbers else { return (Kind::Point, vec![0.0; 3]) };
+    if mass <= 0.0 {
+        return (Kind::Point, vec![x, y, z]);
+    }
+    let SymmetricEigen { eigenvectors: mut axes, eigenvalues: i } =
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).symmetric_eigen();
+    if axes.determinant() < 0.0 {
+        axes.column_mut(2).neg_mut();
+    }
+    let square = |k: usize| 5.0 * (i.sum() - 2.0 * i[k]) / (2.0 * mass);
+    let squares = [0, 1, 2].map(square);
+    let largest = squares.into_iter().fold(0.0, f64::max);
+    let halves = squares.map(|s| s.max(largest * 0.01).sqrt());
+    let axes = axes.transpose();
+    (Kind::Ellipsoid, [&[x, y, z], axes.as_slice(), &halves].concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A homogeneous ellipsoid with half axes a, b, c has `I_xx = m (b² + c²) / 5` (any table of mechanics).
+    #[test]
+    fn an_ellipsoid_is_its_own_equivalent() {
+        let (m, [a, b, c]) = (3.0, [0.5, 0.2, 0.3_f64]);
+        let moment = |p: f64, q: f64| m * (p * p + q * q) / 5.0;
+        let numbers = [1.0, 2.0, 3.0, m, moment(b, c), moment(a, c), moment(a, b), 0.0, 0.0, 0.0];
+        let (kind, n) = equivalent(&numbers);
+        assert_eq!((kind, &n[..3]), (Kind::Ellipsoid, &[1.0, 2.0, 3.0][..]));
+        // Each column of the axes is a coordinate axis, with its half axis.
+        for (k, half) in [a, b, c].into_iter().enumerate() {
+            let column = (0..3).find(|j| n[3 + 3 * k + j].abs() > 0.999_999).unwrap();
+            assert!((n[12 + column] - half).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_has_no_numbers_is_left_out() {
+        let frames = vec!["a".to_string()];
+        let piece =
+            |first| Piece { name: "p", role: Role::Body, kind: Kind::Sphere, frames: [Some(0), None], first };
+        let figure =
+            Figure::from_pieces(frames, &[piece(0), piece(2), piece(usize::MAX)], &[0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(figure.shapes.len(), 1);
+    }
+}

@@ -1,0 +1,35 @@
+#![doc = include_str!("../README.md")]
+
+mod encode;
+mod error;
+mod figure;
+mod log;
+mod mesh;
+mod motion;
+mod page;
+mod text;
+
+pub use error::Error;
+pub use figure::Figure;
+pub use log::csv;
+pub use motion::Motion;
+pub use page::Page;
+
+use linkwork::simulate::Sample;
+use linkwork::{Drawn, Rheonomic};
+
+/// A page that shows a motion of a mechanism, in one call: [`Motion::of`] on a [`Page`].
+///
+/// # Errors
+///
+/// Those of [`Motion::of`].
+pub fn page<M, const NQ: usize, const NV: usize, const NU: usize>(
+    title: &str,
+    mechanism: &M,
+    samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+) -> Result<String, Error>
+where
+    M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+{
+    Ok(Page::new(title).motion(Motion::of("", mechanism, samples)?).html())
+}

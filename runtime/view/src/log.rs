@@ -1,0 +1,70 @@
+//! Logs of motions as comma-separated values (RFC 4180).
+
+use linkwork::simulate::Sample;
+use linkwork::{Real, Rheonomic};
+use std::fmt::{Display, Write};
+
+/// A motion as comma-separated values: a line of names, then one for each sample with time, s, configuration, velocity and
+/// inputs, each with all its digits.
+///
+/// The columns are `t`, and the names of `CONFIGURATION`, `VELOCITIES` and `INPUTS` after `q.`, `v.` and `u.`. Names with commas,
+/// quotes or ends of lines are quoted.
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct Pendulum {
+///     #[particle(mass = 1)]
+///     bob: Particle,
+///     #[joint(ground -> bob.at(y), about = z)]
+///     hinge: Pin,
+/// }
+///
+/// let fall: Vec<_> = simulate(&Pendulum {}).from([0.5], [0.0]).duration(0.1).sample_every(0.05).collect::<Result<_, _>>()?;
+/// let log = linkwork_view::csv(&Pendulum {}, &fall);
+/// assert!(log.starts_with("t,q.hinge,v.hinge\r\n0,0.5,0\r\n0.05,"));
+/// # Ok::<(), linkwork::integrate::Error>(())
+/// ```
+pub fn csv<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    _mechanism: &M,
+    samples: &[Sample<T, NQ, NV, NU>],
+) -> String
+where
+    T: Real + Display,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+{
+    let names =
+        |list: &[&str], of: &str| list.iter().map(|name| field(&format!("{of}.{name}"))).collect::<Vec<_>>();
+    let head = [names(&M::CONFIGURATION, "q"), names(&M::VELOCITIES, "v"), names(&M::INPUTS, "u")].concat();
+    let mut out = "t".to_string();
+    head.iter().for_each(|name| out.extend([",", name]));
+    out.push_str("\r\n");
+    for sample in samples {
+        let _ = write!(out, "{}", sample.t);
+        for x in sample.q.iter().chain(&sample.v).chain(&sample.u) {
+            let _ = write!(out, ",{x}");
+        }
+        out.push_str("\r\n");
+    }
+    out
+}
+
+/// A field, in quotes where it needs them.
+fn field(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::field;
+
+    #[test]
+    fn names_that_would_be_several_fields_are_quoted() {
+        assert_eq!(field("q.hinge"), "q.hinge");
+        assert_eq!(field("a,\"b\"\n"), "\"a,\"\"b\"\"\n\"");
+    }
+}

@@ -1,0 +1,193 @@
+//! Triangles of files: STL, binary or as text, and OBJ.
+
+use crate::encode::base64;
+use crate::{Error, text};
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
+
+/// Triangles, three corners each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Mesh {
+    corners: Vec<[f32; 3]>,
+}
+
+/// Most triangles of a file: a page with more would be large and slow.
+const MOST: usize = 200_000;
+
+impl Mesh {
+    /// The farthest corner from the origin.
+    pub(crate) fn radius(&self) -> f64 {
+        let norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
+        self.corners.iter().map(norm).fold(0.0, f64::max)
+    }
+
+    /// Corners in 16 bits each, those that coincide once: lowest corner, size of a step, places, indices.
+    pub(crate) fn json(&self) -> String {
+        let bound = |f: fn(f32, f32) -> f32, from: f32| {
+            [0, 1, 2].map(|k| self.corners.iter().map(|c| c[k]).fold(from, f))
+        };
+        let (low, high) = (bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY));
+        let steps = [0, 1, 2].map(|k| (f64::from(high[k]) - f64::from(low[k])).max(1e-12) / 65535.0);
+        let (mut numbers, mut places, mut indices) = (HashMap::new(), Vec::new(), Vec::new());
+        for corner in &self.corners {
+            let place: [u16; 3] = std::array::from_fn(|k| {
+                ((f64::from(corner[k]) - f64::from(low[k])) / steps[k]).round() as u16
+            });
+            let next = numbers.len() as u32;
+            let number = *numbers.entry(place).or_insert_with(|| {
+                places.extend(place.iter().flat_map(|x| x.to_le_bytes()));
+                next
+            });
+            indices.extend(number.to_le_bytes());
+        }
+        text::list([
+            text::numbers(&low.map(f64::from)),
+            text::numbers(&steps),
+            text::json(&base64(&places)),
+            text::json(&base64(&indices)),
+        ])
+    }
+}
+
+/// The file that a robot's file means by a path.
+pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
+    let path = path.split_once("://").map_or(path, |(_, path)| path);
+    // Nothing outside of the folder.
+    let names: Vec<&std::ffi::OsStr> = Path::new(path)
+        .components()
+        .filter_map(|part| match part {
+            Component::Normal(name) => Some(name),
+            _ => None,
+        })
+        .collect();
+    let candidates =
+        (0..names.len()).map(|k| names[k..].iter().fold(folder.to_path_buf(), |p, name| p.join(name)));
+    candidates.into_iter().find(|candidate| candidate.is_file())
+}
+
+/// Reads a file by what its name says.
+pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
+    let bytes = std::fs::read(path).map_err(|cause| Error::File { path: path.to_path_buf(), cause })?;
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let mesh = match ending.as_deref() {
+        Some("stl") => stl(&bytes),
+        Some("obj") => obj(&String::from_utf8_lossy(&bytes)),
+        _ => Err("expected an STL or OBJ file".to_string()),
+    };
+    let mesh = mesh.and_then(|mesh| match mesh.corners.len() / 3 {
+        0 => Err("no triangles".to_string()),
+        n if n > MOST => Err(format!("{n} triangles, more than {MOST}: take a simplified mesh")),
+        _ if mesh.corners.iter().flatten().any(|x| !x.is_finite()) => {
+            Err("a corner is not finite".to_string())
+        }
+        _ => Ok(mesh),
+    });
+    mesh.map_err(|what| Error::Mesh { path: path.to_path_buf(), what })
+}
+
+/// Binary: a header of 80 bytes, the number of triangles, 50 bytes for each; its length tells it from text, which also begins
+/// with `solid`.
+fn stl(bytes: &[u8]) -> Result<Mesh, String> {
+    let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
+    if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {
+        let float = |b: &[u8]| b.try_into().map_or(f32::NAN, f32::from_le_bytes);
+        let mut mesh = Mesh { corners: Vec::with_capacity(3 * count as usize) };
+        for triangle in bytes[84..].chunks_exact(50) {
+            let numbers: Vec<f32> = triangle[12..48].chunks_exact(4).map(float).collect();
+            mesh.corners.extend(numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]));
+        }
+        return Ok(mesh);
+    }
+    let text = std::str::from_utf8(bytes).map_err(|_| "neither a binary STL file nor one of text")?;
+    if !text.trim_start().starts_with("solid") {
+        return Err("neither a binary STL file nor one of text".to_string());
+    }
+    let mut mesh = Mesh::default();
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        if words.next() == Some("vertex") {
+            mesh.corners
+                .push(three(words).ok_or_else(|| format!("expected three numbers: `{}`", line.trim()))?);
+        }
+    }
+    match mesh.corners.len() % 3 {
+        0 => Ok(mesh),
+        _ => Err("a triangle without three corners".to_string()),
+    }
+}
+
+/// Corners and faces; faces with more corners are fans.
+fn obj(text: &str) -> Result<Mesh, String> {
+    let (mut corners, mut mesh): (Vec<[f32; 3]>, Mesh) = (Vec::new(), Mesh::default());
+    for line in text.lines() {
+        let bad = || format!("cannot be read: `{}`", line.trim());
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => corners.push(three(words).ok_or_else(bad)?),
+            Some("f") => {
+                let corner = |word: &str| {
+                    let n: i64 = word.split('/').next()?.parse().ok()?;
+                    let at = if n < 0 { corners.len() as i64 + n } else { n - 1 };
+                    corners.get(usize::try_from(at).ok()?).copied()
+                };
+                let face: Vec<[f32; 3]> = words.map(corner).collect::<Option<_>>().ok_or_else(bad)?;
+                for pair in face.get(1..).unwrap_or_default().windows(2) {
+                    mesh.corners.extend([face[0], pair[0], pair[1]]);
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(mesh)
+}
+
+fn three<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
+    let mut next = || words.next()?.parse().ok();
+    Some([next()?, next()?, next()?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+
+    #[test]
+    fn the_same_triangle_in_three_ways() {
+        let mut binary = vec![0; 80];
+        binary.extend(1_u32.to_le_bytes());
+        binary.extend([0; 12]);
+        TRIANGLE.iter().flatten().for_each(|x| binary.extend(x.to_le_bytes()));
+        binary.extend([0; 2]);
+        let ascii = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2 0\nendloop\nendfacet\nendsolid";
+        let object = "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1/1/1 2/2/2 -1\n";
+        for mesh in [stl(&binary), stl(ascii.as_bytes()), obj(object)] {
+            assert_eq!(mesh, Ok(Mesh { corners: TRIANGLE.to_vec() }));
+        }
+        assert_eq!(Mesh { corners: TRIANGLE.to_vec() }.radius(), 2.0);
+    }
+
+    #[test]
+    fn broken_files_are_told() {
+        for (what, found) in [
+            ("neither", stl(&[0xff; 90])),
+            ("three numbers", stl(b"solid\nvertex 0 zero 0")),
+            ("three corners", stl(b"solid\nvertex 0 0 0")),
+            ("cannot be read", obj("v 0 0 0\nf 1 2 3")),
+            ("cannot be read", obj("v 0 0")),
+        ] {
+            assert!(found.unwrap_err().contains(what), "{what}");
+        }
+        // A count that the file does not hold.
+        let mut short = vec![0; 80];
+        short.extend(u32::MAX.to_le_bytes());
+        assert!(stl(&short).is_err());
+    }
+
+    #[test]
+    fn paths_do_not_leave_the_folder() {
+        assert_eq!(find(Path::new("/nowhere"), "package://robot/../../etc/hosts"), None);
+        let source = Path::new(env!("CARGO_MANIFEST_DIR"));
+        assert_eq!(find(source, "package://any/deep/src/mesh.rs"), Some(source.join("src/mesh.rs")));
+    }
+}

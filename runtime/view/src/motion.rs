@@ -1,0 +1,430 @@
+//! A motion: where the frames of a figure are at each instant, and what is plotted beside it.
+
+use crate::encode::Stream;
+use crate::figure::{Figure, Shape, plain};
+use crate::{Error, text};
+use linkwork::drawing::{Kind, Role};
+use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
+use linkwork::simulate::Sample;
+use linkwork::{Drawn, Rheonomic};
+
+/// Steps of quaternions.
+const TURN: f64 = 1.0 / 16384.0;
+/// Steps of time, s.
+const TICK: f64 = 1e-5;
+/// Steps of what is plotted, of its range.
+const LEVELS: f64 = 4000.0;
+/// Parts of the size of the figure that places are rounded to.
+const PARTS: f64 = 10_000.0;
+/// More samples per second than this are not shown.
+const RATE: f64 = 60.0;
+/// Coordinates that are plotted of their own accord.
+const PLOTTED: usize = 12;
+
+/// A motion of a figure: placements of its frames at instants, plots of anything beside them.
+///
+/// [`Motion::of`] takes a mechanism with the word `drawing` and samples of `linkwork::simulate`.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    title: String,
+    figure: Figure,
+    times: Vec<f64>,
+    /// Sample by sample, frame by frame.
+    placements: Vec<Vec<IsometryMatrix3<f64>>>,
+    /// Sample by sample.
+    inputs: Vec<Vec<f64>>,
+    plots: Vec<Plot>,
+    trails: Vec<(usize, [f64; 3], f64)>,
+    captions: Vec<(f64, String)>,
+}
+
+/// Curves over time.
+#[derive(Clone, Debug)]
+struct Plot {
+    title: String,
+    unit: String,
+    curves: Vec<(String, Vec<f64>)>,
+}
+
+impl Motion {
+    /// The motion that samples tell. Up to twelve coordinates are plotted.
+    ///
+    /// # Errors
+    ///
+    /// If there are no samples, times decrease, or a placement is not finite.
+    pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
+        title: &str,
+        mechanism: &M,
+        samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+    ) -> Result<Motion, Error>
+    where
+        M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+    {
+        let placements = samples.iter().map(|s| {
+            let frames = 0..M::FRAMES.len();
+            frames.filter_map(|k| Some(as_plain(&mechanism.placement_of(k, s.t, &s.q)?))).collect()
+        });
+        let times = samples.iter().map(|s| plain(s.t)).collect();
+        let mut motion = Motion::from_placements(title, Figure::of(mechanism), times, placements.collect())?;
+        motion.inputs = samples.iter().map(|s| s.u.iter().map(|u| plain(*u)).collect()).collect();
+        if NQ > 0 && NQ <= PLOTTED {
+            let curves =
+                (0..NQ).map(|k| (M::CONFIGURATION[k], samples.iter().map(|s| plain(s.q[k])).collect()));
+            let curves: Vec<(&str, Vec<f64>)> = curves.collect();
+            motion = motion.plot("Coordinates", "", curves)?;
+        }
+        Ok(motion)
+    }
+
+    /// Placements of all frames of a figure at each time, s: of what moves by other means than generated code.
+    ///
+    /// # Errors
+    ///
+    /// As those of [`of`](Self::of), and if the lists do not fit.
+    pub fn from_placements(
+        title: &str,
+        figure: Figure,
+        times: Vec<f64>,
+        placements: Vec<Vec<IsometryMatrix3<f64>>>,
+    ) -> Result<Motion, Error> {
+        let motion = || title.to_string();
+        if times.is_empty() {
+            return Err(Error::Empty { motion: motion() });
+        }
+        check(&format!("the placements of `{title}`"), times.len(), placements.len())?;
+        let late = |k: usize| !times[k].is_finite() || k > 0 && times[k] < times[k - 1];
+        if let Some(sample) = (0..times.len()).find(|k| late(*k)) {
+            return Err(Error::Time { motion: motion(), sample });
+        }
+        for (sample, list) in placements.iter().enumerate() {
+            check(
+                &format!("the placements of sample {sample} of `{title}`"),
+                figure.frames.len(),
+                list.len(),
+            )?;
+            let numbers = |p: &IsometryMatrix3<f64>| p.to_homogeneous().iter().all(|x| x.is_finite());
+            if let Some(k) = list.iter().position(|p| !numbers(p)) {
+                return Err(Error::NotFinite { motion: motion(), sample, frame: figure.frames[k].clone() });
+            }
+        }
+        let inputs = vec![Vec::new(); times.len()];
+        let (plots, trails, captions) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Motion { title: motion(), figure, times, placements, inputs, plots, trails, captions })
+    }
+
+    /// Draws this figure, which has the same frames: with further pieces, or with meshes.
+    ///
+    /// # Errors
+    ///
+    /// If its number of frames is another one.
+    pub fn figure(mut self, figure: Figure) -> Result<Motion, Error> {
+        check(&format!("the frames of `{}`", self.title), self.figure.frames.len(), figure.frames.len())?;
+        self.figure = figure;
+        Ok(self)
+    }
+
+    /// What is drawn, to be changed and given back to [`figure`](Self::figure).
+    pub fn drawn(&self) -> Figure {
+        self.figure.clone()
+    }
+
+    /// Adds a plot over time: curves with a name and a value for each sample. Values that are not finite leave gaps.
+    ///
+    /// # Errors
+    ///
+    /// If a curve has another number of values than there are samples.
+    pub fn plot<N: Into<String>>(
+        mut self,
+        title: &str,
+        unit: &str,
+        curves: impl IntoIterator<Item = (N, Vec<f64>)>,
+    ) -> Result<Motion, Error> {
+        let curves: Vec<(String, Vec<f64>)> =
+            curves.into_iter().map(|(n, values)| (n.into(), values)).collect();
+        for (name, values) in &curves {
+            check(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
+        }
+        self.plots.push(Plot { title: title.to_string(), unit: unit.to_string(), curves });
+        Ok(self)
+    }
+
+    /// Removes all plots: those of coordinates as well.
+    pub fn without_plots(mut self) -> Motion {
+        self.plots.clear();
+        self
+    }
+
+    /// A point of a frame, m in its axes, leaves a trail of so many seconds.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such frame.
+    pub fn trail(mut self, frame: &str, point: [f64; 3], seconds: f64) -> Result<Motion, Error> {
+        let frame = self.figure.frame(frame)?;
+        self.trails.push((frame, point, seconds));
+        Ok(self)
+    }
+
+    /// Words that stand below the title from a time on, s.
+    pub fn caption(mut self, time: f64, words: &str) -> Motion {
+        self.captions.push((time, words.to_string()));
+        self
+    }
+
+    /// The samples that are shown: of those that follow each other faster than a screen shows, some are left out.
+    fn shown(&self) -> Vec<usize> {
+        let last = self.times.len() - 1;
+        let mut shown = vec![0];
+        for k in 1..last {
+            let before = self.times[shown[shown.len() - 1]];
+            if self.times[k] - before >= (1.0 - 1e-6) / RATE {
+                shown.push(k);
+            }
+        }
+        shown.extend((last > 0).then_some(last));
+        shown
+    }
+
+    /// The motion as data of a page.
+    pub(crate) fn json(&self) -> String {
+        let mut used = self.figure.used();
+        used.extend(self.trails.iter().map(|(frame, ..)| *frame));
+        used.sort_unstable();
+        used.dedup();
+        let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
+        let shown = self.shown();
+        let scene = Scene::of(self, &shown);
+        let quantum = scene.size / PARTS;
+        let mut stream = Stream::default();
+        let start = self.times[0];
+        stream.channel(shown.iter().map(|k| self.times[*k] - start), TICK);
+        for frame in &used {
+            let placements: Vec<&IsometryMatrix3<f64>> =
+                shown.iter().map(|k| &self.placements[*k][*frame]).collect();
+            for axis in 0..3 {
+                stream.channel(placements.iter().map(|p| p.translation.vector[axis]), quantum);
+            }
+            let turns = continuous(&placements);
+            for entry in 0..4 {
+                stream.channel(turns.iter().map(|q| q[entry]), TURN);
+            }
+        }
+        let plots: Vec<String> = self.plots.iter().map(|plot| plot.json(&shown, &mut stream)).collect();
+        let count = self.inputs.iter().map(Vec::len).min().unwrap_or(0);
+        let inputs =
+            (0..count).map(|k| curve_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream));
+        let inputs: Vec<String> = inputs.collect();
+        let trails = self.trails.iter().map(|(frame, point, seconds)| {
+            text::list([renumber(*frame).to_string(), text::numbers(point), text::number(*seconds)])
+        });
+        let captions =
+            self.captions.iter().map(|(t, words)| text::list([text::number(t - start), text::json(words)]));
+        let shapes = self.figure.shapes.iter().filter(|shape| shape.is_shown());
+        let fields = [
+            ("title", text::json(&self.title)),
+            ("frames", text::list(used.iter().map(|k| text::json(&self.figure.frames[*k])))),
+            ("pieces", text::list(shapes.map(|shape| shape.json(renumber)))),
+            ("count", shown.len().to_string()),
+            ("start", text::number(start)),
+            ("tick", text::number(TICK)),
+            ("quantum", text::number(quantum)),
+            ("turn", text::number(TURN)),
+            ("scene", scene.json()),
+            ("plots", text::list(plots)),
+            ("inputs", text::list(inputs)),
+            ("trails", text::list(trails)),
+            ("captions", text::list(captions)),
+            ("data", text::json(&stream.text())),
+        ];
+        let fields: Vec<String> =
+            fields.into_iter().map(|(name, value)| format!("{}:{value}", text::json(name))).collect();
+        format!("{{{}}}", fields.join(","))
+    }
+}
+
+impl Shape {
+    /// Something is to be seen of it.
+    fn is_shown(&self) -> bool {
+        !matches!(self.kind, Kind::Mesh(_)) || self.mesh.is_some()
+    }
+
+    /// It is part of the mechanism itself, which has a size.
+    fn is_body(&self) -> bool {
+        matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
+    }
+}
+
+impl Plot {
+    fn json(&self, shown: &[usize], stream: &mut Stream) -> String {
+        let curves = self
+            .curves
+            .iter()
+            .map(|(name, values)| curve_json(name, shown.iter().map(|k| values[*k]), stream));
+        let curves = text::list(curves.collect::<Vec<_>>());
+        text::list([text::json(&self.title), text::json(&self.unit), curves])
+    }
+}
+
+/// A curve: its name, where it begins, the size of a step. A gap is the step −1.
+fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> String {
+    let finite = || values.clone().filter(|x| x.is_finite());
+    let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let low = if low.is_finite() { low } else { 0.0 };
+    let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
+    let step = if high > low && step.is_finite() { step } else { 1.0 };
+    stream.channel(values.map(|x| if x.is_finite() { (x - low) / step } else { -1.0 }), 1.0);
+    text::list([text::json(name), exact(low), exact(step)])
+}
+
+/// All digits of a number.
+fn exact(x: f64) -> String {
+    format!("{x:e}")
+}
+
+fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {
+    match found == expected {
+        true => Ok(()),
+        false => Err(Error::Count { what: what.to_string(), expected, found }),
+    }
+}
+
+fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
+    let matrix = Matrix3::from_fn(|i, j| plain(p.rotation.matrix()[(i, j)]));
+    let at = Vector3::from_fn(|i, _| plain(p.translation.vector[i]));
+    IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))
+}
+
+/// Quaternions x y z w, each of the sign that is nearer to the one before.
+fn continuous(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
+    let mut before = [0.0, 0.0, 0.0, 1.0];
+    let next = |p: &&IsometryMatrix3<f64>| {
+        let q = UnitQuaternion::from_rotation_matrix(&p.rotation).into_inner().coords;
+        let q = [q.x, q.y, q.z, q.w];
+        let dot: f64 = q.iter().zip(&before).map(|(a, b)| a * b).sum();
+        before = if dot < 0.0 { q.map(|x| -x) } else { q };
+        before
+    };
+    placements.iter().map(next).collect()
+}
+
+/// What a camera has to know.
+struct Scene {
+    /// Extent of the mechanism at the beginning, m.
+    size: f64,
+    /// Middle of the motion.
+    centre: Vector3<f64>,
+    /// From there to the farthest that anything comes, m.
+    radius: f64,
+    /// Against gravity.
+    up: Vector3<f64>,
+    /// Towards the eye.
+    eye: Vector3<f64>,
+    /// All moves in a plane.
+    plane: bool,
+    /// Height of the floor along `up`, where there is gravity.
+    floor: Option<f64>,
+}
+
+impl Scene {
+    fn of(motion: &Motion, shown: &[usize]) -> Scene {
+        let first = &motion.placements[0];
+        let gravity = Vector3::from(motion.figure.gravity);
+        let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
+        let pieces: Vec<&Shape> = motion.figure.shapes.iter().filter(|s| s.is_shown()).collect();
+        let place = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
+            frame.map_or(point, |f| (motion.placements[k][f] * Point3::from(point)).coords)
+        };
+        let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
+        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reach()) {
+            start.add(&place(0, frame, point), beyond);
+        }
+        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reach()).collect();
+        for k in shown {
+            for (frame, point, beyond) in &reaches {
+                let at = place(*k, *frame, *point);
+                lowest = lowest.min(at.dot(&up) - beyond);
+                whole.add(&at, *beyond);
+            }
+        }
+        let fits = |size: &f64| *size > 0.0 && size.is_finite();
+        let size = [start.size(), whole.size()].into_iter().find(fits).unwrap_or(1.0);
+        let turn = |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
+        let normal = motion.figure.normal(turn).filter(|n| n.dot(&up).abs() < 1e-6);
+        let floor = gravity.norm() > 0.0;
+        let plane = motion.figure.ground_along(&up);
+        Scene {
+            size,
+            centre: whole.middle(),
+            radius: (whole.size() / 2.0).max(size / 2.0),
+            up,
+            eye: normal.map_or_else(|| sideways(&up), |n| facing(&up, n)),
+            plane: normal.is_some(),
+            floor: plane.or_else(|| (floor && lowest.is_finite()).then_some(lowest - 0.02 * size)),
+        }
+    }
+
+    fn json(&self) -> String {
+        text::list([
+            text::number(self.size),
+            text::numbers(self.centre.as_slice()),
+            text::number(self.radius),
+            text::numbers(self.up.as_slice()),
+            text::numbers(self.eye.as_slice()),
+            self.plane.to_string(),
+            self.floor.map_or("null".to_string(), text::number),
+        ])
+    }
+}
+
+impl Figure {
+    /// Height of a plane of the ground that bodies touch from above.
+    fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
+        let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
+        let vector = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let level = planes.filter(|s| vector(s, 3).dot(up) > 1.0 - 1e-9);
+        level.map(|s| vector(s, 0).dot(up)).reduce(f64::min)
+    }
+}
+
+/// A box about what is drawn.
+struct Extent {
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Default for Extent {
+    fn default() -> Extent {
+        Extent { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
+    }
+}
+
+impl Extent {
+    fn add(&mut self, at: &Vector3<f64>, beyond: f64) {
+        self.low = self.low.inf(&at.add_scalar(-beyond));
+        self.high = self.high.sup(&at.add_scalar(beyond));
+    }
+
+    fn is_empty(&self) -> bool {
+        self.low.x > self.high.x
+    }
+
+    fn size(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.high - self.low).norm() }
+    }
+
+    fn middle(&self) -> Vector3<f64> {
+        if self.is_empty() { Vector3::zeros() } else { (self.low + self.high) / 2.0 }
+    }
+}
+
+/// Towards an eye that sees the ground's first horizontal axis point to the right.
+fn sideways(up: &Vector3<f64>) -> Vector3<f64> {
+    let right = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    (right - up * right.dot(up)).cross(up).normalize()
+}
+
+/// Towards an eye that looks along a normal, from the side that shows the larger coordinates to the right.
+fn facing(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    let right = up.cross(&normal);
+    if right[right.iamax()] < 0.0 { -normal } else { normal }
+}

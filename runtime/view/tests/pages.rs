@@ -1,0 +1,344 @@
+//! What stands in pages: the samples to their rounding, the pieces where the mechanism has them, nothing from outside.
+
+mod support;
+
+use linkwork::drawing::{Kind, Role};
+use linkwork::nalgebra::{Point3, UnitQuaternion, Vector3};
+use linkwork::prelude::*;
+use linkwork::{Drawn, index_of};
+use linkwork_view::{Error, Figure, Motion, Page, page};
+use support::{channels, motions};
+
+#[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, gravity = 0 * z, drawing)]
+struct Humanoid;
+
+type HumanoidSample = linkwork::simulate::Sample<f64, 36, 35, 29>;
+
+/// A flight of the humanoid with all joints in motion, 60 samples a second.
+fn flight(seconds: f64) -> Vec<HumanoidSample> {
+    let v = SVector::<f64, 35>::from_fn(|k, _| if k < 6 { 0.2 } else { (k as f64).sin() });
+    let stiff =
+        |_, q: &SVector<f64, 36>, _: &SVector<f64, 35>| SVector::<f64, 29>::from_fn(|k, _| -20.0 * q[k + 7]);
+    let run = simulate(&Humanoid).from(Humanoid.neutral(), v).inputs(stiff).method(Rk4::step(2e-3));
+    run.duration(seconds).sample_every(1.0 / 60.0).collect::<Result<_, _>>().unwrap()
+}
+
+#[test]
+fn samples_come_back_to_half_a_step() {
+    let samples = flight(1.0);
+    let html = page("Humanoid", &Humanoid, &samples).unwrap();
+    let motion = &motions(&html)[0];
+    let (channels, step) = (channels(motion), |name: &str| motion[name].as_f64().unwrap());
+    let (tick, quantum, turn) = (step("tick"), step("quantum"), step("turn"));
+    assert!(quantum < 5e-4, "a humanoid is shown to half a millimetre, here {quantum}");
+    assert_eq!(motion["count"], samples.len());
+    for (k, sample) in samples.iter().enumerate() {
+        assert!((channels[0][k] as f64 * tick - sample.t).abs() <= tick * 0.51);
+        for (n, name) in motion["frames"].as_array().unwrap().iter().enumerate() {
+            let frame = index_of(&Humanoid::FRAMES, name.as_str().unwrap()).unwrap();
+            let placement = Humanoid.frame_placements(&sample.q)[frame];
+            let read = |j: usize| channels[1 + 7 * n + j][k] as f64;
+            for j in 0..3 {
+                assert!((read(j) * quantum - placement.translation.vector[j]).abs() <= quantum * 0.51);
+            }
+            let [x, y, z, w] = [3, 4, 5, 6].map(|j| read(j) * turn);
+            let read = UnitQuaternion::from_quaternion(linkwork::nalgebra::Quaternion::new(w, x, y, z));
+            // Four numbers to half a step each, and twice the angle.
+            let angle = read.angle_to(&UnitQuaternion::from_rotation_matrix(&placement.rotation));
+            assert!(angle <= 2.0 * turn * 1.01, "{name}: {angle}");
+        }
+    }
+}
+
+#[test]
+fn ten_seconds_of_a_humanoid_are_small() {
+    let html = page("Humanoid", &Humanoid, &flight(10.0)).unwrap();
+    assert!(html.len() < 400_000, "{} bytes", html.len());
+}
+
+/// Every solid, and parts that turn them.
+#[mechanism(gravity = -9.81 * z, drawing)]
+struct Solids {
+    m: f64,
+    r: f64,
+    h: f64,
+    #[body(mass = m, com = x, inertia = rod(m, h, y))]
+    rod: Body,
+    #[body(mass = m, inertia = ring(m, r, x))]
+    ring: Body,
+    #[body(mass = m, inertia = disk(m, r, x) + cylinder(m, r, h, y))]
+    disk: Body,
+    #[body(mass = m, inertia = tube(m, r / 2, r, h, z))]
+    tube: Body,
+    #[body(mass = m, inertia = cone(m, r, h, z))]
+    cone: Body,
+    #[body(mass = m, inertia = capsule(m, r, h, z))]
+    capsule: Body,
+    #[body(mass = m, inertia = sphere(m, r) + shell(m, 2 * r))]
+    sphere: Body,
+    #[body(mass = m, inertia = cuboid(m, r, 2 * r, h).rotated(z(pi / 2)))]
+    cuboid: Body,
+    #[body(mass = m, inertia = plate(m, r, h) + ellipsoid(m, r, r, h))]
+    plate: Body,
+    #[body(mass = m, inertia = diagonal(m * r * r, 2 * m * r * r, 2 * m * r * r))]
+    figures: Body,
+    #[joint(ground -> rod)]
+    a: Free,
+    #[joint(rod.at(h / 2 * y) -> ring, about = x)]
+    b: Pin,
+    #[joint(ring -> disk.at(r * x), along = y)]
+    c: Sleeve,
+    #[joint(disk -> tube)]
+    d: Ball,
+    #[joint(tube -> cone, about = (x, y))]
+    e: Universal,
+    #[joint(cone -> capsule, about = z, along = z)]
+    f: Collar,
+    #[joint(capsule -> sphere)]
+    g: Weld,
+    #[joint(sphere -> cuboid, about = x)]
+    i: Pin,
+    #[joint(cuboid -> plate, about = x)]
+    j: Pin,
+    #[joint(plate -> figures, about = x)]
+    k: Pin,
+    #[acts(on = b, stiffness = 1)]
+    spiral: Spring,
+    #[acts(between = (rod.at(h / 2 * y), figures), damping = 1)]
+    damper: Dashpot,
+    #[acts(on = c)]
+    drive: Force,
+}
+
+#[test]
+fn every_solid_has_its_numbers() {
+    let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
+    let numbers = solids.drawing_numbers();
+    let counted: usize = Solids::DRAWING.iter().map(|piece| piece.kind.count()).sum();
+    assert_eq!(numbers.len(), counted);
+    let of = |name: &str, role: Role| -> Vec<(Kind, &[f64])> {
+        let found = Solids::DRAWING.iter().filter(|p| p.name == name && p.role == role);
+        found.map(|p| (p.kind, &numbers[p.first..p.first + p.kind.count()])).collect()
+    };
+    assert_eq!(of("rod", Role::Body), [(Kind::Rod, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.6][..])]);
+    assert_eq!(of("ring", Role::Body), [(Kind::Ring, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.2][..])]);
+    assert_eq!(of("tube", Role::Body), [(Kind::Tube, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.6][..])]);
+    let kinds = |name| of(name, Role::Body).into_iter().map(|(kind, _)| kind).collect::<Vec<_>>();
+    assert_eq!(kinds("disk"), [Kind::Disk, Kind::Cylinder]);
+    assert_eq!(kinds("sphere"), [Kind::Sphere; 2]);
+    assert_eq!(kinds("plate"), [Kind::Cuboid, Kind::Ellipsoid]);
+    assert_eq!(kinds("figures"), [Kind::Inertia]);
+    // A quarter of a turn about z takes the first edge along y.
+    let cuboid = of("cuboid", Role::Body)[0].1;
+    assert!((Vector3::new(cuboid[3], cuboid[6], cuboid[9]) - Vector3::y()).norm() < 1e-12);
+    assert_eq!(cuboid[12..], [0.2, 0.4, 0.6]);
+    assert_eq!(of("drive", Role::Input)[0].0, Kind::Force(0));
+    assert_eq!(of("gravity", Role::Gravity)[0].1[3..], [0.0, 0.0, -9.81]);
+}
+
+/// A crank with a rocker: where a joint is drawn on its parent, the bar of its child begins or ends, in every configuration of the
+/// tree.
+#[test]
+fn joints_and_links_meet() {
+    let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
+    let mut q = solids.neutral();
+    let turn = SVector::<f64, { Solids::NV }>::from_fn(|k, _| 0.3 + 0.1 * k as f64);
+    q = solids.integrate(&q, &turn);
+    let (numbers, frames) = (solids.drawing_numbers(), solids.frame_placements(&q));
+    let place = |frame: Option<usize>, n: &[f64]| {
+        let point = Point3::new(n[0], n[1], n[2]);
+        frame.map_or(point, |k| frames[k] * point)
+    };
+    let of = |name: &str, role: Role| {
+        let piece = Solids::DRAWING.iter().find(|p| p.name == name && p.role == role).unwrap();
+        (piece.frames, &numbers[piece.first..])
+    };
+    let (hinge, ring) = (of("b", Role::Joint), of("rod", Role::Link));
+    // The rod's bars begin where it is held, and lead to its joint with the ring.
+    assert!((place(hinge.0[0], hinge.1) - place(ring.0[1], &ring.1[3..])).norm() < 1e-12);
+    let ring = solids.frame_placement(linkwork::frame!(Solids, "ring"), &q).translation.vector;
+    assert!((place(hinge.0[0], hinge.1).coords - ring).norm() < 1e-12);
+    let damper = of("damper", Role::Element);
+    assert!((place(damper.0[0], damper.1).coords - ring).norm() < 1e-12);
+    let figures = solids.frame_placement(linkwork::frame!(Solids, "figures"), &q).translation.vector;
+    assert!((place(damper.0[1], &damper.1[3..]).coords - figures).norm() < 1e-12);
+}
+
+#[mechanism(urdf = "tests/shapes.urdf", drawing)]
+struct Shapes;
+
+#[test]
+fn visual_geometry_of_files_is_drawn() {
+    let numbers = Shapes.drawing_numbers();
+    let visuals: Vec<_> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Visual).collect();
+    let kinds: Vec<Kind> = visuals.iter().map(|p| p.kind).collect();
+    // What cannot be read is left out.
+    let meshes = ["package://shapes/meshes/wedge.obj", "package://shapes/meshes/lost.stl"].map(Kind::Mesh);
+    assert_eq!(kinds, [Kind::Cuboid, meshes[0], Kind::Cylinder, Kind::Sphere, meshes[1]]);
+    let cylinder = &numbers[visuals[2].first..];
+    // A quarter of a turn about y takes z to x.
+    assert!((Vector3::from_column_slice(&cylinder[3..6]) - Vector3::x()).norm() < 1e-12);
+    assert_eq!(cylinder[6..8], [0.03, 0.5]);
+    // A link without visual geometry is drawn by its inertia, and it alone.
+    let bodies: Vec<&str> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Body).map(|p| p.name).collect();
+    assert_eq!(bodies, ["tip"]);
+
+    let figure = Figure::of(&Shapes).meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
+    let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
+    let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
+    let html = Page::new("shapes").motion(motion).html();
+    let motion = &motions(&html)[0];
+    let meshes: Vec<_> = motion["pieces"].as_array().unwrap().iter().filter(|p| p[0] == "Mesh").collect();
+    assert_eq!(meshes.len(), 1, "the other one has no file");
+    // Four corners of three numbers with two bytes each.
+    assert_eq!(meshes[0][6][2].as_str().unwrap().len(), 4 * 3 * 2 * 4 / 3);
+}
+
+#[mechanism(mjcf = "tests/shapes.xml", drawing)]
+struct MujocoShapes;
+
+#[mechanism(sdf = "tests/shapes.sdf", drawing)]
+struct SdfShapes;
+
+/// Forms of the visual geometry with their places and first axes in the ground's, in the configuration zero.
+fn seen<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
+where
+    M: Drawn<NV, NV, Scalar = f64>,
+{
+    let numbers = mechanism.drawing_numbers();
+    let visual = M::DRAWING.iter().filter(|p| p.role == Role::Visual);
+    let placed = visual.map(|piece| {
+        let n = &numbers.as_ref()[piece.first..];
+        let home = piece.frames[0].map(|k| mechanism.placement_of(k, 0.0, &SVector::zeros()).unwrap());
+        let home = home.unwrap_or_else(linkwork::nalgebra::IsometryMatrix3::identity);
+        let (at, axis) = (Vector3::from_column_slice(n), Vector3::from_column_slice(&n[3..]));
+        let axis = if piece.kind.count() > 6 { home.rotation * axis } else { Vector3::zeros() };
+        (piece.kind, (home * Point3::from(at)).coords, axis)
+    });
+    placed.collect()
+}
+
+/// The same robot in three formats looks the same; a cylinder has no first end.
+#[test]
+fn formats_agree_on_what_is_seen() {
+    let urdf = seen::<_, 2>(&Shapes);
+    let [mujoco, sdf] = [seen::<_, 2>(&MujocoShapes), seen::<_, 2>(&SdfShapes)];
+    // In MuJoCo's file a shape that touches is drawn where a body has no other.
+    assert_eq!(mujoco.len(), 5);
+    assert_eq!(mujoco[4].0, Kind::Ellipsoid);
+    // The fifth of URDF has no file.
+    assert_eq!((urdf.len(), sdf.len()), (5, 4));
+    for (given, other) in urdf.iter().zip(&mujoco).take(4).chain(urdf.iter().zip(&sdf)) {
+        assert_eq!(std::mem::discriminant(&given.0), std::mem::discriminant(&other.0));
+        assert!(
+            (given.1 - other.1).norm() < 1e-12 && given.2.cross(&other.2).norm() < 1e-12,
+            "{given:?} {other:?}"
+        );
+    }
+    for path in [mujoco[1].0, sdf[1].0] {
+        assert!(matches!(path, Kind::Mesh(path) if path.ends_with("wedge.obj")));
+    }
+}
+
+#[mechanism(gravity = -9.81 * y, scalar = f32, drawing)]
+struct Single {
+    #[particle(mass = 1)]
+    bob: Particle,
+    #[joint(ground -> bob.at(y), about = z)]
+    hinge: Pin,
+    #[contact(bob, ground.plane(y))]
+    floor: Contact,
+}
+
+#[mechanism(inertia = none, drawing)]
+struct Kinematic {
+    #[body]
+    arm: Body,
+    #[body]
+    hand: Body,
+    #[joint(ground -> arm, about = y)]
+    shoulder: Pin,
+    #[joint(arm.at(x) -> hand, about = y)]
+    elbow: Pin,
+}
+
+#[test]
+fn single_precision_and_kinematics_are_drawn_too() {
+    let q = [0.3_f32].into();
+    let sample = |t| linkwork::simulate::Sample { t, q, v: [0.0].into(), u: [].into(), event: None };
+    let html = page("single", &Single {}, &[sample(0.0_f32), sample(1.0)]).unwrap();
+    assert_eq!(motions(&html)[0]["scene"][3], serde_json::json!([0, 1, 0]));
+
+    let roles: Vec<Role> = Kinematic::DRAWING.iter().map(|p| p.role).collect();
+    assert_eq!(roles, [Role::Joint, Role::Joint, Role::Link]);
+    let frames = vec![Kinematic {}.frame_placements(&[0.0, 1.0].into()).to_vec()];
+    assert!(Motion::from_placements("", Figure::of(&Kinematic {}), vec![0.0], frames).is_ok());
+}
+
+#[test]
+fn pages_need_nothing_and_names_are_only_text() {
+    let hostile = "</script><script>alert('1')</script>\"&";
+    let samples = flight(0.1);
+    let energy = samples.iter().map(|s| Humanoid.kinetic_energy(&s.q, &s.v)).collect();
+    let motion =
+        Motion::of(hostile, &Humanoid, &samples).unwrap().plot(hostile, hostile, [(hostile, energy)]);
+    let html = Page::new(hostile).text(hostile).motion(motion.unwrap().caption(0.0, hostile)).html();
+    assert_eq!(html.matches("<script").count(), 2);
+    assert_eq!(html.matches("</script").count(), 2);
+    assert!(!html.contains("http:") && !html.contains("https:") && !html.contains("src="));
+    assert_eq!(motions(&html)[0]["title"], hostile);
+    assert_eq!(motions(&html)[0]["plots"][0][2][0][0], hostile);
+}
+
+#[test]
+fn what_cannot_be_shown_is_told() {
+    let samples = flight(0.1);
+    let motion = || Motion::of("", &Humanoid, &samples).unwrap();
+    assert!(matches!(page::<_, 36, 35, 29>("", &Humanoid, &[]), Err(Error::Empty { .. })));
+    assert!(matches!(motion().plot("", "", [("few", vec![1.0])]), Err(Error::Count { found: 1, .. })));
+    let nowhere = motion().trail("nose", [0.0; 3], 1.0);
+    assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "nose"));
+    let mut broken = samples.clone();
+    broken[2].q[0] = f64::NAN;
+    assert!(matches!(Motion::of("", &Humanoid, &broken), Err(Error::NotFinite { sample: 2, .. })));
+    broken[2] = samples[0];
+    assert!(matches!(Motion::of("", &Humanoid, &broken), Err(Error::Time { sample: 2, .. })));
+    let wrong = Figure::of(&Humanoid).add("ball", Kind::Sphere, None, &[0.0; 3]);
+    assert!(matches!(wrong, Err(Error::Count { expected: 4, found: 3, .. })));
+}
+
+/// More samples than a screen shows are left out, gaps in curves stay gaps.
+#[test]
+fn samples_are_thinned_and_gaps_kept() {
+    let sample = |k: i32| {
+        let t = f64::from(k) * 1e-3;
+        linkwork::simulate::Sample { t, q: [t].into(), v: [1.0].into(), u: [].into(), event: None }
+    };
+    let samples: Vec<_> = (0..=1000).map(sample).collect();
+    let gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };
+    let motion = Motion::of("", &Turning {}, &samples).unwrap().without_plots();
+    let motion = motion.plot("", "", [("gap", (0..samples.len()).map(gap).collect())]).unwrap();
+    let html = Page::new("").motion(motion).html();
+    let motion = &motions(&html)[0];
+    assert!((55..=61).contains(&motion["count"].as_u64().unwrap()), "{}", motion["count"]);
+    let channels = channels(motion);
+    assert_eq!(channels[channels.len() - 1][0], -1);
+    // The last sample is shown, whatever the others.
+    assert_eq!(channels[0].last(), Some(&100_000));
+}
+
+#[mechanism(drawing)]
+struct Turning {
+    #[body(mass = 1, inertia = sphere(1, 1))]
+    wheel: Body,
+    #[joint(ground -> wheel, about = z)]
+    axle: Pin,
+}
+
+#[test]
+fn generic_code_can_draw() {
+    fn pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
+        M::DRAWING.len()
+    }
+    assert_eq!(pieces(&Turning {}), 2);
+}
