@@ -101,6 +101,31 @@ fn loops() {
     }
 }
 
+/// Sums of coordinates and polynomials of them that stay equal; and servos whose defaults are what other shortcuts leave.
+#[test]
+fn conditions() {
+    #[mechanism(mjcf = "data/mjcf/conditions.xml")]
+    struct Conditions;
+
+    // `right` follows `left`, since their sum is that of two.
+    assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
+    for (i, case) in Record::load("mujoco/conditions.json").records("cases").iter().enumerate() {
+        let of = |what: &str| {
+            let all = case.numbers(what);
+            let kept: Vec<f64> = all.iter().copied().take(7).collect();
+            (all, kept)
+        };
+        let ((q, own_q), (v, own_v), (a, own_a)) = (of("q"), of("v"), of("a"));
+        assert!((q[7] - (-0.2 + 2.0 * q[6] - 0.4)).abs() < 1e-12 && (v[7] - 2.0 * v[6]).abs() < 1e-12);
+        let (q, v) = (SVector::from_vec(own_q), SVector::from_vec(own_v));
+        assert!(Conditions.constraint_residuals(&q).amax() < 1e-12, "case {i}");
+        assert!(Conditions.constraint_rates(&q, &v).amax() < 1e-12, "case {i}");
+        let (found, _) = Conditions.constrained_dynamics(&q, &v, &SVector::zeros());
+        assert_close(format!("conditions, case {i}"), found.as_slice(), &own_a, 1e-7);
+        assert!((a[7] - 2.0 * a[6]).abs() < 1e-9);
+    }
+}
+
 /// A contact names the shapes of the file: here a box stands on its corners, and a ball beside it.
 #[test]
 fn geometry_for_contact() {

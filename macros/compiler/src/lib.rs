@@ -166,6 +166,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     description.visuals = imported.visuals;
     description.drives = imported.drives;
     description.dissipations.splice(0..0, imported.dissipations);
+    description.constraints.splice(0..0, imported.constraints);
     description.snapped = imported.snapped;
     description.left_out = imported.left_out;
     description.ground_frame = imported.is_ground;

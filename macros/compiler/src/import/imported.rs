@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
-use crate::syntax::{Body, Collision, Drive, Expr, Joint, Limit, Name, Visual};
+use crate::syntax::{Body, Collision, Constraint, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 
 /// What a file describes.
@@ -16,6 +16,8 @@ pub struct Imported {
     pub drives: Vec<Drive>,
     /// Rayleigh's functions of what has no coordinate of its own.
     pub dissipations: Vec<(Name, Expr)>,
+    /// Conditions on coordinates.
+    pub constraints: Vec<Constraint>,
     /// Gravity, m/s², if the format says something of it.
     pub gravity: Option<Expr>,
     /// Limits of the joints.

@@ -4,6 +4,7 @@
 //! b₂ rate` (MuJoCo, *Computation*, "Actuation model", with neither activation nor muscles).
 
 use super::defaults::Element;
+use super::law::{Force, OTHER_INPUTS, read_force};
 use super::reader::Reader;
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote};
@@ -30,9 +31,6 @@ const ALL: [&str; 11] = [
     "plugin",
     "dcmotor",
 ];
-
-const OTHER_INPUTS: &str =
-    "to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`";
 
 const ATTRIBUTES: [&str; 48] = [
     "name",
@@ -85,12 +83,6 @@ const ATTRIBUTES: [&str; 48] = [
     "plugin",
 ];
 
-/// What an actuator does.
-struct Force {
-    gain: f64,
-    bias: [f64; 3],
-}
-
 impl<'a> Reader<'a> {
     /// Reads all actuators.
     pub(super) fn actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
@@ -129,9 +121,8 @@ impl<'a> Reader<'a> {
         check_attributes(node, &[], &ATTRIBUTES, cx);
         // What all actuators have may be said in the defaults of any.
         let any = self.defaults.element(node, &ALL, 0, cx);
-        let own = self.defaults.element(node, &[kind], 0, cx);
         let (Some((terms, turns)), Some(force)) =
-            (self.transmission(&any, tendons, cx), read_force(kind, &own, cx))
+            (self.transmission(&any, tendons, cx), read_force(&any, cx))
         else {
             return;
         };
@@ -204,12 +195,14 @@ impl<'a> Reader<'a> {
 
     /// Newer versions give actuators losses and rotors of their own.
     fn refuse_losses(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
-        for which in ["damping", "armature"] {
+        for (which, help) in [
+            ("damping", "write it into the joint, times the gear ratio squared"),
+            ("armature", "write it into the joint, times the gear ratio squared"),
+            ("delay", OTHER_INPUTS),
+        ] {
             if let Some(found) = element.nonzero(which, cx) {
                 let message = format!("`{which}` of an actuator is not supported");
-                cx.error(&found.place, message, |d| {
-                    d.help("write it into the joint, times the gear ratio squared")
-                });
+                cx.error(&found.place, message, |d| d.help(help));
             }
         }
     }
@@ -228,10 +221,19 @@ impl<'a> Reader<'a> {
             Placed { value: low.value.abs().max(high.value.abs()) * gear.abs(), place: low.place }
         };
         let by_force = self.range(element, "forcelimited", "forcerange", cx).map(of);
-        let by_input =
-            self.range(element, "ctrllimited", "ctrlrange", cx).map(of).filter(|_| force.bias == [0.0; 3]);
-        let by_input = by_input.map(|found| Placed { value: found.value * force.gain.abs(), ..found });
-        let [(joint, _)] = terms else { return };
+        let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(of);
+        let servos = usize::from(by_input.is_some() && force.bias != [0.0; 3]);
+        self.count("ranges of what servos are told", servos);
+        let by_input = by_input
+            .filter(|_| force.bias == [0.0; 3])
+            .map(|found| Placed { value: found.value * force.gain.abs(), ..found });
+        let [(joint, _)] = terms else {
+            self.count(
+                "limits of actuators on tendons",
+                usize::from(by_force.is_some() || by_input.is_some()),
+            );
+            return;
+        };
         let Some(joint) = self.robot.joints.iter_mut().find(|known| known.name.text == joint.text) else {
             return;
         };
@@ -260,66 +262,4 @@ fn unit(kind: &str, turns: bool, force: &Force) -> &'static str {
         (_, false) if force.gain == -force.bias[1] => "m",
         _ => "any",
     }
-}
-
-/// Gain and bias; nothing if they are more than that.
-fn read_force(kind: &str, own: &Element<'_>, cx: &mut Cx<'_>) -> Option<Force> {
-    let number = |attribute: &str, default: f64, cx: &mut Cx<'_>| {
-        own.number(attribute, cx).map_or(default, |found| found.value)
-    };
-    match kind {
-        "motor" => Some(Force { gain: 1.0, bias: [0.0; 3] }),
-        "position" => {
-            for which in ["dampratio", "timeconst"] {
-                if let Some(found) = own.nonzero(which, cx) {
-                    cx.error(&found.place, format!("`{which}` is not supported"), |d| {
-                        d.help(if which == "dampratio" { "write `kv`" } else { OTHER_INPUTS })
-                    });
-                    return None;
-                }
-            }
-            let (kp, kv) = (number("kp", 1.0, cx), number("kv", 0.0, cx));
-            Some(Force { gain: kp, bias: [0.0, -kp, -kv] })
-        }
-        "velocity" => {
-            let kv = number("kv", 1.0, cx);
-            Some(Force { gain: kv, bias: [0.0, 0.0, -kv] })
-        }
-        _ => read_general(own, cx),
-    }
-}
-
-fn read_general(own: &Element<'_>, cx: &mut Cx<'_>) -> Option<Force> {
-    let mut good = true;
-    for (attribute, known) in
-        [("dyntype", &["none"][..]), ("gaintype", &["fixed", "affine"]), ("biastype", &["none", "affine"])]
-    {
-        let Some(word) = own.text(attribute).filter(|word| !known.contains(word)) else { continue };
-        let message = format!("`{attribute}` {} is not supported", quote(word));
-        cx.error(&own.place(attribute, cx), message, |d| d.help(OTHER_INPUTS));
-        good = false;
-    }
-    let rest = [0.0; 10];
-    let gain = own.some(
-        "gainprm",
-        {
-            let mut one = rest;
-            one[0] = 1.0;
-            one
-        },
-        cx,
-    );
-    let affine = own.text("gaintype") == Some("affine");
-    if let Some(gain) = gain.as_ref().filter(|gain| affine && (gain.value[1] != 0.0 || gain.value[2] != 0.0))
-    {
-        cx.error(&gain.place, "a gain that depends on the motion is not supported", |d| d.help(OTHER_INPUTS));
-        good = false;
-    }
-    let bias = match own.text("biastype") {
-        Some("affine") => own
-            .some("biasprm", rest, cx)
-            .map_or([0.0; 3], |bias| [bias.value[0], bias.value[1], bias.value[2]]),
-        _ => [0.0; 3],
-    };
-    good.then_some(Force { gain: gain.map_or(1.0, |gain| gain.value[0]), bias })
 }

@@ -114,6 +114,11 @@ impl<'a> Defaults<'a> {
 }
 
 impl<'a> Element<'a> {
+    /// All that says something of the element, what counts most last.
+    pub(super) fn outermost_first(&self) -> impl Iterator<Item = Node<'a>> {
+        self.layers.iter().rev().copied()
+    }
+
     /// The node that says `attribute`: the element or a default.
     pub(super) fn with(&self, attribute: &str) -> Option<Node<'a>> {
         self.with_any(&[attribute])

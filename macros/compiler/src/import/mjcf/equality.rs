@@ -1,18 +1,21 @@
-//! `<equality>`: joints that follow others, and loops that are closed.
+//! `<equality>`: joints that follow others, conditions on coordinates, and loops that are closed.
 
 use super::defaults::Element;
 use super::reader::{Reader, origin};
+use super::tendon::Tendon;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, place};
 use crate::import::pose::{Pose, of_quaternion};
 use crate::import::robot::{bare_joint, unused};
-use crate::syntax::{Endpoint, GROUND, JointKind, Mimic, Name};
+use crate::syntax::{
+    BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
+};
 
 const LEAVE_OUT: &str = "to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`";
 
 impl<'a> Reader<'a> {
     /// Reads all couplings.
-    pub(super) fn equalities(&mut self, root: Node<'a>, cx: &mut Cx<'_>) {
+    pub(super) fn equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = elements(root).filter(|node| node.tag_name().name() == "equality");
         let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
         if !self.options.follow_mimic || !self.settings.equality {
@@ -29,6 +32,7 @@ impl<'a> Reader<'a> {
             }
             match node.tag_name().name() {
                 "joint" => self.couple(&element, cx),
+                "tendon" => self.couple_tendons(&element, tendons, cx),
                 "connect" => self.close(&element, JointKind::Ball, cx),
                 "weld" => self.close(&element, JointKind::Weld, cx),
                 kind => {
@@ -50,30 +54,99 @@ impl<'a> Reader<'a> {
         if second.as_ref().is_some_and(|joint| !self.check_joint(joint, "be followed by", cx)) {
             return;
         }
-        let polynomial = element.some("polycoef", [0.0, 1.0, 0.0, 0.0, 0.0], cx);
-        let [a0, a1, a2, a3, a4] = polynomial.map_or([0.0, 1.0, 0.0, 0.0, 0.0], |found| {
-            // What is not written is zero, but for the default as a whole.
-            found.value
-        });
-        if second.is_some() && [a2, a3, a4] != [0.0; 3] {
-            let message = "a coupling that is not linear is not supported";
-            cx.error(&element.place("polycoef", cx), message, |d| d.help(LEAVE_OUT));
-            return;
-        }
+        let polynomial = coefficients(element, cx);
+        let [a0, a1, ..] = polynomial;
         let at = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
         let offset = at(&first) + a0 - second.as_ref().map_or(0.0, |joint| a1 * at(joint));
-        let Some(joint) = self.robot.joints.iter_mut().find(|joint| joint.name.text == first.text) else {
+        let is_linear = second.is_none() || polynomial[2..] == [0.0; 3];
+        let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == first.text);
+        let free = joint.filter(|joint| is_linear && joint.mimic.is_none() && joint.held.is_none());
+        match (free, second) {
+            (Some(joint), Some(second)) => {
+                joint.mimic = Some(Mimic { joint: second, multiplier: a1, offset })
+            }
+            (Some(joint), None) => joint.held = Some(offset),
+            (None, second) => {
+                let second = second.map(|joint| vec![(joint, 1.0)]);
+                self.constrain(element, &[(first, 1.0)], second.as_deref(), polynomial, cx);
+            }
+        }
+    }
+
+    /// The same of the lengths of fixed tendons. Of one with two joints, the second follows the first.
+    fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+        let Some(first) = terms_of("tendon1", element, tendons, cx) else { return };
+        let has_second = element.node.has_attribute("tendon2");
+        let second = if has_second { terms_of("tendon2", element, tendons, cx) } else { None };
+        if has_second && second.is_none() {
             return;
+        }
+        let polynomial = coefficients(element, cx);
+        if let ([(leader, weight), (follower, own)], None) = (first.as_slice(), &second) {
+            let at = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+            let multiplier = -weight / own;
+            let offset = at(follower) + polynomial[0] / own - multiplier * at(leader);
+            let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == follower.text);
+            if let Some(joint) = joint.filter(|joint| joint.mimic.is_none() && joint.held.is_none()) {
+                joint.mimic = Some(Mimic { joint: leader.clone(), multiplier, offset });
+                return;
+            }
+        }
+        self.constrain(element, &first, second.as_deref(), polynomial, cx);
+    }
+
+    /// `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)` as a condition on coordinates, the sums weighted.
+    fn constrain(
+        &mut self,
+        element: &Element<'a>,
+        first: &[(Name, f64)],
+        second: Option<&[(Name, f64)]>,
+        polynomial: [f64; 5],
+        cx: &mut Cx<'_>,
+    ) {
+        let at = place(element.node, cx);
+        let number = |x: f64| Expr::number(x, &at);
+        let binary = |op, a, b| Expr {
+            kind: ExprKind::Binary(op, Box::new(a), Box::new(b), at.clone()),
+            place: at.clone(),
         };
-        if joint.mimic.is_some() || joint.held.is_some() {
-            let message = format!("joint {} follows two joints", quote(&first.text));
-            cx.error(&first.place, message, |d| d.help(LEAVE_OUT));
-            return;
-        }
-        match second {
-            Some(second) => joint.mimic = Some(Mimic { joint: second, multiplier: a1, offset }),
-            None => joint.held = Some(offset),
-        }
+        let sum = |terms: &[(Name, f64)]| {
+            let zero: f64 = terms
+                .iter()
+                .map(|(joint, weight)| weight * self.references.get(&joint.text).copied().unwrap_or(0.0))
+                .sum();
+            terms.iter().fold(number(-zero), |sum, (joint, weight)| {
+                let coordinate = Expr { kind: ExprKind::Name(joint.text.clone()), place: at.clone() };
+                binary(BinaryOp::Add, sum, binary(BinaryOp::Mul, number(*weight), coordinate))
+            })
+        };
+        let other = match second {
+            Some(second) => {
+                let d = sum(second);
+                let highest = polynomial.iter().rposition(|factor| *factor != 0.0).unwrap_or(0);
+                let start = number(polynomial.get(highest).copied().unwrap_or(0.0));
+                polynomial.iter().take(highest).rev().fold(start, |inner, factor| {
+                    binary(BinaryOp::Add, number(*factor), binary(BinaryOp::Mul, inner, d.clone()))
+                })
+            }
+            None => number(polynomial[0]),
+        };
+        let value = sum(first);
+        let kind = element.node.tag_name().name();
+        let said = element.node.has_attribute("name").then(|| name(element.node, "name", cx)).flatten();
+        let mut named = said.unwrap_or_else(|| Name { text: format!("{kind}_coupling"), place: at.clone() });
+        named.text = unused(&named.text, |name| {
+            self.joint_names.contains(name)
+                || self.robot.constraints.iter().any(|known| known.name.text == name)
+        });
+        let constraint = Constraint {
+            name: named,
+            kind: ConstraintKind::Holonomic,
+            value,
+            other: Some(other),
+            friction: None,
+        };
+        self.robot.constraints.push(constraint);
     }
 
     /// A loop that a ball joint or a weld closes.
@@ -161,4 +234,31 @@ impl<'a> Reader<'a> {
         };
         Some([(first, pose), (second, Pose::ZERO)])
     }
+}
+
+/// `polycoef`; what is not written is zero, but for the default as a whole.
+fn coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
+    let usual = [0.0, 1.0, 0.0, 0.0, 0.0];
+    element.some("polycoef", usual, cx).map_or(usual, |found| found.value)
+}
+
+/// The joints of a fixed tendon that a coupling names.
+fn terms_of(
+    attribute: &str,
+    element: &Element<'_>,
+    tendons: &[Tendon],
+    cx: &mut Cx<'_>,
+) -> Option<Vec<(Name, f64)>> {
+    let tendon = name(element.node, attribute, cx)?;
+    let Some(found) = tendons.iter().find(|known| known.name.text == tendon.text) else {
+        let known = tendons.iter().map(|known| known.name.text.as_str());
+        let message = format!("unknown tendon {}", quote(&tendon.text));
+        cx.error(&tendon.place, message, |d| d.suggest(&tendon.text, known));
+        return None;
+    };
+    if found.terms.is_none() {
+        let message = format!("tendon {} goes through space, where none is coupled", quote(&tendon.text));
+        cx.error(&tendon.place, message, |d| d.help(LEAVE_OUT));
+    }
+    found.terms.clone().filter(|terms| !terms.is_empty())
 }

@@ -230,6 +230,13 @@ impl<'a> Reader<'a> {
                 d.help("write `stiffness` and `damping`").help(IGNORE_PASSIVE)
             });
         }
+        for which in ["stiffnesspoly", "dampingpoly"] {
+            let found = element.some(which, [0.0; 2], cx).filter(|found| found.value != [0.0; 2]);
+            if let Some(found) = found {
+                let message = format!("`{which}` is not supported");
+                cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            }
+        }
         let Some(stiffness) = element.nonzero("stiffness", cx) else { return };
         match joint.kind {
             JointKind::Pin | JointKind::Sleeve => {

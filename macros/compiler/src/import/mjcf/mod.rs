@@ -27,6 +27,7 @@ mod frame;
 mod geometry;
 mod include;
 mod joint;
+mod law;
 mod mesh;
 mod reader;
 mod settings;
@@ -93,7 +94,7 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     reader.scale_masses();
     robot::check_names(&reader.robot, cx);
     let tendons = reader.tendons(root, cx);
-    reader.equalities(root, cx);
+    reader.equalities(root, &tendons, cx);
     reader.actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
         let nodes = elements(root).filter(|node| node.tag_name().name() == section);
@@ -149,6 +150,19 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
         if !joint.origin.xyz.value.iter().chain(&joint.origin.rpy.value).all(|x| x.is_finite()) {
             let message = format!("joint {} is too far away for numbers", quote(&joint.name.text));
             cx.error(&joint.name.place, message, |d| d);
+        }
+    }
+    for joint in &robot.joints {
+        let follows = joint.mimic.as_ref().map_or([0.0; 2], |mimic| [mimic.multiplier, mimic.offset]);
+        if !follows.into_iter().chain(joint.held).all(f64::is_finite) {
+            let message = format!("what joint {} follows is too large for numbers", quote(&joint.name.text));
+            cx.error(&joint.name.place, message, |d| d);
+        }
+    }
+    for constraint in &robot.constraints {
+        if ![Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten().all(literals) {
+            let message = format!("the coupling {} is too large for numbers", quote(&constraint.name.text));
+            cx.error(&constraint.name.place, message, |d| d);
         }
     }
     for drive in &robot.drives {

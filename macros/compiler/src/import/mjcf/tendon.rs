@@ -36,8 +36,12 @@ impl<'a> Reader<'a> {
         let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: place(node, cx) });
         let terms = fixed.then(|| self.terms(node, cx));
-        if self.range(&element, "limited", "range", cx).is_some() {
-            self.left_out.push(format!("the limits of the tendon `{}`", named.text));
+        for (limited, range, what) in
+            [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
+        {
+            if self.range(&element, limited, range, cx).is_some() {
+                self.left_out.push(format!("the {what} of the tendon `{}`", named.text));
+            }
         }
         if let Some(found) = element.nonzero("armature", cx) {
             match &terms {

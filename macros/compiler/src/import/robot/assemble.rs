@@ -50,6 +50,7 @@ pub(in crate::import) fn assemble(
         joints,
         drives,
         dissipations: robot.dissipations,
+        constraints: robot.constraints,
         gravity: robot.gravity,
         limits,
         fields: Vec::new(),

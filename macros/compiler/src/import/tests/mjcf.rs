@@ -14,7 +14,7 @@ fn mjcf() -> FileOptions {
 }
 
 /// What a file with these elements gives; the second line begins with them.
-fn check_model(inside: &str, expected: &str) {
+pub(super) fn check_model(inside: &str, expected: &str) {
     check_with(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
@@ -80,104 +80,9 @@ fn classes_are_handed_down() {
     );
 }
 
-#[test]
-fn servos_are_inputs_with_springs() {
-    check_model(
-        "<worldbody><body name='b'><joint name='j'/></body></worldbody><actuator>
-         <motor name='m' joint='j' gear='5'/> <position joint='j' kp='4' gear='2'/>
-         <general name='g' joint='j' gainprm='3' biastype='affine' biasprm='1 0 -2'/></actuator>",
-        "the root is the ground
-         body b
-         Pin j: ground -> b about [0, 0, 1]
-         m: input in N·m on 5 j
-         j_position: input in rad on 8 j
-         j_position: spring 4 from 0 on 2 j
-         g: input in any on 3 j
-         g: push 1 on 1 j
-         g: damper 2 on 1 j",
-    );
-}
-
-#[test]
-fn a_joint_follows_or_is_held() {
-    let model = |equality: &str| {
-        format!(
-            "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
-             </body></body></worldbody><equality>{equality}</equality>"
-        )
-    };
-    check_model(
-        &model("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
-        "the root is the ground
-         body b
-         body c
-         Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
-         Sleeve k: b.at([0, 0, -2]) -> c along [0, 0, 1] = -3 j + 10",
-    );
-    check_model(
-        &model("<joint joint1='k' polycoef='5'/>"),
-        "the root is the ground
-         body b
-         body c
-         Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
-         Weld k: b.at([0, 0, 5]) -> c",
-    );
-    check_model(
-        &model("<joint joint1='k' joint2='jj'/>"),
-        "r.xml:2:180: unknown joint `jj`
-         = help: did you mean `j`?",
-    );
-    check_model(
-        &model("<flex flex='b'/>"),
-        "r.xml:2:154: the coupling `<flex>` is not supported
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
-    );
-}
-
+/// What no joint alone follows from is a condition.
+/// In a class all shortcuts write one record: the servo has the bias of the muscle, but for its own stiffness.
 /// At the pose of the file the two ends are one place.
-#[test]
-fn loops_are_closed() {
-    let model = |equality: &str| {
-        format!(
-            "<worldbody><body name='b' pos='1 0 0' euler='90 0 0'/><body name='c' mocap='true'/><body name='d' pos='0 0 2'>\
-             <site name='s' pos='0 0 3'/></body></worldbody><equality>{equality}</equality>"
-        )
-    };
-    let start = "the root is the ground
-         body b
-         body c
-         body d
-         body s
-         Weld b_weld: ground.at([1, 0, 0]).rotated(x(1.5707963267948966)) -> b
-         Weld c_weld: ground -> c
-         Weld d_weld: ground.at([0, 0, 2]) -> d
-         Weld s_weld: d.at([0, 0, 3]) -> s";
-    check_model(
-        &model("<connect body1='b' body2='d' anchor='1 2 4'/>"),
-        &format!("{start}\nBall connect1: b.at([1, 2, 4]) -> d.at([2, -4, 0])"),
-    );
-    check_model(&model("<weld body1='d'/>"), &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"));
-    check_model(
-        &model("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
-        &format!("{start}\nWeld w: d.at([1, 2, 3]) -> b"),
-    );
-    check_model(
-        &model("<connect site1='s' site2='s'/>"),
-        "r.xml:2:194: body `d` closes a loop with itself
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
-    );
-    check_model(
-        &model("<weld body1='c' body2='b'/>"),
-        "r.xml:2:181: `c` is a mocap body, which nothing here moves
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
-    );
-    check_model(
-        &model("<weld body1='e'/>"),
-        "r.xml:2:181: unknown body `e`
-         = help: expected `b`, `c` or `d`",
-    );
-}
-
 /// What would change the motion is not left out in silence.
 #[test]
 fn what_is_not_supported_is_said() {
@@ -428,7 +333,8 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
     <frame pos="1 0 0"><body name="c"><joint name="l" type="ball" damping="1"/><site name="s"/>
       <inertial pos="0 0 1" mass="1" fullinertia="1 1 1 0 0 0"/></body></frame></body></worldbody>
   <tendon><fixed name="t" stiffness="1"><joint joint="j" coef="2"/><joint joint="k" coef="3"/></fixed></tendon>
-  <equality><joint joint1="k" joint2="j" polycoef="1 2"/></equality>
+  <equality><joint joint1="k" joint2="j" polycoef="1 2"/><tendon tendon1="t" polycoef="1 0 3"/>
+    <joint joint1="j" joint2="k" polycoef="0 1 2 -1 .5"/></equality>
   <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/></actuator></mujoco>"#;
 
 #[test]

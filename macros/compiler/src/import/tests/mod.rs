@@ -3,12 +3,13 @@
 use super::{FileOptions, Imported, import};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, Body, Drive, DriveLaw, Endpoint, Expr, ExprKind, FileFormat, Inertias, InputOption, Joint,
-    LimitOption, Name,
+    Base, BinaryOp, Body, Drive, DriveLaw, Endpoint, Expr, ExprKind, FileFormat, Inertias, InputOption,
+    Joint, LimitOption, Name,
 };
 use proc_macro2::Span;
 use std::path::Path;
 
+mod couplings;
 mod files;
 mod fuzz;
 mod joints;
@@ -84,6 +85,10 @@ fn render(imported: &Imported) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
     let drives = imported.drives.iter().map(render_drive);
+    let constraints = imported.constraints.iter().map(|constraint| {
+        let other = constraint.other.as_ref().map_or_else(|| "0".to_string(), render_expr);
+        format!("{}: {} = {other}", constraint.name.text, render_expr(&constraint.value))
+    });
     let left_out = imported.left_out.iter().map(|line| format!("left out {line}"));
     let rounded = imported.snapped.iter().map(|line| format!("rounded {line}"));
     let ground = imported.is_ground.then(|| "the root is the ground".to_string());
@@ -92,6 +97,7 @@ fn render(imported: &Imported) -> String {
         .chain(bodies)
         .chain(joints)
         .chain(drives)
+        .chain(constraints)
         .chain(rounded)
         .chain(left_out)
         .map(|line| line + "\n")
@@ -161,6 +167,11 @@ fn render_expr(expr: &Expr) -> String {
         ExprKind::Call(function, arguments) => format!("{}({})", function.text, render_list(arguments)),
         ExprKind::Method(object, method, arguments) => {
             format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
+        }
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::Binary(op, a, b, _) => {
+            let sign = if *op == BinaryOp::Add { '+' } else { '*' };
+            format!("({} {sign} {})", render_expr(a), render_expr(b))
         }
         other => unreachable!("{other:?}"),
     }
