@@ -1,0 +1,78 @@
+//! The functions of a robot file at states from the standard input, without compiling them.
+//!
+//! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
+//!
+//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`. Prints the names of
+//! configuration, velocities and inputs, tabs between them, and what is left out; then for each line `q v u τ` of numbers a line
+//! each with the mass matrix, the bias forces, the generalized forces and the accelerations, empty where there is none. Mistakes
+//! of the file go to the standard error. `tests/peers/run` compares what it prints with other programs.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::{Graph, Symbol};
+use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::resolve::build_model;
+use linkwork_compiler::{derive, read};
+use std::io::{BufRead, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// What is printed of each state.
+const FUNCTIONS: [&str; 4] = ["mass_matrix", "bias_forces", "generalized_forces", "forward_dynamics"];
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Failure> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [format, file, options @ ..] = words.as_slice() else {
+        return Err("expected a format and a file".into());
+    };
+    let more: String = options.iter().map(|option| format!(", {option}")).collect();
+    let arguments = format!("{format} = {file:?}{more}").parse()?;
+    let mut cx = Diagnostics::new();
+    let source = read(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
+    let told = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
+    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| told(&cx))?;
+    let description = &source.mechanism.description;
+    let graph = Graph::new();
+    let model = build_model(description, &graph, &mut cx).ok_or_else(|| told(&cx))?;
+    let derived = derive(&model, &mut cx).ok_or_else(|| told(&cx))?;
+    let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
+    let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "configuration\t{}", model.configuration.join("\t"))?;
+    writeln!(out, "velocities\t{}", velocities.join("\t"))?;
+    writeln!(out, "inputs\t{}", inputs.join("\t"))?;
+    writeln!(out, "left out\t{}", description.left_out.join("\t"))?;
+    out.flush()?;
+    let (nq, nv, nu) = (model.nq(), model.nv(), inputs.len());
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+        let at = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+        let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+            Quantity::Configuration(k) => at(k),
+            Quantity::Velocity(k) => at(nq + k),
+            Quantity::Input(k) => at(nq + nv + k),
+            Quantity::Force(k) => at(nq + nv + nu + k),
+            _ => f64::NAN,
+        };
+        for name in FUNCTIONS {
+            let found = derived.functions.iter().find(|function| function.name == name);
+            let values = found.map(|function| function.program.run(&symbol)).unwrap_or_default();
+            let text: Vec<String> = values.iter().map(|value| format!("{value:e}")).collect();
+            writeln!(out, "{}", text.join(" "))?;
+        }
+        out.flush()?;
+    }
+    Ok(())
+}
