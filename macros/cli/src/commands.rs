@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub fn command() -> Command {
     Command::new("linkwork")
         .version(env!("CARGO_PKG_VERSION"))
-        .about("Checks, shows and exports mechanisms")
+        .about("Checks, shows, simulates, draws and exports mechanisms")
         .after_help("Exit status: 0 done, 1 the mechanism has mistakes, 2 the command cannot be carried out.")
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -18,6 +18,35 @@ pub fn command() -> Command {
                     .about("Prints coordinates, units, structure, equations and operation counts"),
             )
             .arg(json()),
+        )
+        .subcommand(
+            with_motion(with_input(
+                Command::new("simulate").about("Prints a motion as comma-separated values: t, q.…, v.…, u.…"),
+            ))
+            .arg(out_file()),
+        )
+        .subcommand(
+            with_motion(with_input(
+                Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
+            ))
+            .arg(
+                text(
+                    "motion",
+                    "FILE",
+                    "A motion to be shown: comma-separated values with the columns t and q.…",
+                )
+                .value_parser(value_parser!(PathBuf))
+                .conflicts_with_all(["duration", "inputs"]),
+            )
+            .arg(
+                text("meshes", "FOLDER", "Where the meshes of a robot file are [default: next to it]")
+                    .value_parser(value_parser!(PathBuf)),
+            )
+            .arg(
+                text("out", "FILE", "Where the page goes [default: the mechanism's name with .html]")
+                    .short('o')
+                    .value_parser(value_parser!(PathBuf)),
+            ),
         )
         .subcommand(
             Command::new("export")
@@ -69,6 +98,29 @@ fn with_input(command: Command) -> Command {
             "OPTIONS",
             "Further arguments of the attribute, as in `base = free, inertia = trust`",
         ))
+}
+
+fn with_motion(command: Command) -> Command {
+    let number = |name, value, help| {
+        text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
+    };
+    command
+        .arg(
+            text(
+                "set",
+                "NAME=VALUE",
+                "A parameter, or at the beginning q.NAME or v.NAME, or the input u.NAME",
+            )
+            .action(ArgAction::Append),
+        )
+        .arg(
+            text("inputs", "FILE", "Inputs over time: comma-separated values with the columns t and u.…")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(number("duration", "SECONDS", "How long [default: 10]"))
+        .arg(number("every", "SECONDS", "Time between samples [default: 1/60]"))
+        .arg(number("tolerance", "NUMBER", "Error of a step, relative and absolute [default: 1e-8]"))
+        .arg(switch("without-contacts", "Lets bodies pass through each other"))
 }
 
 fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {

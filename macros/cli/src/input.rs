@@ -70,7 +70,8 @@ impl Input {
         Ok(found)
     }
 
-    fn add(&mut self, more: TokenStream) {
+    /// Adds arguments of the attribute.
+    pub fn add(&mut self, more: TokenStream) {
         if more.is_empty() {
             return;
         }

@@ -2,9 +2,15 @@
 
 mod check;
 mod commands;
+mod evaluate;
 mod export;
 mod input;
+mod integrate;
+mod motion;
 mod show;
+mod simulate;
+mod table;
+mod view;
 
 use std::process::ExitCode;
 
@@ -27,6 +33,8 @@ fn main() -> ExitCode {
     let done = match matches.subcommand() {
         Some(("check", given)) => check::run(given),
         Some(("show", given)) => show::run(given),
+        Some(("simulate", given)) => simulate::run(given),
+        Some(("view", given)) => view::run(given),
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c(given),
             Some(("rust", given)) => export::rust(given),

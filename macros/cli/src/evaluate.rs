@@ -1,0 +1,193 @@
+//! A mechanism's programs with numbers in place of symbols: its accelerations and the places of its frames, without a compiler of
+//! Rust. Slower than generated code, and equal to it.
+
+use crate::Stop;
+use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
+use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::expr::Symbol;
+use linkwork_compiler::expr::eval::eval_one;
+use linkwork_compiler::lower::Program;
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+
+/// A mechanism with its parameters.
+pub struct Evaluated<'a, 'g> {
+    /// The mechanism.
+    pub model: &'a Model<'g>,
+    output: &'a Output,
+    parameters: Vec<f64>,
+}
+
+/// What programs are functions of.
+#[derive(Clone, Copy, Default)]
+struct Values<'a> {
+    t: f64,
+    q: &'a [f64],
+    v: &'a [f64],
+    u: &'a [f64],
+    tau: &'a [f64],
+    given: &'a [f64],
+    passive: &'a [f64],
+}
+
+/// A rotation matrix row by row, and a position: those of the ground.
+const GROUND: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+
+impl<'a, 'g> Evaluated<'a, 'g> {
+    /// A mechanism with values of all parameters.
+    pub fn new(model: &'a Model<'g>, output: &'a Output, parameters: Vec<f64>) -> Evaluated<'a, 'g> {
+        Evaluated { model, output, parameters }
+    }
+
+    /// The configuration zero.
+    pub fn neutral(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.model.nq()];
+        for chart in &self.model.charts {
+            match *chart {
+                Chart::Plain(..) => {}
+                Chart::Ball(at, _) => q[at + 3] = 1.0,
+                Chart::Free(at, _) => q[at + 6] = 1.0,
+            }
+        }
+        q
+    }
+
+    /// Makes quaternions unit ones; tells which is none.
+    pub fn normalise(&self, q: &mut [f64]) -> Result<(), Stop> {
+        for chart in &self.model.charts {
+            let at = match *chart {
+                Chart::Plain(..) => continue,
+                Chart::Ball(at, _) => at,
+                Chart::Free(at, _) => at + 3,
+            };
+            let size = q[at..at + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
+            if size < 1e-9 || !size.is_finite() {
+                let names = self.model.configuration[at..at + 4].join(", ");
+                return Err(Stop::Failure(format!("the quaternion {names} is zero")));
+            }
+            q[at..at + 4].iter_mut().for_each(|x| *x /= size);
+        }
+        Ok(())
+    }
+
+    /// Rates of `q`: velocities, turned into the axes of positions, and rates of quaternions.
+    pub fn rates(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
+        for chart in &self.model.charts {
+            match *chart {
+                Chart::Plain(at, from) => rates[at] = v[from],
+                Chart::Ball(at, from) => spin(&q[at..], &v[from..], &mut rates[at..]),
+                Chart::Free(at, from) => {
+                    let [x, y, z, w] = [q[at + 3], q[at + 4], q[at + 5], q[at + 6]];
+                    let axis = Vector3::new(x, y, z);
+                    let linear = Vector3::new(v[from], v[from + 1], v[from + 2]);
+                    let turned = linear + (axis.cross(&linear) * w + axis.cross(&axis.cross(&linear))) * 2.0;
+                    rates[at..at + 3].copy_from_slice(turned.as_slice());
+                    spin(&q[at + 3..], &v[from + 3..], &mut rates[at + 3..]);
+                }
+            }
+        }
+    }
+
+    /// Accelerations under inputs.
+    pub fn accelerations(&self, t: f64, q: &[f64], v: &[f64], u: &[f64]) -> Vec<f64> {
+        let state = Values { t, q, v, u, ..Values::default() };
+        let function = |name: &str| self.output.functions.iter().find(|f| f.name == name);
+        let passive = function("__passive_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
+        let state = Values { passive: &passive, ..state };
+        let tau = function("generalized_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
+        let tau = if tau.is_empty() { vec![0.0; v.len()] } else { tau };
+        function("forward_dynamics")
+            .map_or(Vec::new(), |f| self.run(&f.program, Values { tau: &tau, ..state }))
+    }
+
+    /// Why its accelerations cannot be computed here.
+    pub fn obstacle(&self, without_contacts: bool) -> Option<String> {
+        let m = self.model;
+        let tell = |what: &str| {
+            Some(format!("{what}: simulate it in a program of Rust, as `linkwork new` makes one"))
+        };
+        if m.kinematic {
+            return Some("it has no masses (`inertia = none`), so nothing tells how it moves".to_string());
+        }
+        if !m.constraints.is_empty() {
+            return tell("it has constraints");
+        }
+        if !m.contacts.is_empty() && !without_contacts {
+            let text = tell("it has contacts").unwrap_or_default();
+            return Some(format!("{text}; `--without-contacts` lets bodies pass through each other"));
+        }
+        let known = |symbol: Symbol| {
+            matches!(
+                Quantity::of(symbol),
+                Quantity::Parameter(_)
+                    | Quantity::Configuration(_)
+                    | Quantity::Velocity(_)
+                    | Quantity::Force(_)
+                    | Quantity::Input(_)
+                    | Quantity::Time
+                    | Quantity::PassiveForce(_)
+            )
+        };
+        let whole = |f: &Function| f.program.symbols().into_iter().all(known);
+        let dynamics = self.output.functions.iter().find(|f| f.name == "forward_dynamics");
+        if dynamics.is_some_and(whole) {
+            None
+        } else {
+            tell("its dynamics are no function of the state alone")
+        }
+    }
+
+    /// The placement of every frame.
+    pub fn placements(&self, t: f64, q: &[f64]) -> Vec<IsometryMatrix3<f64>> {
+        let mut links: Vec<Vec<f64>> = Vec::new();
+        let v = vec![0.0; self.model.nv()];
+        let at = |program: &Program, given: &[f64]| {
+            self.run(program, Values { t, q, v: &v, given, ..Values::default() })
+        };
+        for link in &self.output.links {
+            let parent = link.parent.and_then(|k| links.get(k)).map_or(&GROUND[..], Vec::as_slice);
+            let placed = at(&link.placement, parent);
+            links.push(placed);
+        }
+        let frame = |link: Option<usize>| link.and_then(|k| links.get(k)).map_or(&GROUND[..], Vec::as_slice);
+        let placed = self.output.frames.iter().map(|f| at(&f.placement, frame(f.link)));
+        placed
+            .map(|n| {
+                let turn = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(&n[..9]));
+                IsometryMatrix3::from_parts(Vector3::from_column_slice(&n[9..]).into(), turn)
+            })
+            .collect()
+    }
+
+    /// The value of an expression of the parameters.
+    pub fn value(&self, e: linkwork_compiler::expr::Expr<'_>) -> f64 {
+        eval_one(e, &|symbol| self.symbol(symbol, Values::default()))
+    }
+
+    fn run(&self, program: &Program, values: Values<'_>) -> Vec<f64> {
+        program.run(&|symbol| self.symbol(symbol, values))
+    }
+
+    fn symbol(&self, symbol: Symbol, values: Values<'_>) -> f64 {
+        let entry = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
+        match Quantity::of(symbol) {
+            Quantity::Parameter(k) => entry(&self.parameters, k),
+            Quantity::Configuration(k) => entry(values.q, k),
+            Quantity::Velocity(k) => entry(values.v, k),
+            Quantity::Force(k) => entry(values.tau, k),
+            Quantity::Input(k) => entry(values.u, k),
+            Quantity::Time => values.t,
+            Quantity::Given(k) => entry(values.given, k),
+            Quantity::PassiveForce(k) => entry(values.passive, k),
+            _ => f64::NAN,
+        }
+    }
+}
+
+/// The rate of a quaternion, x y z w, with an angular velocity in the turned axes: half their product.
+fn spin(q: &[f64], w: &[f64], rate: &mut [f64]) {
+    let (x, y, z, s) = (q[0], q[1], q[2], q[3]);
+    rate[0] = 0.5 * (s * w[0] + y * w[2] - z * w[1]);
+    rate[1] = 0.5 * (s * w[1] + z * w[0] - x * w[2]);
+    rate[2] = 0.5 * (s * w[2] + x * w[1] - y * w[0]);
+    rate[3] = -0.5 * (x * w[0] + y * w[1] + z * w[2]);
+}

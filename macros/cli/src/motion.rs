@@ -1,0 +1,166 @@
+//! What a motion begins with, and where it goes.
+
+use crate::Stop;
+use crate::evaluate::Evaluated;
+use crate::integrate::advance;
+use crate::table::Table;
+use clap::ArgMatches;
+use linkwork_compiler::derive::Output;
+use linkwork_compiler::mechanism::Model;
+use std::path::PathBuf;
+
+/// An instant of a motion.
+pub struct Sample {
+    /// Time, s.
+    pub t: f64,
+    /// Configuration.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub v: Vec<f64>,
+    /// Inputs.
+    pub u: Vec<f64>,
+}
+
+/// A mechanism with its parameters, and the state and inputs to begin with.
+pub struct Start<'a, 'g> {
+    /// The mechanism.
+    pub mechanism: Evaluated<'a, 'g>,
+    /// Configuration.
+    pub q: Vec<f64>,
+    v: Vec<f64>,
+    u: Vec<f64>,
+}
+
+/// Most samples of a motion.
+const MOST: f64 = 1e7;
+
+impl<'a, 'g> Start<'a, 'g> {
+    /// What `--set` says.
+    pub fn new(
+        model: &'a Model<'g>,
+        output: &'a Output,
+        matches: &ArgMatches,
+    ) -> Result<Start<'a, 'g>, Stop> {
+        let names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
+            list.iter().map(|(name, _)| format!("v.{name}")).collect()
+        };
+        let velocities = names(&model.velocities);
+        let configuration: Vec<String> = model.configuration.iter().map(|name| format!("q.{name}")).collect();
+        let inputs: Vec<String> = model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
+        let mut parameters = vec![None; model.parameters.len()];
+        let empty = Evaluated::new(model, output, Vec::new());
+        let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
+        for given in matches.get_many::<String>("set").into_iter().flatten() {
+            let (name, value) = parse(given)?;
+            let place = |list: &[String]| list.iter().position(|known| known == name);
+            if let Some(k) = place(&model.parameters) {
+                parameters[k] = Some(value);
+            } else if let Some(k) = place(&configuration) {
+                q[k] = value;
+            } else if let Some(k) = place(&velocities) {
+                v[k] = value;
+            } else if let Some(k) = place(&inputs) {
+                u[k] = value;
+            } else {
+                let known = [&model.parameters[..], &configuration, &velocities, &inputs].concat().join(", ");
+                return Err(Stop::Failure(format!("`--set`: there is no `{name}`, but {known}")));
+            }
+        }
+        let missing: Vec<String> = (model.parameters.iter().zip(&parameters))
+            .filter(|(_, value)| value.is_none())
+            .map(|(name, _)| format!("--set {name}=…"))
+            .collect();
+        if !missing.is_empty() {
+            return Err(Stop::Failure(format!("parameters without a value: {}", missing.join(" "))));
+        }
+        let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect());
+        mechanism.normalise(&mut q)?;
+        Ok(Start { mechanism, q, v, u })
+    }
+
+    /// The motion, sample by sample.
+    pub fn run(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
+        if let Some(why) = self.mechanism.obstacle(matches.get_flag("without-contacts")) {
+            return Err(Stop::Failure(format!(
+                "`{}` cannot be simulated here: {why}",
+                self.mechanism.model.name
+            )));
+        }
+        let positive = |name: &str, usual: f64| match matches.get_one::<f64>(name) {
+            Some(x) if !(*x > 0.0 && x.is_finite()) => {
+                Err(Stop::Failure(format!("`--{name}`: expected a number above zero, found {x}")))
+            }
+            given => Ok(given.copied().unwrap_or(usual)),
+        };
+        let (duration, every) = (positive("duration", 10.0)?, positive("every", 1.0 / 60.0)?);
+        let tolerance = positive("tolerance", 1e-8)?.max(1e-13);
+        if duration / every > MOST {
+            return Err(Stop::Failure(format!("more than {MOST} samples: choose a larger `--every`")));
+        }
+        let inputs = self.inputs(matches)?;
+        let given = |t: f64| -> Vec<f64> {
+            let at = |k: usize| match inputs
+                .as_ref()
+                .and_then(|(table, columns)| Some((table, columns[k].as_ref()?)))
+            {
+                Some((table, values)) => table.at(values, t),
+                None => self.u[k],
+            };
+            (0..self.u.len()).map(at).collect()
+        };
+        let (nq, count) = (self.q.len(), (duration / every * (1.0 + 1e-12)).floor() as usize);
+        let rates = |t: f64, y: &[f64]| {
+            let (q, v) = y.split_at(nq);
+            let mut rates = vec![0.0; nq];
+            self.mechanism.rates(q, v, &mut rates);
+            rates.extend(self.mechanism.accelerations(t, q, v, &given(t)));
+            rates
+        };
+        let (mut y, mut step) = ([self.q.clone(), self.v.clone()].concat(), every.min(1e-3));
+        let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
+        if times[count] < duration * (1.0 - 1e-9) {
+            times.push(duration);
+        }
+        let mut samples = Vec::with_capacity(times.len());
+        for (k, t) in times.iter().enumerate() {
+            if k > 0 {
+                advance(&rates, (times[k - 1], *t), &mut y, &mut step, tolerance).map_err(|t| {
+                    Stop::Failure(format!(
+                        "the motion cannot be continued beyond {t} s: it is stiff, or singular there"
+                    ))
+                })?;
+                self.mechanism.normalise(&mut y[..nq])?;
+            }
+            samples.push(Sample { t: *t, q: y[..nq].to_vec(), v: y[nq..].to_vec(), u: given(*t) });
+        }
+        Ok(samples)
+    }
+
+    /// Inputs of a file, by their number.
+    #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
+    fn inputs(&self, matches: &ArgMatches) -> Result<Option<(Table, Vec<Option<Vec<f64>>>)>, Stop> {
+        let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok(None) };
+        let table = Table::read(path)?;
+        let names: Vec<String> =
+            self.mechanism.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
+        // What else a log has is left aside.
+        let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
+        if let Some((name, _)) = unknown {
+            let known = names.join(", ");
+            return Err(Stop::Failure(format!(
+                "{}: there is no input `{name}`, but {known}",
+                path.display()
+            )));
+        }
+        let columns = names.iter().map(|name| table.column(name).map(<[f64]>::to_vec)).collect();
+        Ok(Some((table, columns)))
+    }
+}
+
+/// A name with its value.
+fn parse(given: &str) -> Result<(&str, f64), Stop> {
+    let fail = || Stop::Failure(format!("`--set`: expected NAME=VALUE, found `{given}`"));
+    let (name, value) = given.split_once('=').ok_or_else(fail)?;
+    let value: f64 = value.trim().parse().map_err(|_| fail())?;
+    if value.is_finite() { Ok((name.trim(), value)) } else { Err(fail()) }
+}

@@ -1,0 +1,142 @@
+//! `linkwork view`: a page of HTML that shows a motion.
+
+use crate::Stop;
+use crate::input::Input;
+use crate::motion::Start;
+use crate::table::Table;
+use clap::ArgMatches;
+use linkwork::drawing::{Kind, Piece, Role};
+use linkwork_compiler::compile;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::{self, PieceKind};
+use linkwork_view::{Figure, Motion, Page};
+use std::path::{Path, PathBuf};
+
+/// Most coordinates that are plotted of their own accord.
+const PLOTTED: usize = 12;
+
+pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let mut input = Input::one(matches)?;
+    if !input.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
+        input.add(quote::quote!(drawing));
+    }
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let source = input.checked(source, cx)?;
+    let graph = Graph::new();
+    let made = compile(&source, &graph, cx);
+    let (model, output) = input.checked(made, cx)?;
+    let start = Start::new(&model, &output, matches)?;
+    let states = match matches.get_one::<PathBuf>("motion") {
+        Some(path) => from_log(path, &start)?,
+        None => match start.mechanism.obstacle(matches.get_flag("without-contacts")) {
+            Some(why) if matches.get_one::<f64>("duration").is_none() => {
+                eprintln!("linkwork: the page shows one configuration: {why}");
+                vec![(0.0, start.q.clone())]
+            }
+            _ => start.run(matches)?.into_iter().map(|sample| (sample.t, sample.q)).collect(),
+        },
+    };
+    let mut figure = figure(&start, &model);
+    let beside = input.file.parent().map(Path::to_path_buf);
+    match matches.get_one::<PathBuf>("meshes") {
+        Some(folder) => figure = figure.meshes(folder)?,
+        // Without being asked for, only those that can be read.
+        None => {
+            if let Some(folder) = beside.filter(|_| input.is_robot) {
+                figure = figure.clone().meshes(folder).unwrap_or(figure);
+            }
+        }
+    }
+    let times = states.iter().map(|(t, _)| *t).collect();
+    let placements = states.iter().map(|(t, q)| start.mechanism.placements(*t, q)).collect();
+    let mut motion = Motion::from_placements("", figure, times, placements)?;
+    if states.len() > 1 && (1..=PLOTTED).contains(&model.nq()) {
+        let curve = |k: usize| states.iter().map(|(_, q)| q[k]).collect();
+        let curves = model.configuration.iter().enumerate().map(|(k, name)| (name.as_str(), curve(k)));
+        motion = motion.plot("Coordinates", "", curves.collect::<Vec<_>>())?;
+    }
+    let out =
+        matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{}.html", input.name)));
+    Page::new(&input.name).motion(motion).write(&out)?;
+    println!("{}", out.display());
+    Ok(())
+}
+
+/// The configurations of a log.
+fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<(f64, Vec<f64>)>, Stop> {
+    let table = Table::read(path)?;
+    let column = |name: &String| {
+        let name = format!("q.{name}");
+        let found = table.column(&name);
+        found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
+    };
+    let columns = start.mechanism.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
+    let state = |(k, t): (usize, &f64)| {
+        let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
+        start.mechanism.normalise(&mut q)?;
+        Ok((*t, q))
+    };
+    table.times.iter().enumerate().map(state).collect()
+}
+
+/// What is declared, with numbers.
+fn figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
+    let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
+    for piece in &model.drawing {
+        let (name, kind) = (&*piece.name.clone().leak(), kind(&piece.kind));
+        pieces.push(Piece { name, role: role(piece.role), kind, frames: piece.frames, first: numbers.len() });
+        numbers.extend(piece.numbers.iter().map(|e| start.mechanism.value(*e)));
+    }
+    let frames = model.frames.iter().map(|frame| frame.name.clone()).collect();
+    Figure::from_pieces(frames, &pieces, &numbers)
+}
+
+fn role(role: mechanism::Role) -> Role {
+    match role {
+        mechanism::Role::Body => Role::Body,
+        mechanism::Role::Link => Role::Link,
+        mechanism::Role::Visual => Role::Visual,
+        mechanism::Role::Joint => Role::Joint,
+        mechanism::Role::Surface => Role::Surface,
+        mechanism::Role::Element => Role::Element,
+        mechanism::Role::Input => Role::Input,
+        mechanism::Role::Gravity => Role::Gravity,
+    }
+}
+
+/// The form; the few paths of meshes live as long as the command.
+fn kind(kind: &PieceKind) -> Kind {
+    match kind {
+        PieceKind::Rod => Kind::Rod,
+        PieceKind::Ring => Kind::Ring,
+        PieceKind::Disk => Kind::Disk,
+        PieceKind::Cylinder => Kind::Cylinder,
+        PieceKind::Tube => Kind::Tube,
+        PieceKind::Cone => Kind::Cone,
+        PieceKind::Capsule => Kind::Capsule,
+        PieceKind::Sphere => Kind::Sphere,
+        PieceKind::Cuboid => Kind::Cuboid,
+        PieceKind::Ellipsoid => Kind::Ellipsoid,
+        PieceKind::Inertia => Kind::Inertia,
+        PieceKind::Plane => Kind::Plane,
+        PieceKind::Funnel => Kind::Funnel,
+        PieceKind::Pipe => Kind::Pipe,
+        PieceKind::Torus => Kind::Torus,
+        PieceKind::Bowl => Kind::Bowl,
+        PieceKind::Point => Kind::Point,
+        PieceKind::Bar => Kind::Bar,
+        PieceKind::Hinge => Kind::Hinge,
+        PieceKind::Slide => Kind::Slide,
+        PieceKind::Ball => Kind::Ball,
+        PieceKind::Coil => Kind::Coil,
+        PieceKind::Spiral => Kind::Spiral,
+        PieceKind::Damper => Kind::Damper,
+        PieceKind::Brake => Kind::Brake,
+        PieceKind::Force(k) => Kind::Force(*k),
+        PieceKind::Torque(k) => Kind::Torque(*k),
+        PieceKind::Gravity => Kind::Gravity,
+        PieceKind::Mesh(path) => Kind::Mesh(path.clone().leak()),
+    }
+}

@@ -1,0 +1,129 @@
+//! Motions and pages, without a program of one's own.
+
+#[path = "motions/flail.rs"]
+mod flail;
+
+use flail::Flail;
+use linkwork::prelude::*;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const FLAIL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/motions/flail.rs");
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+/// The numbers of a log, line by line.
+fn rows(log: &str) -> Vec<Vec<f64>> {
+    log.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
+}
+
+/// Generated code, integrated with steps of its own, goes the same way.
+#[test]
+fn programs_and_generated_code_move_alike() {
+    let here = folder("alike");
+    std::fs::write(here.join("thrust.csv"), "t,u.thrust,remark\n0,0,1\n1,40,2\n2,10,3\n").unwrap();
+    let thrust = |t: f64| if t < 1.0 { 40.0 * t } else { 40.0 - 30.0 * (t - 1.0) };
+    let set =
+        ["--set", "handle=0.5", "--set", "v.flight.wx=2", "--set", "v.chain.wy=-3", "--set", "q.flight.z=1"];
+    let mut arguments =
+        vec!["simulate", FLAIL, "--inputs", "thrust.csv", "--duration", "2", "--every", "0.5"];
+    arguments.extend(set);
+    arguments.extend(["--tolerance", "1e-11"]);
+    let (status, log, told) = linkwork(&here, &arguments);
+    assert_eq!((status, told.as_str()), (0, ""));
+    assert!(log.starts_with("t,q.flight.x,"), "{log}");
+
+    let flail = Flail { handle: 0.5 };
+    let (mut q, mut v) = (flail.neutral(), SVector::<f64, 9>::zeros());
+    (q[2], v[3], v[7]) = (1.0, 2.0, -3.0);
+    let motion = simulate(&flail).from(q, v).inputs(|t, _, _| [thrust(t)].into());
+    let motion = motion.method(Rk4::step(5e-4)).duration(2.0).sample_every(0.5);
+    let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
+    let rows = rows(&log);
+    assert_eq!(rows.len(), 5);
+    for (row, sample) in rows.iter().zip(&samples) {
+        let other = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);
+        for (a, b) in row.iter().zip(other) {
+            assert!((a - b).abs() < 1e-8, "{row:?} {:?} {:?}", sample.q, sample.v);
+        }
+        assert!((row[21] - thrust(row[0])).abs() < 1e-12);
+    }
+}
+
+/// A log comes back as a page; so does a motion that is computed for it.
+#[test]
+fn pages_show_motions() {
+    let here = folder("pages");
+    let (status, path, told) =
+        linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "one.html"]);
+    assert_eq!((status, path.as_str(), told.as_str()), (0, "one.html\n", ""));
+    let page = std::fs::read_to_string(here.join("one.html")).unwrap();
+    assert!(page.contains("\"Cuboid\"") && page.contains("\"count\":61"), "{}", &page[..2000]);
+    let log = ["simulate", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "log.csv"];
+    assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
+    let (status, _, told) = linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
+    assert_eq!((status, told.as_str()), (0, ""));
+    // The same but for the figures of the last digit.
+    let again = std::fs::read_to_string(here.join("Flail.html")).unwrap();
+    assert_eq!(again.len(), page.len());
+}
+
+const BALL: &str = "
+#[mechanism(gravity = -9.81 * z)]
+pub struct Ball {
+    #[body(mass = 1, inertia = sphere(1, 0.1))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.1), ground.plane(z))]
+    floor: Contact,
+}
+";
+
+/// Impacts are not left out unless that is asked for; then it falls by `g t² / 2`.
+#[test]
+fn contacts_are_no_free_fall() {
+    let here = folder("contacts");
+    std::fs::write(here.join("ball.rs"), BALL).unwrap();
+    let (status, out, told) = linkwork(&here, &["simulate", "ball.rs"]);
+    assert!(status == 2 && out.is_empty() && told.contains("it has contacts"), "{told}");
+    let (status, _, told) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1"]);
+    assert!(status == 0 && told.contains("one configuration: it has contacts"), "{told}");
+    assert!(std::fs::read_to_string(here.join("Ball.html")).unwrap().contains("\"count\":1,"));
+    let (_, log, _) = linkwork(&here, &["simulate", "ball.rs", "--without-contacts", "--duration", "2"]);
+    for row in rows(&log) {
+        assert!((row[3] + 9.81 / 2.0 * row[0] * row[0]).abs() < 1e-7, "{row:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_told() {
+    let here = folder("refused");
+    std::fs::write(here.join("bad.csv"), "t,u.thrsut\n0,1\n").unwrap();
+    for (arguments, part) in [
+        (vec![], "parameters without a value: --set handle=…"),
+        (vec!["--set", "handle"], "expected NAME=VALUE"),
+        (
+            vec!["--set", "handle=0.5", "--set", "q.flight=1"],
+            "there is no `q.flight`, but handle, q.flight.x",
+        ),
+        (vec!["--set", "handle=0.5", "--every", "0"], "`--every`: expected a number above zero"),
+        (vec!["--set", "handle=0.5", "--inputs", "none.csv"], "cannot read none.csv"),
+        (vec!["--set", "handle=0.5", "--inputs", "bad.csv"], "there is no input `u.thrsut`, but u.thrust"),
+        (vec!["--set", "handle=0.5", "--set", "q.chain.qw=0"], "is zero"),
+    ] {
+        let (status, out, told) = linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());
+        assert!(status == 2 && out.is_empty() && told.contains(part), "{arguments:?}: {told}");
+    }
+}
