@@ -3,7 +3,7 @@
 use linkwork::integrate::Method;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{Rheonomic, RheonomicDerivatives, mechanism};
+use linkwork::{OutputDerivatives, Outputs, Rheonomic, RheonomicDerivatives, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
@@ -46,6 +46,10 @@ struct Fighter<T: Real> {
     pushing: Force,
     #[acts(on = airframe, value = power * arm * (2 + sensed) * sin(deflection) * airframe.y)]
     turning: Torque,
+    #[output(load * lift(alpha, sensed) / mass + sensed * dot(a(airframe / ground / ground), airframe.x))]
+    felt: Scalar,
+    #[output(sin(deflection) * power * power / mass * velocity)]
+    jet: Vector,
 }
 
 static ANGLES: [f64; 4] = [-1.6, -0.1, 0.4, 1.7];
@@ -192,6 +196,25 @@ fn derivatives_agree_with_differences() {
         assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
         let found = slopes([1e-2; 2], |by: SVector<f64, 2>| forces(&q, &v, &(u + by)));
         assert_similar("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
+    }
+}
+
+#[test]
+fn outputs_change_with_them() {
+    let fighter = fighter();
+    let whole = fighter.extended();
+    for Case { t, q, v, a, u } in cases() {
+        let of = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
+        let found = whole.output_derivatives(t, &q, &v, &a, &u);
+        let by_v = slopes(STEP, |by| of(&(v + by), &a, &u));
+        assert_similar("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
+        let by_a = slopes([1.0; 8], |by| of(&v, &(a + by), &u));
+        assert_similar("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
+        let by_u = slopes([1e-2; 2], |by| of(&v, &a, &(u + by)));
+        assert_similar("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
+        let along = |by: SVector<f64, 8>| whole.integrate(&q, &by);
+        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &along(by), &v, &a, &u));
+        assert_similar("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
     }
 }
 

@@ -7,6 +7,10 @@ use crate::private::put_block;
 use crate::{Real, Rheonomic, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
+mod outputs;
+
+pub use outputs::OutputsByStates;
+
 /// A mechanism with `NX` states of first order, [`State`](crate::elements::State), beside its configuration and velocity.
 ///
 /// `#[mechanism]` implements it. States are fields of the struct: the functions of the mechanism hold for the values there, and their

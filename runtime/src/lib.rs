@@ -82,7 +82,7 @@ pub use contact::Contacts;
 pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
 #[doc(inline)]
 pub use drawing::Drawn;
-pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, RateDerivatives};
+pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, OutputsByStates, RateDerivatives};
 pub use frame::{FrameIndex, Frames, NamedFrame, index_of, placement_difference};
 pub use inertial::{Inertial, Placement};
 #[doc(inline)]

@@ -1,5 +1,6 @@
 //! Outputs of a mechanism for generic code: what its sensors measure, and how that changes.
 
+use crate::rheonomic::At;
 use crate::{LinearMotion, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -45,6 +46,46 @@ pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, c
         a: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> OutputJacobians<Self::Scalar, NY, NV, NU>;
+}
+
+/// At the instant of the mechanism; the argument `t` is not looked at.
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NY: usize> Outputs<NQ, NV, NU, NY>
+    for At<'_, M, T>
+where
+    T: Real,
+    M: Outputs<NQ, NV, NU, NY, Scalar = T>,
+{
+    type Scalar = T;
+    const OUTPUTS: [&'static str; NY] = M::OUTPUTS;
+
+    fn outputs(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        a: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> SVector<T, NY> {
+        self.mechanism.outputs(self.t, q, v, a, u)
+    }
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>
+    OutputDerivatives<NQ, NV, NU, NY> for At<'_, M, T>
+where
+    T: Real,
+    M: OutputDerivatives<NQ, NV, NU, NY, Scalar = T>,
+{
+    fn output_derivatives(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        a: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> OutputJacobians<T, NY, NV, NU> {
+        self.mechanism.output_derivatives(self.t, q, v, a, u)
+    }
 }
 
 /// Derivatives of outputs of `NY` numbers by configuration, velocity, acceleration and inputs, each while the others stay. Column

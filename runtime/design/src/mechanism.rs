@@ -175,10 +175,12 @@ where
 {
     let motion = m.linear_motion(q, v, u);
     let seen = m.output_derivatives(t, q, v, &motion.acceleration, u).in_motion(&motion);
-    let system = of_motion(&motion, 0)?;
+    let n = M::FIRST_ORDER;
+    let system = of_motion(&motion, n)?;
     let (c, d) = output_matrices(&seen);
-    let system = StateSpace::new(system.a, system.b, c, d)?;
-    let system = system.with_states(state_names(&M::VELOCITIES, &M::VELOCITIES, 0))?;
+    let system = StateSpace::new(system.a, system.b, c.select_columns(&kept(NV, n)), d)?;
+    let coordinates = M::VELOCITIES.get(..NV.saturating_sub(n)).unwrap_or_default();
+    let system = system.with_states(state_names(coordinates, &M::VELOCITIES, n))?;
     system.with_inputs(named(&M::INPUTS))?.with_outputs(named(&M::OUTPUTS))
 }
 

@@ -2,7 +2,7 @@
 
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
-use linkwork_design::mechanism::linear_system;
+use linkwork_design::mechanism::{linear_system, measured_system};
 use linkwork_design::steady::equilibrium;
 use nalgebra::Complex;
 
@@ -198,6 +198,43 @@ fn gravity_holds_a_satellite() {
         for sign in [1.0, -1.0] {
             let squared = (b + sign * (b * b - 16.0 * k1 * k3).sqrt()) / 2.0;
             contains(&system, 0.0, rate * squared.sqrt());
+        }
+    }
+}
+
+/// A sled with an engine that lags, and what it feels.
+#[mechanism(derivatives)]
+struct Sled {
+    mass: f64,
+    lag: f64,
+    throttle: Input,
+    #[state(rate = (throttle - thrust) / lag)]
+    thrust: State,
+    #[body(mass = mass)]
+    sled: Body,
+    #[joint(ground -> sled, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, value = thrust)]
+    engine: Force,
+    #[output(dot(a(sled / ground / ground), x))]
+    felt: Scalar,
+    #[output(thrust + throttle / 2)]
+    gauge: Scalar,
+}
+
+/// `felt = 1 / (m (τ s + 1))`, `gauge = 1 / (τ s + 1) + ½`.
+#[test]
+fn outputs_see_states_of_first_order() {
+    let (mass, lag) = (2.0, 0.25);
+    let sled = Sled { mass, lag, thrust: 0.0 };
+    let whole = sled.extended();
+    let system =
+        measured_system(&at(&whole, 0.0), 0.0, &[0.0].into(), &[3.0, 5.0].into(), &[5.0].into()).unwrap();
+    for omega in [0.1, 4.0, 60.0] {
+        let late = Complex::new(1.0, lag * omega).inv();
+        let answer = system.at(Complex::new(0.0, omega)).unwrap();
+        for (found, expected) in answer.iter().zip([late / mass, late + 0.5]) {
+            assert!((found - expected).norm() < 1e-14, "expected {expected}, found {found}");
         }
     }
 }

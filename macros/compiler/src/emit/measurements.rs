@@ -3,7 +3,7 @@
 use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
 use super::states;
-use crate::catalogue::{Argument, DERIVATIVES, Id, Shape};
+use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -69,6 +69,30 @@ pub fn write_impls(
     let mut first = 0;
     for f in &outputs {
         let _ = writeln!(out, "all.put_rows({first}, &{});", call(f, DERIVATIVES));
+        first += rows(f);
+    }
+    out.push_str("all\n}\n}\n");
+    // As of the derivatives of the states themselves.
+    if i.states.is_empty() || i.facts.kinematic || i.facts.constraints.is_some() {
+        return;
+    }
+    let n = i.states.len();
+    let sizes = [s.nq, s.nv, s.nu, n, count].map(|n| n.to_string()).join(", ");
+    let of = s.shape(Shape::Matrix(count, n));
+    let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::OutputsByStates<{sizes}> for {name}{arguments} {bounds} {{
+        #[inline]\nfn outputs_by_states({parameters}) -> {of} {{\nlet mut all = <{of}>::zeros();"
+    );
+    let mut first = 0;
+    for f in &outputs {
+        let _ = writeln!(
+            out,
+            "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, [{}]));",
+            call(f, BY_PARAMETERS),
+            which.join(", "),
+        );
         first += rows(f);
     }
     out.push_str("all\n}\n}\n");

@@ -1,0 +1,101 @@
+//! Outputs of mechanisms with states of first order.
+
+use super::{Extended, FirstOrder, apart};
+use crate::{OutputDerivatives, OutputJacobians, Outputs, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// Derivatives of all outputs by states of first order. `#[mechanism(…, derivatives)]` implements it for mechanisms with such states and
+/// [`Outputs`], without constraints.
+#[diagnostic::on_unimplemented(
+    message = "the outputs of `{Self}` have no derivatives by states of first order",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms with constraints have none"
+)]
+pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NY: usize>:
+    OutputDerivatives<NQ, NV, NU, NY>
+{
+    /// `∂y/∂x` of [`outputs`](Outputs::outputs), while configuration, velocity, acceleration and inputs stay.
+    fn outputs_by_states(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SMatrix<Self::Scalar, NY, NX>;
+}
+
+/// The outputs in the states among the velocities.
+impl<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NX: usize,
+    const NE: usize,
+    const NY: usize,
+> Outputs<NQ, NE, NU, NY> for Extended<'_, M, NV, NX, NE>
+where
+    T: Real,
+    M: Outputs<NQ, NV, NU, NY, Scalar = T> + FirstOrder<NQ, NV, NU, NX, NE, Scalar = T>,
+{
+    type Scalar = T;
+    const OUTPUTS: [&'static str; NY] = M::OUTPUTS;
+
+    fn outputs(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NE>,
+        a: &SVector<T, NE>,
+        u: &SVector<T, NU>,
+    ) -> SVector<T, NY> {
+        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        m.outputs(t, q, &v, &a, u)
+    }
+}
+
+impl<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NX: usize,
+    const NE: usize,
+    const NY: usize,
+> OutputDerivatives<NQ, NE, NU, NY> for Extended<'_, M, NV, NX, NE>
+where
+    T: Real,
+    M: OutputsByStates<NQ, NV, NU, NX, NY, Scalar = T> + FirstOrder<NQ, NV, NU, NX, NE, Scalar = T>,
+{
+    fn output_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NE>,
+        a: &SVector<T, NE>,
+        u: &SVector<T, NU>,
+    ) -> OutputJacobians<T, NY, NE, NU> {
+        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        let own = m.output_derivatives(t, q, &v, &a, u);
+        let (by_x, none) = (m.outputs_by_states(t, q, &v, &a, u), SMatrix::<T, NY, NX>::zeros());
+        OutputJacobians {
+            by_q: beside(&own.by_q, &none),
+            by_v: beside(&own.by_v, &by_x),
+            by_a: beside(&own.by_a, &none),
+            by_u: own.by_u,
+        }
+    }
+}
+
+/// Columns of the velocities, then those of the states.
+fn beside<T: Real, const R: usize, const NV: usize, const NX: usize, const NE: usize>(
+    left: &SMatrix<T, R, NV>,
+    right: &SMatrix<T, R, NX>,
+) -> SMatrix<T, R, NE> {
+    SMatrix::from_fn(|i, j| {
+        let entry = left.get((i, j)).or(right.get((i, j.wrapping_sub(NV))));
+        entry.copied().unwrap_or(T::zero())
+    })
+}
