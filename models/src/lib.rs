@@ -105,6 +105,7 @@
 //! | [`GravityGradientSatellite`] | 6 | torque, pitch oscillation |
 //! | [`Aircraft`] | 6 | trim in level flight, level turn |
 //! | [`CruisingAircraft`] (a transport and a light aircraft by their derivatives) | 6 | published matrices and modes |
+//! | [`Fighter`] (tables, an engine that lags) | 6 and 1 state | published rates, trims and matrices |
 //! | [`PlanarRotorcraft`] | 3 | hovering, free fall |
 //!
 //! # By joint
@@ -179,9 +180,9 @@
 //! | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
 //! | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
-//! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | `tables.rs` |
-//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
-//! | trim | `linkwork_design::steady` | [`Aircraft`]; `tests/steady.rs` here and in design |
+//! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
+//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
+//! | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
 //! | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
 //! | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
 //! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
@@ -221,6 +222,7 @@ mod disk_on_incline;
 mod double_pendulum;
 mod duffing_oscillator;
 mod elastic_pendulum;
+mod fighter;
 mod five_bar;
 mod foucault_pendulum;
 mod four_bar;
@@ -282,6 +284,7 @@ pub use disk_on_incline::DiskOnIncline;
 pub use double_pendulum::DoublePendulum;
 pub use duffing_oscillator::DuffingOscillator;
 pub use elastic_pendulum::ElasticPendulum;
+pub use fighter::Fighter;
 pub use five_bar::FiveBar;
 pub use foucault_pendulum::FoucaultPendulum;
 pub use four_bar::FourBar;

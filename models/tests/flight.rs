@@ -2,6 +2,8 @@
 
 #[path = "flight/cruise.rs"]
 mod cruise;
+#[path = "flight/fighter.rs"]
+mod fighter;
 
 use linkwork_design::Mode;
 

@@ -1,0 +1,198 @@
+use linkwork::{Table, mechanism};
+
+mod tables;
+
+/// A fighter with tabulated aerodynamics and an engine that follows its throttle late: the F-16 at subsonic speeds.
+///
+/// Source: Stevens, Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 3.5 and appendix A, after Nguyen and others, NASA
+/// TP 1538 (1979).
+///
+/// - Axes: forward, right, down, of the ground too, from the centre of mass. Inputs: `throttle`, from 0 to 1; `elevator`, `aileron`,
+///   `rudder`, in degrees, as are the tables' angles. State: `power`, of the engine, in per cent.
+/// - Coefficients are sums of tables of the angles of attack and sideslip and of deflections, and of tables by the angle of attack
+///   times turning made dimensionless. The centre of mass lies `place` chords behind the leading edge, the moments' reference
+///   `reference`.
+/// - The power follows what the throttle commands at a rate that depends on both, by 40 and 60 per cent when the afterburner goes off or
+///   on: pieces, which `signum` puts together.
+/// - The rotor of the engine has an angular momentum, `spin`.
+/// - The air is the source's: `ρ = ρ₀ (1 − h / h₀)^4.14`, `T = T₀ (1 − h / h₀)`, up to 35 000 ft.
+#[mechanism(gravity = g * z, derivatives)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fighter {
+    /// Acceleration of free fall, m/s².
+    pub g: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about the forward axis, kg·m².
+    pub ixx: f64,
+    /// Moment of inertia about the right axis, kg·m².
+    pub iyy: f64,
+    /// Moment of inertia about the downward axis, kg·m².
+    pub izz: f64,
+    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column z.
+    pub product: f64,
+    /// Angular momentum of the engine's rotor, kg·m²/s, along the forward axis.
+    pub spin: f64,
+    /// Wing area, m².
+    pub area: f64,
+    /// Wing span, m.
+    pub span: f64,
+    /// Mean chord, m.
+    pub chord: f64,
+    /// Where the centre of mass lies, in chords behind the leading edge.
+    pub place: f64,
+    /// Where moments are given about, in chords behind the leading edge.
+    pub reference: f64,
+    /// Density at the sea, kg/m³.
+    pub sea_density: f64,
+    /// Speed of sound at the sea, m/s.
+    pub sea_sound: f64,
+    /// Height at which the law of density would end, m.
+    pub depth: f64,
+    /// Unit of the engine's time constants, s.
+    pub second: f64,
+    /// Force forward, by elevator and angle of attack.
+    pub cx: Table<2>,
+    /// Force downward, by the angle of attack.
+    pub cz: Table<1>,
+    /// Rolling moment, by sideslip and angle of attack.
+    pub cl: Table<2>,
+    /// Pitching moment, by elevator and angle of attack.
+    pub cm: Table<2>,
+    /// Yawing moment, by sideslip and angle of attack.
+    pub cn: Table<2>,
+    /// Rolling moment of 20° of aileron, by sideslip and angle of attack.
+    pub cl_aileron: Table<2>,
+    /// Rolling moment of 30° of rudder, by sideslip and angle of attack.
+    pub cl_rudder: Table<2>,
+    /// Yawing moment of 20° of aileron, by sideslip and angle of attack.
+    pub cn_aileron: Table<2>,
+    /// Yawing moment of 30° of rudder, by sideslip and angle of attack.
+    pub cn_rudder: Table<2>,
+    /// Force forward by pitch rate.
+    pub cx_q: Table<1>,
+    /// Force to the right by yaw rate.
+    pub cy_r: Table<1>,
+    /// Force to the right by roll rate.
+    pub cy_p: Table<1>,
+    /// Force downward by pitch rate.
+    pub cz_q: Table<1>,
+    /// Rolling moment by yaw rate.
+    pub cl_r: Table<1>,
+    /// Rolling moment by roll rate.
+    pub cl_p: Table<1>,
+    /// Pitching moment by pitch rate.
+    pub cm_q: Table<1>,
+    /// Yawing moment by yaw rate.
+    pub cn_r: Table<1>,
+    /// Yawing moment by roll rate.
+    pub cn_p: Table<1>,
+    /// Thrust, N, by Mach number, height (m) and power.
+    pub thrust: Table<3>,
+
+    throttle: Input,
+    elevator: Input,
+    aileron: Input,
+    rudder: Input,
+
+    #[define(max(64.94 * throttle, 217.38 * throttle - 117.38))]
+    command: Scalar,
+    #[define((1 + signum(command - 50)) / 2)]
+    commands_burner: Scalar,
+    #[define((1 + signum(power - 50)) / 2)]
+    burns: Scalar,
+    #[define(
+        commands_burner * (burns * command + (1 - burns) * 60) + (1 - commands_burner) * (burns * 40 + (1 - burns) * command)
+    )]
+    target: Scalar,
+    #[define(burns * 5 + (1 - burns) * min(max(1.9 - 0.036 * (target - power), 0.1), 1))]
+    quickness: Scalar,
+    /// The power of the engine, per cent.
+    #[state(rate = quickness * (target - power) / second)]
+    pub power: State,
+
+    #[body(mass = mass, inertia = [[ixx, 0, -product], [0, iyy, 0], [-product, 0, izz]])]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(norm(velocity))]
+    speed: Scalar,
+    #[define(-dot(r(airframe / ground), ground.z))]
+    height: Scalar,
+    #[define(1 - height / depth)]
+    warmth: Scalar,
+    #[define(sea_density / 2 * pow(warmth, 4.14) * speed * speed * area)]
+    load: Scalar,
+    #[define(speed / (sea_sound * sqrt(warmth)))]
+    mach: Scalar,
+    #[define(57.29578 * angle_of_attack(airframe, velocity))]
+    alpha: Scalar,
+    #[define(57.29578 * sideslip(airframe, velocity))]
+    beta: Scalar,
+    #[define(omega(airframe / ground))]
+    turning: Vector,
+    #[define(span / (2 * speed) * dot(turning, airframe.x))]
+    rolling: Scalar,
+    #[define(chord / (2 * speed) * dot(turning, airframe.y))]
+    pitching: Scalar,
+    #[define(span / (2 * speed) * dot(turning, airframe.z))]
+    yawing: Scalar,
+    #[define(aileron / 20)]
+    ailerons: Scalar,
+    #[define(rudder / 30)]
+    rudders: Scalar,
+
+    #[define(cx(elevator, alpha) + cx_q(alpha) * pitching)]
+    forward: Scalar,
+    #[define(-0.02 * beta + 0.021 * ailerons + 0.086 * rudders + cy_r(alpha) * yawing + cy_p(alpha) * rolling)]
+    sideways: Scalar,
+    #[define(cz(alpha) * (1 - pow(beta / 57.3, 2)) - 0.19 * elevator / 25 + cz_q(alpha) * pitching)]
+    downward: Scalar,
+    #[define(
+        cl(beta, alpha) + cl_aileron(beta, alpha) * ailerons + cl_rudder(beta, alpha) * rudders + cl_r(alpha) * yawing
+            + cl_p(alpha) * rolling
+    )]
+    roll_moment: Scalar,
+    #[define(cm(elevator, alpha) + cm_q(alpha) * pitching + downward * (reference - place))]
+    pitch_moment: Scalar,
+    #[define(
+        cn(beta, alpha) + cn_aileron(beta, alpha) * ailerons + cn_rudder(beta, alpha) * rudders + cn_r(alpha) * yawing
+            + cn_p(alpha) * rolling - sideways * (reference - place) * chord / span
+    )]
+    yaw_moment: Scalar,
+
+    #[acts(
+        on = airframe,
+        value = load * (forward * airframe.x + sideways * airframe.y + downward * airframe.z)
+    )]
+    aerodynamic_force: Force,
+    #[acts(
+        on = airframe,
+        value = load * (span * roll_moment * airframe.x + chord * pitch_moment * airframe.y + span * yaw_moment * airframe.z)
+    )]
+    aerodynamic_moment: Torque,
+    #[acts(on = airframe, value = thrust(mach, height, power) * airframe.x)]
+    jet: Force,
+    #[acts(on = airframe, value = cross(spin * airframe.x, turning))]
+    rotor: Torque,
+
+    #[output(alpha / 57.29578)]
+    angle_of_attack: Scalar,
+    #[output(beta / 57.29578)]
+    sideslip_angle: Scalar,
+    #[output(speed)]
+    airspeed: Scalar,
+    #[output(flight_path(velocity))]
+    climb: Scalar,
+    #[output(load * sideways / (mass * g))]
+    felt_sideways: Scalar,
+    #[output(dot(turning, ground.z))]
+    turning_right: Scalar,
+    #[output(rate(bank(airframe)))]
+    banking: Scalar,
+    #[output(rate(elevation(airframe)))]
+    rising: Scalar,
+}

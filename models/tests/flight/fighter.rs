@@ -1,0 +1,258 @@
+//! The fighter: a state by the book, trimmed flight, and its linear motion.
+
+use crate::is_at;
+use linkwork::Rheonomic;
+use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
+use linkwork::prelude::*;
+use linkwork_design::StateSpace;
+use linkwork_design::flight::{self, FlightModes, LATERAL};
+use linkwork_design::steady::equilibrium;
+use linkwork_models::Fighter;
+
+const FOOT: f64 = 0.3048;
+
+/// The source divides by moments of inertia in constants of four digits; what turns differs by as much.
+const ROUNDED: f64 = 2.5e-4;
+
+fn posed(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVector<f64, 7> {
+    let turn = UnitQuaternion::from_euler_angles(bank, pitch, heading);
+    let [x, y, z] = place;
+    SVector::from([x, y, z, turn.i, turn.j, turn.k, turn.w])
+}
+
+/// Velocity in body axes of speed, angle of attack and sideslip, with rates and power.
+fn moving(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) -> SVector<f64, 7> {
+    let across = speed * beta.cos();
+    SVector::from([across * alpha.cos(), speed * beta.sin(), across * alpha.sin(), p, q, r, power])
+}
+
+/// Stevens, Lewis and Johnson, table 3.5-2: the rates of all states in a state far from any trim.
+#[test]
+fn all_rates_are_those_of_the_book() {
+    let fighter = Fighter { place: 0.4, ..Fighter::F16 };
+    let (speed, alpha, beta) = (500.0 * FOOT, 0.5, -0.2);
+    let q = posed([1000.0 * FOOT, 900.0 * FOOT, -10000.0 * FOOT], [-1.0, 1.0, -1.0]);
+    let v = moving(speed, alpha, beta, [0.7, -0.8, 0.9], 90.0);
+    let u = [0.9, 20.0, -15.0, -20.0].into();
+    let whole = fighter.extended();
+    let tau = whole.generalized_forces(0.0, &q, &v, &u);
+    let rates = whole.forward_dynamics(0.0, &q, &v, &tau);
+    let (velocity, change) = (v.fixed_rows::<3>(0), rates.fixed_rows::<3>(0));
+    let faster = velocity.dot(&change) / speed;
+    let plane = v[0] * v[0] + v[2] * v[2];
+    let attack = (v[0] * rates[2] - v[2] * rates[0]) / plane;
+    let slip = (speed * rates[1] - v[1] * faster) / (speed * plane.sqrt());
+    let over_ground = UnitQuaternion::from_euler_angles(-1.0, 1.0, -1.0) * velocity;
+    let found = [
+        faster / FOOT,
+        attack,
+        slip,
+        rates[3],
+        rates[4],
+        rates[5],
+        over_ground[0] / FOOT,
+        over_ground[1] / FOOT,
+        -over_ground[2] / FOOT,
+        rates[6],
+    ];
+    let published = [
+        -75.23724, -0.8813491, -0.4759990, 12.62679, 0.9649671, 0.5809759, 342.4439, -266.7707, 248.1241,
+        -58.68999,
+    ];
+    for (k, (found, published)) in found.iter().zip(published).enumerate() {
+        let digits = if (3..6).contains(&k) { ROUNDED } else { 3e-7 };
+        assert!((found - published).abs() <= digits * published.abs(), "expected {published}, found {found}");
+    }
+}
+
+struct Level {
+    q: SVector<f64, 7>,
+    v: SVector<f64, 7>,
+    u: SVector<f64, 4>,
+}
+
+/// Level flight by the sea: angle of attack, throttle, power and elevator are found.
+fn level(fighter: &Fighter, speed: f64) -> Level {
+    let whole = fighter.extended();
+    let found = equilibrium(&whole)
+        .from(posed([0.0; 3], [0.0, 0.1, 0.0]))
+        .moving(moving(speed * FOOT, 0.1, 0.0, [0.0; 3], 20.0))
+        .with_inputs([0.3, -1.0, 0.0, 0.0].into())
+        .coordinates(["flight.wy"])
+        .speeds(["flight.vx", "flight.vz"])
+        .inputs(["throttle", "elevator"])
+        .output("climb", 0.0)
+        .output("airspeed", speed * FOOT)
+        .find()
+        .unwrap();
+    Level { q: found.q, v: found.v, u: found.u }
+}
+
+/// Table 3.6-2: throttle, angle of attack and elevator (degrees) over the speed (ft/s) in level flight by the sea.
+#[test]
+fn trimmed_flight_is_that_of_the_book() {
+    let published = [
+        (170.0, 0.464, 27.2, 0.621),
+        (200.0, 0.287, 19.7, 0.723),
+        (260.0, 0.148, 11.6, -0.09),
+        (300.0, 0.122, 8.49, -0.591),
+        (350.0, 0.107, 5.87, -0.539),
+        (400.0, 0.108, 4.16, -0.591),
+        (440.0, 0.113, 3.19, -0.671),
+        (500.0, 0.137, 2.14, -0.756),
+        (540.0, 0.160, 1.63, -0.798),
+        (600.0, 0.200, 1.04, -0.846),
+        (640.0, 0.230, 0.742, -0.871),
+        (700.0, 0.282, 0.382, -0.900),
+        (800.0, 0.378, -0.045, -0.943),
+    ];
+    for (speed, throttle, alpha, elevator) in published {
+        let Level { v, u, .. } = level(&Fighter::F16, speed);
+        let found = [u[0], v[2].atan2(v[0]).to_degrees(), u[1]];
+        for (found, (expected, digits)) in
+            found.into_iter().zip([(throttle, 0.0012), (alpha, 0.05), (elevator, 0.006)])
+        {
+            assert!((found - expected).abs() <= digits, "{speed} ft/s: expected {expected}, found {found}");
+        }
+    }
+    // Table 3.6-3: how the centre of mass moves the elevator.
+    for (place, throttle, alpha, elevator) in
+        [(0.35, 0.1385, 0.03691, -0.7588), (0.3, 0.1485, 0.03936, -1.931), (0.38, 0.1325, 0.03544, -0.0559)]
+    {
+        let Level { v, u, .. } = level(&Fighter { place, ..Fighter::F16 }, 502.0);
+        assert!((u[0] - throttle).abs() < 2e-4, "{u}");
+        assert!((v[2].atan2(v[0]) - alpha).abs() < 2e-5, "{v}");
+        assert!((u[1] - elevator).abs() < 1e-3, "{u}");
+    }
+}
+
+/// A turn of 0.3 rad/s at 502 ft/s, coordinated: table 3.6-3.
+#[test]
+fn a_fighter_turns_as_in_the_book() {
+    let fighter = Fighter { place: 0.3, ..Fighter::F16 };
+    let whole = fighter.extended();
+    let (bank, pitch, turning) = (1.367_f64, 0.05185_f64, 0.3);
+    let rates =
+        [-pitch.sin(), bank.sin() * pitch.cos(), bank.cos() * pitch.cos()].map(|share| share * turning);
+    let v = moving(502.0 * FOOT, 0.2485, 4.8e-4, rates, 64.0);
+    let found = equilibrium(&whole)
+        .from(posed([0.0; 3], [bank, pitch, 0.0]))
+        .moving(v)
+        .with_inputs([0.85, -6.0, 0.1, -0.4].into())
+        .coordinates(["flight.wx", "flight.wy"])
+        .speeds(["flight.vx", "flight.vy", "flight.vz", "flight.wx", "flight.wy", "flight.wz"])
+        .inputs(["throttle", "elevator", "aileron", "rudder"])
+        .output("climb", 0.0)
+        .output("airspeed", 502.0 * FOOT)
+        .output("banking", 0.0)
+        .output("rising", 0.0)
+        .output("turning_right", turning)
+        .output("felt_sideways", 0.0)
+        .find()
+        .unwrap();
+    let turn = UnitQuaternion::new_normalize(linkwork::nalgebra::Quaternion::new(
+        found.q[6], found.q[3], found.q[4], found.q[5],
+    ));
+    let (roll, pitch, _) = turn.euler_angles();
+    let (v, u) = (found.v, found.u);
+    let speed = v.fixed_rows::<3>(0).norm();
+    let all = [
+        (v[2].atan2(v[0]), 0.2485, 5e-4),
+        ((v[1] / speed).asin(), 4.8e-4, 5e-5),
+        (roll, 1.367, 5e-4),
+        (pitch, 0.05185, 5e-5),
+        (v[3], -0.01555, 1e-5),
+        (v[4], 0.2934, 5e-5),
+        (v[5], 0.06071, 5e-6),
+        (u[0], 0.8499, 5e-4),
+        (u[1], -6.256, 1e-3),
+        (u[2], 0.09891, 5e-5),
+        (u[3], -0.4218, 5e-4),
+    ];
+    for (found, expected, tolerance) in all {
+        assert!((found - expected).abs() <= tolerance, "expected {expected}, found {found}");
+    }
+}
+
+fn linear(fighter: &Fighter, at_rest: &Level) -> StateSpace {
+    let whole = fighter.extended();
+    flight::linear_system(&at(&whole, 0.0), &at_rest.q, &at_rest.v, &at_rest.u).unwrap()
+}
+
+/// Example 3.7-1: the matrix in speed (ft/s), angle of attack, pitch and pitch rate at 502 ft/s by the sea.
+const LONGITUDINAL: [[f64; 4]; 4] = [
+    [-1.9311e-2, 8.8157, -32.170, -0.57499],
+    [-2.5389e-4, -1.0189, 0.0, 0.90506],
+    [0.0, 0.0, 0.0, 1.0],
+    [0.0, 0.82225, 0.0, -1.0774],
+];
+
+/// Example 5.3-1: the rows of sideslip, roll rate and yaw rate there, in sideslip, roll rate, yaw rate and bank.
+const ACROSS: [[f64; 4]; 3] =
+    [[-0.3220, 0.0364, -0.9917, 0.0640], [-30.6492, -3.6784, 0.6646, 0.0], [8.5396, -0.0254, -0.4764, 0.0]];
+
+#[test]
+fn linear_motion_is_that_of_the_book() {
+    let trim = level(&Fighter::F16, 502.0);
+    let system = linear(&Fighter::F16, &trim);
+    let part = system.of_states(&["u", "w", "theta", "q"]).unwrap();
+    let speed = 502.0 * FOOT;
+    let (s, c) = trim.v[2].atan2(trim.v[0]).sin_cos();
+    let mut to = DMatrix::identity(4, 4);
+    (to[(0, 0)], to[(0, 1)], to[(1, 0)], to[(1, 1)]) = (c / FOOT, s / FOOT, -s / speed, c / speed);
+    let a = &to * part.a() * to.clone().try_inverse().unwrap();
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let (found, expected) = (a[(i, j)], LONGITUDINAL[i][j]);
+        assert!(
+            (found - expected).abs() <= ROUNDED * expected.abs() + 1e-9,
+            "A[{i}, {j}]: {expected}, found {found}"
+        );
+    }
+    let elevator = to * part.b().column(1);
+    for (found, expected) in elevator.iter().zip([0.17370, -2.1499e-3, 0.0, -0.17555]) {
+        assert!((found - expected).abs() <= ROUNDED * expected.abs() + 1e-9, "B: {expected}, found {found}");
+    }
+    let part = system.of_states(&LATERAL).unwrap();
+    for (i, j) in (0..3).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let unit = [speed, 1.0, 1.0, 1.0];
+        let (found, expected) = (part.a()[(i, j)] * unit[j] / unit[i], ACROSS[i][j]);
+        assert!(
+            (found - expected).abs() <= ROUNDED * expected.abs() + 5e-5,
+            "A[{i}, {j}]: {expected}, found {found}"
+        );
+    }
+}
+
+/// With its centre of mass far back the fighter has two real modes of pitch, one of which grows; farther forward it has a short
+/// period. Its engine is a mode of its own, and lags by a second.
+#[test]
+fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
+    let modes = |place| {
+        let fighter = Fighter { place, ..Fighter::F16 };
+        FlightModes::of(&linear(&fighter, &level(&fighter, 502.0))).unwrap()
+    };
+    let (stable, unstable) = (modes(0.3), modes(0.38));
+    assert!(stable.short_period.is_some_and(|mode| mode.exponent.re < -1.0));
+    assert!(stable.others.iter().all(|mode| mode.exponent.re < 0.0));
+    let engine =
+        stable.others.iter().find(|mode| mode.participation_of("power").is_some_and(|part| part > 0.99));
+    is_at(engine, -1.0, 0.0, 1e-9);
+    assert!(unstable.short_period.is_none());
+    let growing: Vec<_> = unstable.others.iter().filter(|mode| mode.exponent.re > 0.0).collect();
+    assert!(
+        growing.len() == 1 && growing[0].exponent.im == 0.0 && growing[0].participation_of("q") > Some(0.3)
+    );
+
+    // Across, those of the matrix of the book with its turning of the bank, p + r tan θ.
+    let trim = level(&Fighter::F16, 502.0);
+    let [beta, p, r] = ACROSS;
+    let bank = [0.0, 1.0, trim.v[2] / trim.v[0], 0.0];
+    let published = DMatrix::from_fn(4, 4, |i, j| [beta, p, r, bank][i][j]).complex_eigenvalues();
+    let found = FlightModes::of(&linear(&Fighter::F16, &trim)).unwrap();
+    let real =
+        |from: f64, to: f64| published.iter().find(|e| e.im == 0.0 && from < e.re && e.re < to).unwrap();
+    let wave = published.iter().find(|e| e.im > 0.0).unwrap();
+    is_at(found.dutch_roll.as_ref(), wave.re, wave.im, 1e-3);
+    is_at(found.roll.as_ref(), real(-5.0, -1.0).re, 0.0, 1e-3);
+    is_at(found.spiral.as_ref(), real(-0.1, 0.0).re, 0.0, 3e-2);
+}
