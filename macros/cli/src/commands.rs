@@ -49,6 +49,12 @@ pub fn command() -> Command {
             ),
         )
         .subcommand(
+            with_input(
+                Command::new("convert").about("Writes a robot file as the struct that one goes on editing"),
+            )
+            .arg(out_file()),
+        )
+        .subcommand(
             Command::new("export")
                 .about("Writes a mechanism's functions")
                 .subcommand_required(true)

@@ -2,15 +2,18 @@
 
 mod check;
 mod commands;
+mod convert;
 mod evaluate;
 mod export;
 mod input;
 mod integrate;
 mod motion;
+mod names;
 mod show;
 mod simulate;
 mod table;
 mod view;
+mod written;
 
 use std::process::ExitCode;
 
@@ -35,6 +38,7 @@ fn main() -> ExitCode {
         Some(("show", given)) => show::run(given),
         Some(("simulate", given)) => simulate::run(given),
         Some(("view", given)) => view::run(given),
+        Some(("convert", given)) => convert::run(given),
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c(given),
             Some(("rust", given)) => export::rust(given),

@@ -1,0 +1,294 @@
+//! `linkwork convert`: a robot file as the struct that a person goes on editing.
+
+use crate::Stop;
+use crate::export::put;
+use crate::input::Input;
+use crate::names::Names;
+use crate::written::{self, number, vector};
+use clap::ArgMatches;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::syntax::{
+    Body, ConstraintKind, Description, Drive, DriveLaw, Endpoint, Expr, GROUND, Inertias, Joint, JointKind,
+    Limit,
+};
+use std::fmt::Write;
+
+pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let input = Input::one(matches)?;
+    if !input.is_robot {
+        return Err(Stop::Failure(format!(
+            "{} is no robot file: there is nothing to convert",
+            input.file.display()
+        )));
+    }
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let source = input.checked(source, cx)?;
+    if !source.mechanism.shell.file_fields.is_empty() {
+        return Err(Stop::Failure("`parameters` is for structs that go on naming the file".to_string()));
+    }
+    let description = &source.mechanism.description;
+    let mut struct_of = Struct::new(description);
+    let text = struct_of.text(&input);
+    struct_of.notes.iter().for_each(|note| eprintln!("linkwork: {note}"));
+    put(matches, &text)
+}
+
+struct Struct<'a> {
+    description: &'a Description,
+    links: Names,
+    joints: Names,
+    others: Names,
+    fields: String,
+    /// What is different from the file.
+    notes: Vec<String>,
+}
+
+impl<'a> Struct<'a> {
+    fn new(description: &'a Description) -> Struct<'a> {
+        let mut taken = Names::default();
+        let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
+        let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
+        Struct { description, links, joints, others: taken, fields: String::new(), notes: Vec::new() }
+    }
+
+    fn text(&mut self, input: &Input) -> String {
+        let d = self.description;
+        d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.body(body));
+        d.joints.iter().for_each(|joint| self.joint(joint));
+        d.joints.iter().for_each(|joint| self.elements_of(joint));
+        self.inputs();
+        d.drives.iter().for_each(|drive| self.drive(drive));
+        for (name, e) in &d.dissipations {
+            let e = self.expression(e);
+            self.element(&format!("#[dissipation({e})]"), &name.text, "Rayleigh");
+        }
+        for constraint in &d.constraints {
+            let (value, other) = (self.expression(&constraint.value), constraint.other.as_ref());
+            let other = other.map_or(String::new(), |other| format!(" = {}", self.expression(other)));
+            let kind =
+                if constraint.kind == ConstraintKind::Holonomic { "Holonomic" } else { "Nonholonomic" };
+            self.element(&format!("#[constraint({value}{other})]"), &constraint.name.text, kind);
+        }
+        d.limits.iter().for_each(|limit| self.limit(limit));
+        let mut options =
+            vec![format!("gravity = {}", d.gravity.as_ref().map_or("0 * z".to_string(), written::gravity))];
+        match d.inertias {
+            Inertias::Check => {}
+            Inertias::Trust => options.push("inertia = trust".to_string()),
+            Inertias::None => options.push("inertia = none".to_string()),
+        }
+        let file = input.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let mut text = format!("use linkwork::prelude::*;\n\n/// From `{file}`.\n");
+        let aside: Vec<String> =
+            d.left_out.iter().chain(&self.notes).map(|line| line.replace('\n', " ")).collect();
+        if !aside.is_empty() {
+            text.push_str("///\n/// What is different in the file, or left out:\n");
+            aside.iter().for_each(|line| {
+                let _ = writeln!(text, "/// - {line}");
+            });
+        }
+        let _ = writeln!(text, "#[mechanism({})]\npub struct {} {{", options.join(", "), input.name);
+        text.push_str(&self.fields);
+        text.push_str("}\n");
+        text
+    }
+
+    fn field(&mut self, attribute: &str, name: &str, kind: &str) {
+        let _ = writeln!(self.fields, "    {attribute}\n    {name}: {kind},");
+    }
+
+    /// A field with a name that no other has.
+    fn element(&mut self, attribute: &str, name: &str, kind: &str) {
+        let name = self.others.fresh(name, "element");
+        self.field(attribute, &name, kind);
+    }
+
+    fn body(&mut self, body: &Body) {
+        let mut figures = Vec::new();
+        figures.extend(body.mass.as_ref().map(|e| format!("mass = {}", self.expression(e))));
+        figures.extend(body.com.as_ref().map(|e| format!("com = {}", self.vector(e))));
+        figures.extend(
+            body.inertia.as_ref().map(|e| format!("inertia = {}", written::inertia(e, &self.expression(e)))),
+        );
+        let attribute = if figures.is_empty() {
+            "#[body]".to_string()
+        } else {
+            format!("#[body({})]", figures.join(", "))
+        };
+        let name = self.links.of(&body.name.text);
+        self.field(&attribute, &name, "Body");
+    }
+
+    fn joint(&mut self, joint: &Joint) {
+        let mut figures = vec![format!("{} -> {}", self.end(&joint.parent), self.end(&joint.child))];
+        for (word, axes) in [("about", &joint.about), ("along", &joint.along)] {
+            let axes: Vec<String> = axes.iter().map(written::axis).collect();
+            match axes.as_slice() {
+                [] => {}
+                [one] => figures.push(format!("{word} = {one}")),
+                several => figures.push(format!("{word} = ({})", several.join(", "))),
+            }
+        }
+        for (word, e) in [("pitch", &joint.pitch), ("lead", &joint.lead)] {
+            figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.expression(e))));
+        }
+        let name = self.joints.of(&joint.name.text);
+        self.field(&format!("#[joint({})]", figures.join(", ")), &name, &format!("{:?}", joint.kind));
+    }
+
+    fn end(&self, end: &Endpoint) -> String {
+        let mut text = self.links.of(&end.body.text);
+        if let Some(at) = &end.at {
+            let _ = write!(text, ".at({})", self.vector(at));
+        }
+        if !end.rotated.is_empty() {
+            let steps: Vec<String> = end.rotated.iter().map(|step| self.expression(step)).collect();
+            let _ = write!(text, ".rotated({})", steps.join(", "));
+        }
+        text
+    }
+
+    /// What a joint has beside its motion.
+    fn elements_of(&mut self, joint: &Joint) {
+        let on = self.joints.of(&joint.name.text);
+        if let Some(damping) = &joint.damping {
+            let e = self.expression(damping);
+            self.element(&format!("#[acts(on = {on}, damping = {e})]"), &format!("{on}_damping"), "Dashpot");
+        }
+        if let Some(friction) = &joint.friction {
+            let e = self.expression(friction);
+            self.element(
+                &format!("#[acts(on = {on}, coulomb = {e})]"),
+                &format!("{on}_friction"),
+                "Friction",
+            );
+        }
+        if let Some(mimic) = &joint.mimic {
+            let master = self.joints.of(&mimic.joint.text);
+            let mut rule = format!("{on} = {} * {master}", number(mimic.multiplier));
+            if mimic.offset != 0.0 {
+                let _ = write!(rule, " + {}", number(mimic.offset));
+            }
+            self.element(&format!("#[constraint({rule})]"), &format!("{on}_follows"), "Holonomic");
+            self.notes.push(format!(
+                "`{on}` follows `{master}` by a constraint, and has a velocity of its own here"
+            ));
+        }
+    }
+
+    /// Inputs, in the order of the file's.
+    fn inputs(&mut self) {
+        for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
+            let on = self.joints.of(&joint.name.text);
+            self.element(&format!("#[acts(on = {on})]"), &format!("{on}_motor"), push(joint.kind));
+        }
+        let geared = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
+        for drive in self.description.drives.iter().filter(geared) {
+            if let [(joint, 1.0)] = drive.terms.as_slice() {
+                let on = self.joints.of(&joint.text);
+                let kind = push(self.kind(&joint.text));
+                self.element(&format!("#[acts(on = {on})]"), &drive.name.text, kind);
+            } else {
+                let name = self.others.fresh(&drive.name.text, "input");
+                let _ = writeln!(self.fields, "    {name}: Input,");
+                for (joint, weight) in &drive.terms {
+                    let (on, kind) = (self.joints.of(&joint.text), push(self.kind(&joint.text)));
+                    let attribute = format!("#[acts(on = {on}, value = {} * {name})]", number(*weight));
+                    self.element(&attribute, &format!("{name}_on_{on}"), kind);
+                }
+                self.notes.push(format!(
+                    "the input `{name}` comes after those that act on one joint without a gear"
+                ));
+            }
+        }
+    }
+
+    fn kind(&self, joint: &str) -> JointKind {
+        let found = self.description.joints.iter().find(|known| known.name.text == joint);
+        found.map_or(JointKind::Pin, |joint| joint.kind)
+    }
+
+    /// Springs and their kin. On one joint, weights go into the figures.
+    fn drive(&mut self, drive: &Drive) {
+        let sum = || {
+            let term = |(joint, weight): &(linkwork_compiler::syntax::Name, f64)| {
+                (self.joints.of(&joint.text), number(*weight))
+            };
+            drive.terms.iter().map(term).collect::<Vec<_>>()
+        };
+        let terms = sum();
+        let name = drive.name.text.clone();
+        if let [(joint, w)] = drive.terms.as_slice() {
+            let (on, w, kind) = (self.joints.of(&joint.text), *w, self.kind(&joint.text));
+            let (figures, element) = match drive.law {
+                DriveLaw::Spring { stiffness, free } => {
+                    let word = if kind == JointKind::Sleeve { "free_length" } else { "free_angle" };
+                    let free = if free == 0.0 {
+                        String::new()
+                    } else {
+                        format!(", {word} = {}", written::angle(&number(free / w)))
+                    };
+                    (format!("stiffness = {}{free}", number(stiffness * w * w)), "Spring")
+                }
+                DriveLaw::Damper(damping) => (format!("damping = {}", number(damping * w * w)), "Dashpot"),
+                DriveLaw::Friction(force) => (format!("coulomb = {}", number((force * w).abs())), "Friction"),
+                DriveLaw::Inerter(inertance) => {
+                    (format!("inertance = {}", number(inertance * w * w)), "Inerter")
+                }
+                DriveLaw::Push(force) => (format!("value = {}", number(force * w)), push(kind)),
+                DriveLaw::Input(_) => return,
+            };
+            return self.element(&format!("#[acts(on = {on}, {figures})]"), &name, element);
+        }
+        let joined = |rate: bool| {
+            let one = |(joint, w): &(String, String)| {
+                if rate { format!("{w} * rate({joint})") } else { format!("{w} * {joint}") }
+            };
+            terms.iter().map(one).collect::<Vec<_>>().join(" + ")
+        };
+        match drive.law {
+            DriveLaw::Spring { stiffness, free } => {
+                let stretch = format!("({} - {})", joined(false), number(free));
+                let energy = format!("#[energy({} * {stretch} * {stretch})]", number(stiffness / 2.0));
+                self.element(&energy, &name, "Potential");
+            }
+            DriveLaw::Damper(damping) => {
+                let rate = format!("({})", joined(true));
+                let loss = format!("#[dissipation({} * {rate} * {rate})]", number(damping / 2.0));
+                self.element(&loss, &name, "Rayleigh");
+            }
+            DriveLaw::Input(_) => {}
+            DriveLaw::Friction(_) | DriveLaw::Inerter(_) | DriveLaw::Push(_) => {
+                self.notes.push(format!("`{name}`, which acts on several joints, is left out"));
+            }
+        }
+    }
+
+    fn limit(&mut self, limit: &Limit) {
+        let mut figures = vec![format!("on = {}", self.expression(&limit.on))];
+        for (word, e) in [("from", &limit.from), ("to", &limit.to)] {
+            figures.extend(e.as_ref().map(|e| format!("{word} = {}", written::angle(&self.expression(e)))));
+        }
+        for (word, e) in [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)] {
+            figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.expression(e))));
+        }
+        if figures.len() > 1 {
+            let name = format!("{}_limit", limit.name.text);
+            self.element(&format!("#[limit({})]", figures.join(", ")), &name, "Limit");
+        }
+    }
+
+    fn vector(&self, e: &Expr) -> String {
+        vector(e).unwrap_or_else(|| self.expression(e))
+    }
+
+    fn expression(&self, e: &Expr) -> String {
+        written::expression(e, &|name| self.joints.known(name).or_else(|| self.links.known(name)))
+    }
+}
+
+/// A motor's type.
+fn push(kind: JointKind) -> &'static str {
+    if kind == JointKind::Sleeve { "Force" } else { "Torque" }
+}

@@ -1,0 +1,75 @@
+//! Names of files → names of fields.
+
+use linkwork_compiler::syntax::GROUND;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Words that mean something in expressions, or that no field can have.
+const WORDS: [&str; 24] = [
+    "x", "y", "z", "t", "u", "w", "e", "pi", "ground", "world", "gravity", "time", "norm", "dot", "cross",
+    "rate", "stretch", "speed", "crate", "self", "super", "Self", "true", "false",
+];
+
+/// Names of fields by those of a file.
+#[derive(Clone, Default)]
+pub struct Names {
+    of: BTreeMap<String, String>,
+    taken: BTreeSet<String>,
+}
+
+impl Names {
+    /// Adds names of one kind; those that are taken by others get the kind behind them.
+    pub fn add<'a>(&mut self, names: impl Iterator<Item = &'a str>, kind: &str) -> Names {
+        let mut of = BTreeMap::new();
+        for name in names {
+            let field = if name == GROUND { name.to_string() } else { self.fresh(name, kind) };
+            of.insert(name.to_string(), field);
+        }
+        Names { of, taken: BTreeSet::new() }
+    }
+
+    /// A field's name that is not taken yet.
+    pub fn fresh(&mut self, name: &str, kind: &str) -> String {
+        let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let plain = plain.trim_matches('_').to_ascii_lowercase();
+        let begins = plain.starts_with(|c: char| c.is_ascii_alphabetic());
+        let mut field =
+            if begins { plain } else { format!("{kind}_{plain}").trim_end_matches('_').to_string() };
+        let is_word = |text: &str| WORDS.contains(&text) || syn::parse_str::<syn::Ident>(text).is_err();
+        if is_word(&field) || self.taken.contains(&field) {
+            field = format!("{field}_{kind}");
+        }
+        let first = field.clone();
+        let mut number = 2;
+        while !self.taken.insert(field.clone()) {
+            field = format!("{first}{number}");
+            number += 1;
+        }
+        field
+    }
+
+    /// The field of a name of the file.
+    pub fn of(&self, name: &str) -> String {
+        self.known(name).unwrap_or_else(|| name.to_string())
+    }
+
+    /// The field, if the file has the name.
+    pub fn known(&self, name: &str) -> Option<String> {
+        self.of.get(name).cloned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Names;
+
+    #[test]
+    fn fields_have_names_of_their_own() {
+        let mut taken = Names::default();
+        let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
+        let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");
+        let all = |names: &Names, list: &[&str]| list.iter().map(|name| names.of(name)).collect::<Vec<_>>();
+        let of_links = all(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);
+        assert_eq!(of_links, ["ground", "hand_left", "x_link", "link_2nd", "fn_link", "hand_left_link"]);
+        assert_eq!(all(&joints, &["Hand-left", "é"]), ["hand_left_joint", "joint"]);
+    }
+}

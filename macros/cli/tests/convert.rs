@@ -1,0 +1,157 @@
+//! Robot files as structs: the same equations of motion.
+
+use linkwork_compiler::derive::Output;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::{Source, compile, read};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Runs `test` with what is compiled of the attribute's arguments and a struct.
+fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
+    let cx = &mut Diagnostics::new();
+    let source: Option<Source> = read(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
+    let graph = Graph::new();
+    let made = source.and_then(|source| compile(&source, &graph, cx));
+    let (model, output) = made.unwrap_or_else(|| panic!("{:?}", cx.messages()));
+    test(&model, &output)
+}
+
+/// What a function gives for a state of its own, by the names of the entries.
+fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
+    let value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
+    let plain = model.nq() == model.nv();
+    let q = |k: usize| match (plain, k) {
+        (true, k) => value(k, 0.3),
+        // A free base: quaternion of unit length.
+        (false, 3..7) => [0.1, 0.7, -0.1, 0.7][k - 3],
+        (false, k) => value(k, 0.3),
+    };
+    let f = output.functions.iter().find(|f| f.name == function).unwrap();
+    f.program.run(&|symbol| match Quantity::of(symbol) {
+        Quantity::Configuration(k) => q(k),
+        Quantity::Velocity(k) => value(k, 0.9),
+        Quantity::Acceleration(k) => value(k, 1.3),
+        Quantity::Force(k) => value(k, 2.1),
+        Quantity::Input(k) => value(k, 0.1),
+        other => panic!("{other:?}"),
+    })
+}
+
+fn converted(file: &Path, with: &str) -> (String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_linkwork"));
+    let output = command.arg("convert").arg(file).args(["--with", with]).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let (code, told) = (text(output.stdout), text(output.stderr));
+    assert!(output.status.success(), "{}: {told}", file.display());
+    (code, told)
+}
+
+/// The attribute's arguments, and the struct.
+fn parts(code: &str) -> (String, String) {
+    let (_, rest) = code.split_once("#[mechanism(").unwrap();
+    let (arguments, item) = rest.split_once(")]\n").unwrap();
+    (arguments.to_string(), item.to_string())
+}
+
+/// Frames that are not the ground itself, which is one of a file's links.
+fn frames(model: &Model<'_>) -> usize {
+    model.frames.iter().filter(|frame| frame.name != "ground").count()
+}
+
+fn check(format: &str, file: &Path, with: &str) {
+    let (code, told) = converted(file, with);
+    let (arguments, item) = parts(&code);
+    assert!(told.is_empty(), "{}: {told}", file.display());
+    let given = format!("{format} = {:?}, {with}", file.display().to_string());
+    let functions =
+        ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
+    let all = |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
+    let expected =
+        compiled(&given, "struct Robot;", |m, o| (m.nq(), m.nu(), frames(m), m.limits.len(), all(m, o)));
+    let found = compiled(&arguments, &item, |m, o| (m.nq(), m.nu(), frames(m), m.limits.len(), all(m, o)));
+    assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
+    assert_eq!((found.2, found.3), (expected.2, expected.3), "frames and limits of {}", file.display());
+    for (k, (a, b)) in found.4.iter().zip(&expected.4).enumerate() {
+        let size = b.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(a.len() == b.len() && off < 1e-9 * size, "{} of {}: {off}", functions[k], file.display());
+    }
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+#[test]
+fn structs_move_as_their_files() {
+    let urdf = repository().join("models/urdf");
+    for (name, with) in [
+        ("ur5", "base = fixed"),
+        ("gen3", "base = fixed"),
+        ("double_pendulum", "base = fixed"),
+        ("solo12", "base = free"),
+        ("simple_humanoid", "base = free"),
+        ("anymal_b", "base = free, inertia = trust"),
+        ("panda", "mimic = independent"),
+    ] {
+        check("urdf", &urdf.join(format!("{name}.urdf")), with);
+    }
+}
+
+const CRANE: &str = r#"<mujoco model="crane">
+  <compiler angle="radian"/>
+  <option gravity="0 0 -3.7"/>
+  <worldbody>
+    <body name="trolley">
+      <joint name="trolley" type="slide" axis="1 0 0" stiffness="30" springref="0.4" damping="2" armature="0.3" frictionloss="0.2"/>
+      <geom type="box" size="0.1 0.1 0.1" mass="2"/>
+      <body name="t" pos="0 0 -0.1" euler="0.1 0.2 0.3">
+        <joint name="swing" axis="0 2 0" pos="0 0 0.05" stiffness="2" range="-7 7"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.02" mass="0.5"/>
+        <site name="hook" pos="0 0 -1"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="drive" joint="trolley" gear="12"/>
+    <motor name="twist" joint="swing"/>
+  </actuator>
+</mujoco>"#;
+
+/// Names that are words, springs, rotors and gears of another format.
+#[test]
+fn elements_of_files_become_fields() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("converted");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("crane.xml");
+    std::fs::write(&file, CRANE).unwrap();
+    let (code, _) = converted(&file, "");
+    for part in [
+        "t_link: Body",
+        "trolley_joint: Sleeve",
+        "gravity = -3.7 * z",
+        "pub struct Crane {",
+        "Spring",
+        "Inerter",
+    ] {
+        assert!(code.contains(part), "{part}: {code}");
+    }
+    let one_to_one = CRANE.replace("gear=\"12\"", "");
+    std::fs::write(&file, one_to_one).unwrap();
+    check("mjcf", &file, "");
+}
+
+#[test]
+fn what_cannot_be_converted_is_told() {
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_linkwork")).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, told) = run(&["convert", file!(), "--struct", "None"]);
+    assert!(status == Some(2), "{told}");
+    let panda = repository().join("models/urdf/panda.urdf");
+    let (status, told) = run(&["convert", panda.to_str().unwrap()]);
+    assert!(status == Some(0) && told.contains("follows `panda_finger_joint1` by a constraint"), "{told}");
+}
