@@ -146,6 +146,21 @@ fn geometry_for_contact() {
     assert_close("gaps", &found, &expected, 1e-12);
 }
 
+/// The file says what touches: each shape the plane of its world, with the larger of the two coefficients of friction.
+#[test]
+fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
+    #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]
+    struct Sliding;
+
+    assert_eq!((Sliding::CONTACTS.len(), Sliding::CONTACTS[0]), (11, "box_geom0_contact.0"));
+    let (mut q, mut v) = (Sliding.neutral(), SVector::zeros());
+    (q[2], q[9], v[0]) = (0.1, 2.0, 1.0);
+    let end = simulate(&Sliding).from(q, v).method(TimeStepping::step(1e-3)).duration(0.1).finish()?;
+    assert!((end.v[0] - (1.0 - 0.4 * 9.81 * 0.1)).abs() < 1e-9, "{}", end.v[0]);
+    assert!((end.v[8] + 0.981).abs() < 1e-9, "the egg falls beside it");
+    Ok(())
+}
+
 /// What the options leave out.
 #[test]
 fn options() {

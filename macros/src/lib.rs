@@ -90,6 +90,7 @@ use std::path::PathBuf;
 /// | `base = fixed` or `free` | how the file's root link is held; fixed if not given. MJCF files say that themselves: `free` is for those with one outermost body and no joint on it |
 /// | `passive = honour` or `ignore` | damping, friction and springs of the file's joints and tendons; honour if not given |
 /// | `mimic = follow` or `independent` | joints with a `mimic` tag, and `<equality>` of MJCF; follow if not given |
+/// | `contacts = file` or `ignore` | of an MJCF file, contacts of its bodies with the planes of its world; ignore if not given |
 /// | `limits = honour` or `ignore` | limits of the file's joints, which the trait `linkwork::Limits` gives; honour if not given |
 /// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
 /// | `inputs = joints`, `actuators` or `none` | whether every moving joint with one degree of freedom is an input, or every actuator of an MJCF file; joints if not given, and actuators for MJCF |

@@ -115,7 +115,8 @@ pub fn read(
     let (mut files, before) = (Vec::new(), cx.len());
     mechanism.description.drawing = mechanism.requests.drawing;
     if let Some(options) = &mut mechanism.file {
-        options.collisions = mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
+        options.collisions =
+            options.contacts || mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
         options.visuals = mechanism.requests.drawing;
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
@@ -163,6 +164,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     // Those of the file come first.
     description.limits.splice(0..0, imported.limits);
     description.collisions = imported.collisions;
+    description.contacts.splice(0..0, imported.contacts);
     description.visuals = imported.visuals;
     description.drives = imported.drives;
     description.dissipations.splice(0..0, imported.dissipations);

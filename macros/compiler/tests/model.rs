@@ -46,6 +46,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             lock: Vec::new(),
             snap: None,
             parameters: Vec::new(),
+            contacts: false,
             collisions: false,
             visuals: false,
         };

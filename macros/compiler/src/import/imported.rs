@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
-use crate::syntax::{Body, Collision, Constraint, Drive, Expr, Joint, Limit, Name, Visual};
+use crate::syntax::{Body, Collision, Constraint, Contact, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 
 /// What a file describes.
@@ -26,6 +26,8 @@ pub struct Imported {
     pub fields: Vec<FileField>,
     /// The file's root is the ground itself.
     pub is_ground: bool,
+    /// What touches what, if it was asked for.
+    pub contacts: Vec<Contact>,
     /// Collision geometry of the links, if it was asked for.
     pub collisions: Vec<Collision>,
     /// Visual geometry of the links, if it was asked for.

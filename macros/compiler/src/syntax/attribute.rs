@@ -24,7 +24,7 @@ use syn::{Attribute, Field, Fields, GenericParam, Ident, Item, ItemStruct, Type}
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 20] = [
+const OPTIONS: [&str; 21] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -37,6 +37,7 @@ const OPTIONS: [&str; 20] = [
     "passive",
     "mimic",
     "limits",
+    "contacts",
     "inertia",
     "inputs",
     "lock",
@@ -378,7 +379,8 @@ fn read_options(
         unify_scalar(scalar, found, place, cx);
     }
     let file = read_path(&mut arguments, cx);
-    let file_only = ["base", "passive", "mimic", "limits", "inputs", "lock", "snap", "parameters"];
+    let file_only =
+        ["base", "passive", "mimic", "limits", "contacts", "inputs", "lock", "snap", "parameters"];
     if file.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -393,6 +395,7 @@ fn read_options(
             }
         }
     }
+    let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
@@ -430,9 +433,23 @@ fn read_options(
         lock,
         snap,
         parameters,
+        contacts,
         collisions: false,
         visuals: false,
     })
+}
+
+/// `contacts = file | ignore`: what touches what, of a format that says it.
+fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
+    let place = arguments.place_of("contacts");
+    let asked =
+        arguments.take_word("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
+    let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
+    if let (Some(place), Some(other)) = (place, other) {
+        cx.error(place, format!("{} does not say what touches what", other.article()))
+            .help(super::contact::TOUCHES);
+    }
+    asked && other.is_none()
 }
 
 /// `urdf = "…"` or `mjcf = "…"`.

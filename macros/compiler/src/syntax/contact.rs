@@ -9,6 +9,10 @@ const KEYS: [&str; 6] = ["friction", "restitution", "stiffness", "hertz", "dissi
 /// How a contact is written.
 pub const EXAMPLE: &str = "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]";
 
+/// What a contact of a file's links is written as.
+pub const TOUCHES: &str =
+    "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
+
 /// Reads a contact.
 pub fn read_contact(
     name: Name,
@@ -24,7 +28,15 @@ pub fn read_contact(
     arguments.finish("a Contact", &KEYS, cx);
     match (surfaces.next(), surfaces.next(), surfaces.next()) {
         (Some(first), Some(second), None) => {
-            description.contacts.push(Contact { name, first, second, friction, restitution, soft });
+            description.contacts.push(Contact {
+                name,
+                first,
+                second,
+                friction,
+                restitution,
+                soft,
+                of_file: false,
+            });
         }
         (Some(only), None, _) => {
             cx.error(only.place, "expected two surfaces, found one").help(format!("write `{EXAMPLE}`"));
@@ -75,10 +87,10 @@ fn read_softness(
 /// The word for what a file says of a link's shape.
 pub const COLLISION: &str = "collision";
 
-/// `link.collision()` gives the link, `collision()` nothing: all links of the file.
+/// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is the third shape of one.
 pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
-        ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.is_empty() => {
+        ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.len() < 2 => {
             Some(Some(link.as_ref()))
         }
         ExprKind::Call(word, arguments) if word.text == COLLISION && arguments.is_empty() => Some(None),

@@ -238,6 +238,8 @@ pub struct FileOptions {
     pub snap: Option<f64>,
     /// Figures that are parameters.
     pub parameters: Vec<FileFigures>,
+    /// What touches what is taken from the file.
+    pub contacts: bool,
     /// Contacts name the collision geometry of links.
     pub collisions: bool,
     /// Visual geometry is drawn.

@@ -352,6 +352,8 @@ pub struct Contact {
     pub restitution: Option<Expr>,
     /// The surfaces yield instead of being rigid.
     pub soft: Option<Softness>,
+    /// A file says it: what never parts is left out.
+    pub of_file: bool,
 }
 
 /// How surfaces yield.

@@ -34,6 +34,7 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         lock: robot.locked().map(name).collect(),
         snap: None,
         parameters: Vec::new(),
+        contacts: false,
         collisions: false,
         visuals: false,
     };

@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
             let class = self.defaults.class(node, "childclass", 0, cx);
             let inside = self.inside(node, class, cx);
             self.add_sites(&inside, GROUND, cx);
-            self.count("geometry of the ground", inside.shapes.len());
+            self.add_planes(&inside.shapes, cx);
             open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| Open {
                 node,
                 parent: world.clone(),

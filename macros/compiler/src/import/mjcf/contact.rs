@@ -1,12 +1,97 @@
 //! Geometry for contact → shapes that contacts name.
 
 use super::body::Shaped;
+use super::defaults::Element;
 use super::reader::{Reader, origin};
+use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::place;
-use crate::import::pose::Pose;
-use crate::import::robot::FileCollision;
-use crate::syntax::Shape;
+use crate::import::pose::{Pose, apply};
+use crate::import::robot::{FileCollision, unused};
+use crate::syntax::contact::TOUCHES;
+use crate::syntax::{Contact, Expr, ExprKind, GROUND, Name, Shape};
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+/// What a shape says of its contacts.
+pub(super) struct Law {
+    /// `contype` and `conaffinity`.
+    bits: [u32; 2],
+    priority: f64,
+    /// One without friction, three with that of slip, more with those of spin and rolling.
+    dimensions: f64,
+    /// Of slip.
+    friction: f64,
+}
+
+/// A plane of the world.
+pub(super) struct Plane {
+    name: String,
+    pose: Pose,
+    law: Law,
+}
+
+/// A shape of a body.
+pub(super) struct Touching {
+    link: usize,
+    /// Which of the body's shapes it is.
+    number: usize,
+    name: Option<String>,
+    law: Law,
+    place: Place,
+}
+
+impl Law {
+    fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
+        let mut of =
+            |attribute: &str, usual: f64| shape.number(attribute, cx).map_or(usual, |found| found.value);
+        let (bits, priority) =
+            ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
+        let dimensions = of("condim", 3.0);
+        let usual = [1.0, 0.005, 0.0001];
+        let [friction, ..] = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
+        Law { bits, priority, dimensions, friction }
+    }
+
+    fn meets(&self, other: &Law) -> bool {
+        self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
+    }
+
+    /// The larger coefficient in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact").
+    fn friction_with(&self, other: &Law) -> f64 {
+        let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
+            Ordering::Greater => (self.dimensions, self.friction),
+            Ordering::Less => (other.dimensions, other.friction),
+            Ordering::Equal => (self.dimensions.max(other.dimensions), self.friction.max(other.friction)),
+        };
+        if dimensions < 3.0 { 0.0 } else { friction }
+    }
+}
+
+impl Touching {
+    /// Its contact with a plane.
+    fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
+        let at = &self.place;
+        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
+        let method = |of: Expr, word: &str, argument: Expr| Expr {
+            kind: ExprKind::Method(Box::new(of), named(word), vec![argument]),
+            place: at.clone(),
+        };
+        let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
+        let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
+        let friction = self.law.friction_with(&plane.law);
+        Contact {
+            name: named(&name),
+            first: method(body(link), "collision", Expr::number(self.number as f64, at)),
+            second: method(point, "plane", normal),
+            friction: (friction != 0.0).then(|| Expr::number(friction, at)),
+            restitution: None,
+            soft: None,
+            of_file: true,
+        }
+    }
+}
 
 impl<'a> Reader<'a> {
     /// Adds those shapes of a link that touch others, if contacts name any.
@@ -23,8 +108,65 @@ impl<'a> Reader<'a> {
             }
             let Some((kind, pose)) = self.collision(shape, cx) else { continue };
             let at = place(shape.node, cx);
+            self.add_touching(link, shape, kind, cx);
             let part = FileCollision { origin: origin(&outer.then(&pose), &at), shape: kind, place: at };
             self.robot.collisions.push((link, part));
+        }
+    }
+
+    /// Notes what touches the planes of the world; forms without points that are known are counted.
+    fn add_touching(&mut self, link: usize, shape: &Element<'a>, kind: Shape, cx: &mut Cx<'_>) {
+        if !self.options.contacts {
+            return;
+        }
+        if kind == Shape::Mesh {
+            self.count("meshes, for contact", 1);
+            return;
+        }
+        let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
+        let (law, place) = (Law::read(shape, cx), place(shape.node, cx));
+        let name = shape.node.attribute("name").map(str::to_string);
+        self.touching.push(Touching { link, number, name, law, place });
+    }
+
+    /// The planes of the world that bodies may touch; other shapes there are counted.
+    pub(super) fn add_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+        for (shape, outer) in shapes {
+            let law = Law::read(shape, cx);
+            if !self.options.contacts || shape.text("type") != Some("plane") || law.bits == [0; 2] {
+                self.count("geometry of the ground", 1);
+                continue;
+            }
+            let pose = outer.then(&super::frame::read_pose(shape, &self.settings, cx));
+            let number = self.planes.len() + 1;
+            let name = shape.node.attribute("name").map_or_else(|| format!("plane{number}"), str::to_string);
+            self.planes.push(Plane { name, pose, law });
+        }
+    }
+
+    /// Declares the contacts of all shapes with all planes that their masks let them touch.
+    pub(super) fn touch_planes(&mut self, cx: &mut Cx<'_>) {
+        if !self.options.contacts {
+            return;
+        }
+        if self.planes.is_empty() {
+            let place = &self.options.path.place;
+            cx.error(place, "the world of the file has no plane to touch", |d| d.help(TOUCHES));
+            return;
+        }
+        self.left_out.push("contacts of bodies with each other".to_string());
+        let mut names: BTreeSet<String> = self.joint_names.union(&self.link_names).cloned().collect();
+        for touching in &self.touching {
+            let Some(link) = self.robot.links.get(touching.link).map(|link| link.name.text.clone()) else {
+                continue;
+            };
+            let shape = touching.name.clone().unwrap_or_else(|| format!("{link}_geom{}", touching.number));
+            for plane in self.planes.iter().filter(|plane| touching.law.meets(&plane.law)) {
+                let end = if self.planes.len() > 1 { format!("_{}", plane.name) } else { String::new() };
+                let text = unused(&format!("{shape}{end}_contact"), |name| names.contains(name));
+                names.insert(text.clone());
+                self.robot.contacts.push(touching.contact(text, &link, plane));
+            }
         }
     }
 

@@ -93,6 +93,7 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     reader.read_world(root, cx)?;
     reader.scale_masses();
     robot::check_names(&reader.robot, cx);
+    reader.touch_planes(cx);
     let tendons = reader.tendons(root, cx);
     reader.equalities(root, &tendons, cx);
     reader.actuators(root, &tendons, cx);

@@ -1,5 +1,6 @@
 //! What is read of a file, while it is read.
 
+use super::contact::{Plane, Touching};
 use super::defaults::Defaults;
 use super::geometry::Mass;
 use super::mesh::Meshes;
@@ -40,6 +41,10 @@ pub(super) struct Reader<'a> {
     /// Bodies so far: that is the number which MuJoCo gives the last one.
     pub(super) bodies: usize,
     pub(super) sites: Vec<(Name, String, Pose)>,
+    /// Planes of the world.
+    pub(super) planes: Vec<Plane>,
+    /// Shapes of bodies that touch.
+    pub(super) touching: Vec<Touching>,
 }
 
 impl<'a> Reader<'a> {
@@ -70,6 +75,8 @@ impl<'a> Reader<'a> {
             masses: vec![None],
             bodies: 0,
             sites: Vec::new(),
+            planes: Vec::new(),
+            touching: Vec::new(),
         }
     }
 

@@ -51,6 +51,7 @@ pub(in crate::import) fn assemble(
         drives,
         dissipations: robot.dissipations,
         constraints: robot.constraints,
+        contacts: robot.contacts,
         gravity: robot.gravity,
         limits,
         fields: Vec::new(),

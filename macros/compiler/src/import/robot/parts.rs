@@ -4,7 +4,7 @@ use super::collision::FileCollision;
 use super::joint::FileJoint;
 use super::origin::Origin;
 use super::visual::FileVisual;
-use crate::syntax::{Body, Constraint, Drive, Expr, Joint, Name};
+use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
 
 /// Links or joints of one file.
 pub(in crate::import) const MOST: usize = 1024;
@@ -22,6 +22,8 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) closing: Vec<Joint>,
     /// Conditions on coordinates.
     pub(in crate::import) constraints: Vec<Constraint>,
+    /// What touches what.
+    pub(in crate::import) contacts: Vec<Contact>,
     /// Collision geometry: the link's number, what it is.
     pub(in crate::import) collisions: Vec<(usize, FileCollision)>,
     /// Visual geometry: the link's number, what it is.

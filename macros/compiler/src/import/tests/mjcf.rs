@@ -338,6 +338,45 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
   <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/></actuator></mujoco>"#;
 
 #[test]
+fn planes_are_touched() {
+    let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
+    let contacts = |world: &str| {
+        let text = format!(
+            "<mujoco><worldbody>{world}<body name='b'><freejoint/><geom name='a' size='1'/><geom size='1' condim='1' contype='2'/>\
+             <geom size='1' priority='1' friction='0.2' contype='4' conaffinity='1'/></body></worldbody></mujoco>"
+        );
+        let mut cx = Diagnostics::new();
+        match import_text(&text, &options, &mut cx) {
+            Some(imported) => imported
+                .contacts
+                .iter()
+                .map(|contact| {
+                    let friction = contact.friction.as_ref().map_or_else(|| "none".to_string(), render_expr);
+                    let (first, second) = (render_expr(&contact.first), render_expr(&contact.second));
+                    format!("{}: {first} {second} {friction}\n", contact.name.text)
+                })
+                .collect(),
+            None => cx.messages().join("\n"),
+        }
+    };
+    assert_eq!(
+        contacts("<geom type='plane' friction='0.3' pos='1 0 0' zaxis='1 0 0' conaffinity='3'/>"),
+        "a_contact: b.collision(0) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
+         b_geom1_contact: b.collision(1) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
+         b_geom2_contact: b.collision(2) ground.at([1, 0, 0]).plane([1, 0, 0]) 0.2\n"
+    );
+    assert_eq!(
+        contacts("<geom type='plane' condim='1' contype='0'/><geom name='up' type='plane'/>"),
+        "a_plane1_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
+         a_up_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
+         b_geom1_up_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
+         b_geom2_up_contact: b.collision(2) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.2\n"
+    );
+    let none = contacts("<geom type='box' size='1 1 1'/>");
+    assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
+}
+
+#[test]
 fn damage_never_panics() {
     super::fuzz::damage_gets_an_answer(&mjcf(), FILE, "ground");
 }

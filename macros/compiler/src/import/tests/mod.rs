@@ -37,6 +37,7 @@ fn defaults() -> FileOptions {
         lock: Vec::new(),
         snap: None,
         parameters: Vec::new(),
+        contacts: false,
         collisions: false,
         visuals: false,
     }

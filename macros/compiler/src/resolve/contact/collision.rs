@@ -7,6 +7,14 @@ use crate::resolve::builder::Builder;
 use crate::resolve::scope::Placed;
 use crate::syntax::{self, Collision, ExprKind, Name, Shape};
 
+/// Which shape of a link is meant, if one.
+fn part_of(e: &syntax::Expr) -> Option<usize> {
+    match &e.kind {
+        ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal()? as usize),
+        _ => None,
+    }
+}
+
 impl<'g> Builder<'_, 'g> {
     /// The collision geometry of a link, `link.collision()`, or of all links, `collision()`.
     pub fn collisions(
@@ -23,6 +31,10 @@ impl<'g> Builder<'_, 'g> {
         let name = link.and_then(|link| link.name());
         let parts: Vec<&Collision> =
             known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
+        let parts = match part_of(e) {
+            Some(part) => parts.into_iter().skip(part).take(1).collect(),
+            None => parts,
+        };
         if parts.is_empty() {
             let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
             cx.error(e.place.clone(), format!("{whose} has no collision geometry"))

@@ -82,7 +82,10 @@ impl<'g> Builder<'_, 'g> {
         }
         let apart: Vec<&Point<'g>> =
             points.iter().filter(|point| !velocity_gradient(point.rates[0].1).is_empty()).collect();
-        if apart.is_empty() || (apart.len() < points.len() && !whole) {
+        if contact.of_file && apart.is_empty() {
+            return;
+        }
+        if apart.is_empty() || (apart.len() < points.len() && !whole && !contact.of_file) {
             cx.error(place, "nothing moves these surfaces apart, or together")
                 .help("surfaces touch that belong to bodies which move relative to each other");
             return;
