@@ -55,6 +55,20 @@ pub fn command() -> Command {
             .arg(out_file()),
         )
         .subcommand(
+            Command::new("new").about("Makes a project that runs: a mechanism, a controller, a page").arg(
+                Arg::new("folder")
+                    .value_name("FOLDER")
+                    .help("Where it goes; its last part is the package's name")
+                    .required(true)
+                    .value_parser(value_parser!(PathBuf)),
+            ),
+        )
+        .subcommand(
+            Command::new("completions")
+                .about("Prints what a shell completes of this command")
+                .arg(Arg::new("shell").required(true).value_parser(value_parser!(clap_complete::Shell))),
+        )
+        .subcommand(
             Command::new("export")
                 .about("Writes a mechanism's functions")
                 .subcommand_required(true)

@@ -9,6 +9,7 @@ mod input;
 mod integrate;
 mod motion;
 mod names;
+mod new;
 mod show;
 mod simulate;
 mod table;
@@ -39,6 +40,8 @@ fn main() -> ExitCode {
         Some(("simulate", given)) => simulate::run(given),
         Some(("view", given)) => view::run(given),
         Some(("convert", given)) => convert::run(given),
+        Some(("new", given)) => new::run(given),
+        Some(("completions", given)) => completions(given),
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c(given),
             Some(("rust", given)) => export::rust(given),
@@ -54,4 +57,12 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// What a shell completes.
+fn completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
+    let shell = matches.get_one::<clap_complete::Shell>("shell").copied();
+    let shell = shell.ok_or_else(|| Stop::Failure("expected a shell".to_string()))?;
+    clap_complete::generate(shell, &mut commands::command(), "linkwork", &mut std::io::stdout());
+    Ok(())
 }

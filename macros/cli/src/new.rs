@@ -1,0 +1,48 @@
+//! `linkwork new`: a project that runs.
+
+use crate::Stop;
+use clap::ArgMatches;
+use std::path::{Path, PathBuf};
+
+const MAIN: &str = include_str!("starter/main.rs");
+
+pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let folder: &PathBuf =
+        matches.get_one("folder").ok_or_else(|| Stop::Failure("expected a folder".to_string()))?;
+    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    check_name(&name)?;
+    if folder.exists() {
+        return Err(Stop::Failure(format!("{} is there already", folder.display())));
+    }
+    let fail = |error: std::io::Error| Stop::Failure(format!("cannot make {}: {error}", folder.display()));
+    std::fs::create_dir_all(folder.join("src")).map_err(fail)?;
+    let write = |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(fail);
+    write("Cargo.toml", &manifest(&name))?;
+    write("src/main.rs", MAIN)?;
+    write(".gitignore", "/target\n/motion.html\n")?;
+    println!("{0}: `cd {0}`, then `cargo run`, and open motion.html", folder.display());
+    Ok(())
+}
+
+/// What Cargo takes as the name of a package.
+fn check_name(name: &str) -> Result<(), Stop> {
+    let is_known = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let is_word = syn::parse_str::<syn::Ident>(&name.replace('-', "_")).is_err();
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(is_known) || is_word {
+        return Err(Stop::Failure(format!(
+            "`{name}` is no name of a package: expected letters, digits, `-` and `_`, a letter first"
+        )));
+    }
+    if ["test", "core", "std", "alloc", "linkwork", "linkwork-view"].contains(&name) {
+        return Err(Stop::Failure(format!("a package `{name}` would hide another one: choose another name")));
+    }
+    Ok(())
+}
+
+fn manifest(name: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
+         [dependencies]\nlinkwork = \"{version}\"\nlinkwork-view = \"{version}\"\n\n[workspace]\n"
+    )
+}

@@ -1,0 +1,77 @@
+//! The project to begin with, and what shells complete.
+
+#[path = "../src/starter/main.rs"]
+#[allow(dead_code, reason = "the `main` of another program")]
+mod starter;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+/// The program of the project: one pole falls, the other one is kept upright.
+#[test]
+fn the_program_does_what_it_says() {
+    let page = starter::page().unwrap().html();
+    assert!(page.contains("It falls") && page.contains("It is kept upright"));
+    let cart_pole = starter::CartPole { pole_length: 1.0 };
+    // About the upright pole, which falls from any lean.
+    let a = cart_pole.forward_dynamics(&[0.0, 0.2].into(), &[0.0; 2].into(), &[0.0; 2].into());
+    assert!(a[1] > 0.0, "{a}");
+}
+
+#[test]
+fn projects_are_made_once() {
+    let here = folder("new");
+    let (status, told, _) = linkwork(&here, &["new", "my-arm"]);
+    assert!(status == 0 && told.contains("cargo run"), "{told}");
+    let main = std::fs::read_to_string(here.join("my-arm/src/main.rs")).unwrap();
+    assert_eq!(main, include_str!("../src/starter/main.rs"));
+    // Cargo reads the manifest, with this repository in place of what is published.
+    let path = here.join("my-arm/Cargo.toml");
+    let mut manifest = std::fs::read_to_string(&path).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
+    for (name, at) in [("linkwork", "runtime"), ("linkwork-view", "runtime/view")] {
+        let version = concat!(" = \"", env!("CARGO_PKG_VERSION"), "\"\n");
+        let published = format!("\n{name}{version}");
+        assert!(manifest.contains(&published), "{manifest}");
+        let local = format!("\n{name} = {{ path = {:?} }}\n", root.join(at).display().to_string());
+        manifest = manifest.replace(&published, &local);
+    }
+    std::fs::write(&path, manifest).unwrap();
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["metadata", "--no-deps", "--offline", "--format-version=1"]);
+    let cargo = cargo.current_dir(here.join("my-arm")).output().unwrap();
+    let read: serde_json::Value = serde_json::from_slice(&cargo.stdout).unwrap();
+    assert_eq!(read["packages"][0]["name"], "my-arm");
+
+    for (name, part) in
+        [("my-arm", "is there already"), ("2d", "no name of a package"), ("fn", "no name"), ("std", "hide")]
+    {
+        let (status, _, told) = linkwork(&here, &["new", name]);
+        assert!(status == 2 && told.contains(part), "{name}: {told}");
+    }
+}
+
+#[test]
+fn shells_complete_all_commands() {
+    let here = folder("completions");
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let (status, text, _) = linkwork(&here, &["completions", shell]);
+        let all = ["check", "show", "simulate", "view", "convert", "export", "new", "without-contacts"];
+        assert!(status == 0 && all.iter().all(|word| text.contains(word)), "{shell}");
+    }
+    assert_eq!(linkwork(&here, &["completions", "tcsh"]).0, 2);
+}
