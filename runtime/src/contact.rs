@@ -257,7 +257,10 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    act(mechanism, t, q, free, before, &SVector::zeros()).map(|(solved, _)| solved)
+    match closed(mechanism, t, q, free, &SVector::zeros())? {
+        Some(closed) => act(mechanism, t, (q, free), &closed, before, &mut Acted::nothing()),
+        None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
+    }
 }
 
 /// The mean forces of the contacts over `h` seconds under inputs `u` that are held, N, and N·m of stops about an axis: of each contact
@@ -290,8 +293,12 @@ where
     let free = settled(&system, free, t)?;
     let before = mechanism.contact_rates(t, q, v);
     let held = given * (h * constant(0.5));
-    let acted = act(mechanism, t + h, &free.q, &(free.v - given), &before, &held);
-    Ok(acted.map_err(reported)?.0.impulses / h)
+    let v = free.v - given;
+    let Some(closed) = closed(mechanism, t + h, &free.q, &v, &held).map_err(reported)? else {
+        return Ok(SVector::zeros());
+    };
+    let solved = act(mechanism, t + h, (&free.q, &v), &closed, &before, &mut Acted::nothing());
+    Ok(solved.map_err(reported)?.impulses / h)
 }
 
 /// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact the normal one, which
@@ -344,28 +351,40 @@ where
     Ok(problem.spread(&impulses) / h)
 }
 
-/// What has acted: the contacts that are closed, with their impulses and what these do to velocities.
+/// What has acted: the contacts that are closed, with their impulses and what these do to velocities. Its matrices are large, so it
+/// stays where it is.
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
     impulses: Total<T, NR>,
     responses: SMatrix<T, NV, NR>,
+    /// Whether anything has acted.
+    is_any: bool,
 }
 
-/// [`solve`], and what has acted, if anything has. Gaps are those without the displacement `held`.
-#[allow(clippy::type_complexity, reason = "sizes of arrays")]
-fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
+    fn nothing() -> Self {
+        Self {
+            problem: Problem::none(),
+            impulses: Total::repeat(T::zero()),
+            responses: SMatrix::zeros(),
+            is_any: false,
+        }
+    }
+}
+
+/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`. Gaps are those
+/// without the displacement `held`.
+fn closed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     q: &SVector<T, NQ>,
     free: &SVector<T, NV>,
-    before: &SVector<T, NR>,
     held: &SVector<T, NV>,
-) -> Result<(Solved<T, NV, NR>, Option<Acted<T, NV, NK, NR>>), ConstraintError>
+) -> Result<Option<[bool; NK]>, ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let mut gaps = mechanism.contact_gaps(t, q);
     let still = SVector::<T, NV>::zeros();
     if *held != still {
@@ -379,34 +398,51 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
-    if closed.iter().all(|is_closed| !is_closed) {
-        return Ok((solved, None));
-    }
+    Ok(closed.iter().any(|is_closed| *is_closed).then_some(closed))
+}
+
+/// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has.
+fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+    closed: &[bool; NK],
+    before: &SVector<T, NR>,
+    acted: &mut Acted<T, NV, NK, NR>,
+) -> Result<Solved<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
     let laws = mechanism.contact_laws();
-    let mut problem = Problem::new(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &after);
+    let problem = &mut acted.problem;
+    problem.select(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &after);
     if !problem.is_loaded(before) {
-        return Ok((solved, None));
+        return Ok(solved);
     }
-    let responses = mechanism.contact_responses(t, q, &closed);
+    let responses = mechanism.contact_responses(t, q, closed);
     problem.weigh(&responses.rates);
+    acted.responses = responses.velocities;
     problem.aim(&laws, before, T::one());
     let failed = |contact: usize| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
     };
     // What is driven may give energy, and without restitution nothing does.
     let may_gain = problem.rebounds() && {
-        let driven = mechanism.contact_rates(t, q, &still);
+        let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
     let impulses = match problem.solve() {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
-        _ => tempered(&mut problem, &laws, before, may_gain).map_err(failed)?,
+        _ => tempered(problem, &laws, before, may_gain).map_err(failed)?,
     };
     solved.impulses = problem.spread(&impulses);
-    solved.v += responses.velocities * solved.impulses;
-    Ok((solved, Some(Acted { problem, impulses, responses: responses.velocities })))
+    solved.v += acted.responses * solved.impulses;
+    (acted.impulses, acted.is_any) = (impulses, true);
+    Ok(solved)
 }
 
 /// Impulses with the largest part of all restitutions that they can fulfil, and that gives no energy where nothing is driven.
@@ -449,19 +485,26 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let before = mechanism.contact_rates(t, start, v);
     let half = h * constant(0.5);
-    let (Solved { v, .. }, acted) = act(mechanism, t, q, free, &before, &(given * half))?;
+    // Where nothing is closed its matrices are not made.
+    let mut acted = None;
+    let mut after = *free;
+    if let Some(closed) = closed(mechanism, t, q, free, &(given * half))? {
+        let before = mechanism.contact_rates(t, start, v);
+        let acted = acted.insert(Acted::nothing());
+        after = act(mechanism, t, (q, free), &closed, &before, acted)?.v;
+    }
+    let v = after;
     if h == T::zero() {
         return Ok(Touched { q: *q, v });
     }
     // What impulses do to the velocity they do in the mean of the step.
     let moved = (v - free - given) * half;
     let (q, v) = (mechanism.integrate(q, &moved), mechanism.carry(t, &moved, &v));
-    let Some(Acted { problem, impulses, responses }) = acted else { return Ok(Touched { q, v }) };
-    let Some(pushes) = problem.close(&impulses, &mechanism.contact_gaps(t, &q), near()) else {
+    let Some(acted) = acted.filter(|acted| acted.is_any) else { return Ok(Touched { q, v }) };
+    let Some(pushes) = acted.problem.close(&acted.impulses, &mechanism.contact_gaps(t, &q), near()) else {
         return Ok(Touched { q, v });
     };
-    let push = responses * pushes;
+    let push = acted.responses * pushes;
     Ok(Touched { q: mechanism.integrate(&q, &push), v: mechanism.carry(t, &push, &v) })
 }

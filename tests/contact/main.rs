@@ -8,6 +8,7 @@ mod forces;
 mod fuzz;
 mod laws;
 mod mechanisms;
+mod piles;
 mod robots;
 mod soft;
 mod terrain;

@@ -21,7 +21,7 @@ const ROUNDINGS: f64 = 64.0;
 /// Contacts that are closed, with `u = u₀ + W Λ`: what impulses `Λ` make of the rates.
 ///
 /// Contacts and rates are numbered among those that are closed, so that the first `count` and `size` entries of lists are used.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// Which contacts of the mechanism they are, and which rates these have there.
     contacts: Total<(usize, Rows), NK>,
@@ -38,6 +38,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     friction: Total<T, NK>,
     /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where impulses move nothing.
     step: Total<T, NK>,
+    /// A factor of all steps, with which Newton's method may come nearer.
+    scale: T,
 }
 
 /// What the natural map makes of a contact.
@@ -52,15 +54,10 @@ enum Mode<T> {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// The contacts that are closed, with rates `free` without impulses.
-    pub(super) fn new(
-        rows: [Rows; NK],
-        laws: &[Law<T>; NK],
-        is_closed: impl Fn(usize) -> bool,
-        free: &SVector<T, NR>,
-    ) -> Self {
+    /// No contacts.
+    pub(super) fn none() -> Self {
         let none = Rows { first: 0, count: 0 };
-        let mut problem = Self {
+        Self {
             contacts: Total::repeat((0, none)),
             count: 0,
             rows: Total::repeat(none),
@@ -70,7 +67,31 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             least: Total::repeat(T::zero()),
             friction: Total::repeat(T::zero()),
             step: Total::repeat(T::zero()),
-        };
+            scale: T::one(),
+        }
+    }
+
+    /// The contacts that are closed, with rates `free` without impulses.
+    pub(super) fn new(
+        rows: [Rows; NK],
+        laws: &[Law<T>; NK],
+        is_closed: impl Fn(usize) -> bool,
+        free: &SVector<T, NR>,
+    ) -> Self {
+        let mut problem = Self::none();
+        problem.select(rows, laws, is_closed, free);
+        problem
+    }
+
+    /// Takes the contacts that are closed into one that has none.
+    pub(super) fn select(
+        &mut self,
+        rows: [Rows; NK],
+        laws: &[Law<T>; NK],
+        is_closed: impl Fn(usize) -> bool,
+        free: &SVector<T, NR>,
+    ) {
+        let problem = self;
         let all = rows.into_iter().zip(laws).enumerate();
         for (k, (of, law)) in all.filter(|(k, _)| is_closed(*k)) {
             let (c, first) = (problem.count, problem.size);
@@ -83,7 +104,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.count += 1;
             problem.size += of.count;
         }
-        problem
     }
 
     /// The rows of a contact: that of its gap, and those of its slip.
@@ -181,13 +201,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// What the natural map makes of a contact: the impulse of its gap before it is made zero or more, and what follows.
     fn mode(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
         let (n, tangents) = self.of(k);
-        let normal = impulses[n] - self.step[k] * (rates[n] - self.least[k]);
-        if normal <= T::zero() || self.step[k] == T::zero() {
+        let step = self.step[k] * self.scale;
+        let normal = impulses[n] - step * (rates[n] - self.least[k]);
+        if normal <= T::zero() || step == T::zero() {
             return (normal, Mode::Open);
         }
         let mut direction = [T::zero(); 2];
         for (d, i) in direction.iter_mut().zip(tangents) {
-            *d = impulses[i] - self.step[k] * rates[i];
+            *d = impulses[i] - step * rates[i];
         }
         let [x, y] = direction;
         let size = (x * x + y * y).sqrt();
@@ -226,7 +247,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
             *entry = match mode {
                 Mode::Open => impulses[i],
-                Mode::Stick => self.step[k] * rates[i],
+                Mode::Stick => self.step[k] * self.scale * rates[i],
                 Mode::Slip { direction, .. } => {
                     impulses[i] - component(&direction, c) * self.friction[k] * normal
                 }
@@ -240,7 +261,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let rates = self.rates(impulses);
         let mut worst = (T::zero(), 0);
         for k in 0..self.count {
-            let step = self.step[k];
+            let step = self.step[k] * self.scale;
             let left = if step == T::zero() {
                 // Nothing that impulses could do.
                 (self.least[k] - rates[self.rows[k].first]).max(T::zero())
@@ -291,8 +312,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ) -> Option<SVector<T, NR>> {
         let rates = self.rates(impulses);
         let rest = self.rounding(impulses);
-        let mut kept = self.clone();
-        kept.count = 0;
+        let mut kept = Self::none();
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         for k in 0..self.count {
             let n = self.rows[k].first;

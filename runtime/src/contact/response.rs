@@ -40,7 +40,9 @@ where
     }
     let mut rates = SMatrix::<T, NR, NR>::zeros();
     for (rates, velocities) in rates.data.0.iter_mut().zip(&velocities.data.0) {
-        for (velocity, column) in velocities.iter().zip(&jacobian.data.0) {
+        // Bodies that a contact does not reach do not answer, and contacts that are open have no answer at all.
+        let answers = velocities.iter().zip(&jacobian.data.0).filter(|(velocity, _)| **velocity != T::zero());
+        for (velocity, column) in answers {
             rates.iter_mut().zip(column).for_each(|(rate, entry)| *rate += *entry * *velocity);
         }
     }

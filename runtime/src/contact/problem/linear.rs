@@ -25,19 +25,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let system = self.among(&held, size);
+        let mut system = square();
+        self.among(&held, size, &mut system);
         let reach = held.iter().take(size).fold(T::zero(), |most, i| most.max(self.weights[*i][*i]));
         let mut impulses = List::repeat(T::zero());
-        if let Some(factor) = factor(&system, size, T::zero()) {
+        if factorise(&mut system, size, T::zero()) {
             let mut right = List::repeat(T::zero());
             for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - self.free[*i];
             }
-            substitute(&factor, size, &mut right);
+            substitute(&system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
             return impulses;
         }
-        let Some(factor) = factor(&system, size, reach * self.lift()) else { return impulses };
+        self.among(&held, size, &mut system);
+        if !factorise(&mut system, size, reach * self.lift()) {
+            return impulses;
+        }
         // Impulses that move nothing stay small, and what they leave is made up for.
         for _ in 0..3 {
             let rates = self.rates(&impulses);
@@ -45,7 +49,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - rates[*i];
             }
-            substitute(&factor, size, &mut right);
+            substitute(&system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
         impulses
@@ -63,18 +67,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        factor(&self.among(&held, size), size, T::zero()).is_none()
+        let mut system = square();
+        self.among(&held, size, &mut system);
+        !factorise(&mut system, size, T::zero())
     }
 
-    /// `W` among `size` rates.
-    fn among(&self, held: &List<usize, NR>, size: usize) -> Square<T, NR> {
-        let mut system = Square::repeat(List::repeat(T::zero()));
+    /// Makes `system` `W` among `size` rates.
+    fn among(&self, held: &List<usize, NR>, size: usize, system: &mut Square<T, NR>) {
         for (row, i) in system.iter_mut().zip(held.iter()).take(size) {
             for (entry, j) in row.iter_mut().zip(held.iter()).take(size) {
                 *entry = self.weights[*i][*j];
             }
         }
-        system
     }
 
     /// The forces that hold contacts as they are said to be, where impulses are forces and rates accelerations; `rates` are those
@@ -95,8 +99,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let (places, reach) =
             (self.places(), (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i])));
         // What is left of the equations, and their matrix.
-        let equations = |forces: &List<T, NR>| {
-            let (mut system, mut right) = (identity(), List::repeat(T::zero()));
+        let equations = |forces: &List<T, NR>, system: &mut Square<T, NR>| {
+            identify(system);
+            let mut right = List::repeat(T::zero());
             let accelerations = self.rates(forces);
             for k in 0..self.count {
                 let (n, tangents) = self.of(k);
@@ -117,10 +122,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     }
                 }
             }
-            (system, right)
+            right
         };
+        let mut system = square();
         for _ in 0..3 {
-            let (mut system, mut right) = equations(&forces);
+            let mut right = equations(&forces, &mut system);
             for k in 0..self.count {
                 let (n, tangents) = self.of(k);
                 for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips(k)) {
@@ -130,7 +136,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             self.eliminate(&mut system, &mut right);
             forces.iter_mut().zip(*right).for_each(|(force, change)| *force += change);
         }
-        let (_, left) = equations(&forces);
+        let left = equations(&forces, &mut system);
         let most = self.rounding(&forces).max(self.speed() * self.lift());
         let is_lost = |k: &usize| {
             // It is where it is no number, too.
@@ -185,18 +191,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 }
 
-/// Columns of the factor `L` of `A + lift = L Lᵀ` (Cholesky), with the reciprocals of its diagonal; `None` where rows depend on
-/// each other.
-fn factor<T: Real, const NR: usize>(a: &Square<T, NR>, size: usize, lift: T) -> Option<Square<T, NR>> {
-    // Symmetric: columns are rows.
-    let mut l = *a;
+/// Makes `A` into columns of the factor `L` of `A + lift = L Lᵀ` (Cholesky), with the reciprocals of its diagonal; false where rows
+/// depend on each other.
+fn factorise<T: Real, const NR: usize>(l: &mut Square<T, NR>, size: usize, lift: T) -> bool {
+    let mut given = List::<T, NR>::repeat(T::zero());
+    given.iter_mut().zip(l.iter().enumerate()).for_each(|(given, (j, row))| *given = row[j]);
     for j in 0..size {
-        let given = a[j][j];
         // What others took is gone from it already.
         let pivot = l[j][j] + lift;
-        let is_independent = pivot > if lift > T::zero() { T::zero() } else { given * constant(INDEPENDENT) };
+        let is_independent =
+            pivot > if lift > T::zero() { T::zero() } else { given[j] * constant(INDEPENDENT) };
         if !is_independent {
-            return None;
+            return false;
         }
         let reciprocal = T::one() / pivot.sqrt();
         l[j][j] = reciprocal;
@@ -213,7 +219,7 @@ fn factor<T: Real, const NR: usize>(a: &Square<T, NR>, size: usize, lift: T) -> 
             }
         }
     }
-    Some(l)
+    true
 }
 
 /// `x` of `L Lᵀ x = p`, with columns of `L`.
@@ -232,11 +238,15 @@ fn substitute<T: Real, const NR: usize>(l: &Square<T, NR>, size: usize, x: &mut 
     }
 }
 
-/// Ones on the diagonal.
-pub(super) fn identity<T: Real, const NR: usize>() -> Square<T, NR> {
-    let mut identity = Square::repeat(List::repeat(T::zero()));
-    for (i, row) in identity.iter_mut().enumerate() {
+/// Zeros.
+pub(super) fn square<T: Real, const NR: usize>() -> Square<T, NR> {
+    Square::repeat(List::repeat(T::zero()))
+}
+
+/// Ones on the diagonal, else zeros.
+pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>) {
+    for (i, row) in system.iter_mut().enumerate() {
+        row.fill(T::zero());
         row[i] = T::one();
     }
-    identity
 }

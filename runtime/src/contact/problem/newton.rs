@@ -1,6 +1,6 @@
 //! Newton's method for the natural map.
 
-use super::linear::identity;
+use super::linear::{identify, square};
 use super::{List, Mode, Problem, Square, component};
 use crate::Real;
 use crate::private::constant;
@@ -16,8 +16,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn newton(&self, start: List<T, NR>) -> List<T, NR> {
         let mut impulses = start;
         let mut left = self.size_of_map(&impulses);
+        let mut system = square();
         for _ in 0..NEWTON {
-            let (mut system, mut right) = self.linearised(&impulses);
+            let mut right = self.linearise(&impulses, &mut system);
             self.eliminate(&mut system, &mut right);
             let mut part = T::one();
             let next = loop {
@@ -47,16 +48,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let rates = self.rates(impulses);
         (0..self.count).filter(|k| self.step[*k] > T::zero()).fold(T::zero(), |sum, k| {
             let [n, x, y] = self.map(k, impulses, &rates);
-            sum + (n * n + x * x + y * y) / (self.step[k] * self.step[k])
+            let step = self.step[k] * self.scale;
+            sum + (n * n + x * x + y * y) / (step * step)
         })
     }
 
-    /// The natural map's derivative, and what takes its value away.
-    fn linearised(&self, impulses: &List<T, NR>) -> (Square<T, NR>, List<T, NR>) {
+    /// Makes `system` the natural map's derivative; what takes its value away.
+    fn linearise(&self, impulses: &List<T, NR>, system: &mut Square<T, NR>) -> List<T, NR> {
         let rates = self.rates(impulses);
-        let (mut system, mut right) = (identity(), List::repeat(T::zero()));
+        identify(system);
+        let mut right = List::repeat(T::zero());
         for k in 0..self.count {
-            let (step, friction) = (self.step[k], self.friction[k]);
+            let (step, friction) = (self.step[k] * self.scale, self.friction[k]);
             let (n, tangents) = self.of(k);
             let (normal, mode) = self.mode(k, impulses, &rates);
             if let Mode::Open = mode {
@@ -94,6 +97,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 }
             }
         }
-        (system, right)
+        right
     }
 }

@@ -21,7 +21,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// # Errors
     ///
     /// The contact of the mechanism whose law is fulfilled least, where more is left than half of the digits.
-    pub(in super::super) fn solve(&self) -> Result<List<T, NR>, usize> {
+    pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
         let mut impulses = self.search().map_err(|k| self.contacts[k].0)?;
         // Rounding may have left them beside their cones.
         for k in 0..self.count {
@@ -36,7 +36,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Ok(impulses)
     }
 
-    fn search(&self) -> Result<List<T, NR>, usize> {
+    fn search(&mut self) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
         let mut impulses = self.together(|k| self.free[self.rows[k].first] < self.least[k]);
         if self.is_solved(&impulses) {
@@ -50,9 +50,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 return Ok(impulses);
             }
             // Which steps of the map lead to the solution differs.
-            let scale = SCALES[round % SCALES.len()];
-            let scaled = Self { step: self.step.each(|step| step * constant(scale)), ..self.clone() };
-            let found = scaled.newton(impulses);
+            let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
             if self.is_solved(&found) {
                 return Ok(found);
             }
@@ -79,25 +77,34 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if left <= size { Ok(impulses) } else { Err(worst) }
     }
 
+    /// Newton's method with steps of the map by this factor.
+    fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> List<T, NR> {
+        self.scale = constant(scale);
+        let found = self.newton(impulses);
+        self.scale = T::one();
+        found
+    }
+
     /// The impulses by way of those with less friction, whose angle grows from none in equal parts.
-    fn by_degrees(&self) -> Option<List<T, NR>> {
+    fn by_degrees(&mut self) -> Option<List<T, NR>> {
+        let friction = self.friction;
         let mut impulses = List::repeat(T::zero());
         for part in 1..=DEGREES {
-            let mut weaker = self.clone();
-            if part < DEGREES {
-                let share = constant::<T>(f64::from(part) / f64::from(DEGREES));
-                weaker.friction = self.friction.each(|friction| (friction.atan() * share).tan());
-            }
+            let share = constant::<T>(f64::from(part) / f64::from(DEGREES));
+            self.friction = if part < DEGREES {
+                friction.each(|friction| (friction.atan() * share).tan())
+            } else {
+                friction
+            };
             for _ in 0..SWEEPS {
-                weaker.sweep(&mut impulses);
+                self.sweep(&mut impulses);
             }
             for scale in SCALES {
-                let scaled = Self { step: weaker.step.each(|step| step * constant(scale)), ..weaker.clone() };
-                let found = scaled.newton(impulses);
-                if weaker.residual(&found).0 < weaker.residual(&impulses).0 {
+                let found = self.newton_scaled(impulses, scale);
+                if self.residual(&found).0 < self.residual(&impulses).0 {
                     impulses = found;
                 }
-                if weaker.is_solved(&impulses) {
+                if self.is_solved(&impulses) {
                     break;
                 }
             }

@@ -1,0 +1,193 @@
+//! Bodies that lie, lean and strike on each other.
+
+use linkwork::prelude::*;
+use std::thread;
+
+/// Ten boxes; each stands with the corners of its base on the top of the one below.
+#[mechanism(gravity = -9.81 * z)]
+struct Tower {
+    #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
+    block: [Body; 10],
+    #[joint(ground -> block[i])]
+    pose: [Free; 10],
+    #[contact(block[0].cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = 0.6)]
+    base: Contact,
+    #[contact(block[i + 1].cuboid(0.2, 0.2, 0.1), block[i].at(0.05 * z).plane(z), friction = 0.6)]
+    seat: [Contact; 9],
+}
+
+/// Eighty corners of which forty touch, ten more impulses than the bodies' equilibrium determines.
+fn tower() {
+    let m = Tower {};
+    let mut q = m.neutral();
+    for k in 0..10 {
+        q[7 * k] = 0.02 * ((k % 3) as f64 - 1.0);
+        q[7 * k + 2] = 0.05 + 0.1 * k as f64;
+    }
+    let mut samples = 0;
+    for sample in
+        simulate(&m).from(q, [0.0; 60]).method(TimeStepping::step(1e-2)).sample_every(0.5).duration(2.0)
+    {
+        let sample = sample.unwrap();
+        let moved = (sample.q - q).norm();
+        assert!(moved < 1e-10, "{moved:e} m at {} s", sample.t);
+        samples += 1;
+    }
+    assert_eq!(samples, 5);
+}
+
+/// The matrices of 240 rates are on the stack: an unoptimised build takes more than the two megabytes of a test's thread.
+#[test]
+fn a_tower_of_ten_boxes_stands() {
+    thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();
+}
+
+/// Two cards lean on each other: the edge of the left one touches the face of the right one.
+#[mechanism(gravity = -9.81 * y)]
+struct Cards {
+    floor: f64,
+    faces: f64,
+    #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
+    left: Body,
+    #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
+    right: Body,
+    #[joint(ground -> left, about = z)]
+    left_pose: Planar,
+    #[joint(ground -> right, about = z)]
+    right_pose: Planar,
+    #[contact(left.at(-0.05 * y), ground.plane(y), friction = floor)]
+    left_foot: Contact,
+    #[contact(right.at(-0.05 * y), ground.plane(y), friction = floor)]
+    right_foot: Contact,
+    #[contact(left.at(0.05 * y), right.plane(-x), friction = faces)]
+    edge: Contact,
+}
+
+/// A card that leans by `φ` is pushed by `(m g / 2) tan φ` at its edge, horizontally by symmetry. The floor, which carries `m g`,
+/// holds it where its coefficient is at least `tan φ / 2`, and the face, on which the push is inclined by `φ`, where its is at
+/// least `tan φ`.
+#[test]
+fn cards_lean_on_each_other() {
+    let lean = 0.35_f64;
+    let q = SVector::from([
+        -0.05 * lean.sin(),
+        0.05 * lean.cos(),
+        -lean,
+        0.05 * lean.sin(),
+        0.05 * lean.cos(),
+        lean,
+    ]);
+    let needed = [lean.tan() / 2.0, lean.tan()];
+    let moved = |floor: f64, faces: f64| {
+        let m = Cards { floor: needed[0] * floor, faces: needed[1] * faces };
+        assert!(m.contact_gaps(&q).amax() < 1e-16);
+        let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(0.2);
+        (run.finish().unwrap().q - q).amax()
+    };
+    assert!(moved(1.02, 1.02) < 1e-9, "{:e}", moved(1.02, 1.02));
+    assert!(moved(0.98, 1.02) > 1e-3, "{:e}", moved(0.98, 1.02));
+    assert!(moved(1.02, 0.98) > 1e-3, "{:e}", moved(1.02, 0.98));
+}
+
+/// Newton's cradle: balls on threads of one length.
+#[mechanism(gravity = -9.81 * y)]
+struct Cradle {
+    /// Distance between balls at rest, m.
+    gap: f64,
+    #[particle(mass = 0.1)]
+    ball: [Particle; 5],
+    #[joint(ground.at((0.05 + gap) * i * x) -> ball[i].at(0.2 * y), about = z)]
+    thread: [Pin; 5],
+    #[contact(ball[i].sphere(0.025), ball[i + 1].sphere(0.025), restitution = 1)]
+    touch: [Contact; 4],
+}
+
+/// Impacts one after the other hand the velocity on from ball to ball: the last one rises to where the first one came from, the
+/// others rest.
+#[test]
+fn a_cradle_hands_the_velocity_on() {
+    let m = Cradle { gap: 1e-6 };
+    let start = [-0.3, 0.0, 0.0, 0.0, 0.0];
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let before = energy(&start.into(), &SVector::zeros());
+    let run = simulate(&m)
+        .from(start, [0.0; 5])
+        .method(EventDriven::new().tolerance(1e-11, 1e-11))
+        .sample_every(0.01)
+        .duration(0.8);
+    let (mut highest, mut moved) = (0.0_f64, 0.0_f64);
+    for sample in run {
+        let sample = sample.unwrap();
+        let now = energy(&sample.q, &sample.v);
+        assert!((now - before).abs() < 1e-9, "{now} {before}");
+        highest = highest.max(sample.q[4]);
+        moved = moved.max(sample.q.fixed_rows::<3>(1).amax());
+    }
+    // What is left to the others follows from the gaps.
+    assert!((highest - 0.3).abs() < 1e-3, "{highest}");
+    assert!(moved < 1e-3, "{moved}");
+}
+
+/// A box on its way down a slope and over its edge, its contacts declared in two orders.
+macro_rules! tumbling {
+    ($name:ident, $first:ident = $point:expr, $second:ident = $other:expr) => {
+        #[mechanism(gravity = -9.81 * y)]
+        struct $name {
+            #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+            tile: Body,
+            #[joint(ground -> tile, about = z)]
+            pose: Planar,
+            #[contact(tile.at($point), ground.plane(y), friction = 0.4, restitution = 0.2)]
+            $first: Contact,
+            #[contact(tile.at($other), ground.plane(y), friction = 0.4, restitution = 0.2)]
+            $second: Contact,
+        }
+    };
+}
+tumbling!(LeftFirst, left = -0.15 * x - 0.1 * y, right = 0.15 * x - 0.1 * y);
+tumbling!(RightFirst, right = 0.15 * x - 0.1 * y, left = -0.15 * x - 0.1 * y);
+
+#[test]
+fn the_order_of_declaration_does_not_matter() {
+    let (q, v) = ([0.0, 0.12, 0.05], [1.0, 0.0, 0.5]);
+    let step = TimeStepping::step(1e-3);
+    let one = simulate(&LeftFirst {}).from(q, v).method(step).duration(0.5).finish().unwrap();
+    let other = simulate(&RightFirst {}).from(q, v).method(step).duration(0.5).finish().unwrap();
+    assert!((one.q - other.q).amax() < 1e-10, "{}", (one.q - other.q).amax());
+    // It has come to rest on both corners.
+    assert!(one.v.amax() < 1e-10 && (one.q[1] - 0.1).abs() < 1e-9, "{} {}", one.q, one.v);
+}
+
+/// A box on a slope, in single precision.
+#[mechanism(gravity = -9.81 * z, scalar = f32)]
+struct Small {
+    tilt: f32,
+    #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    block: Body,
+    #[joint(ground -> block)]
+    pose: Free,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(sin(tilt) * x + cos(tilt) * z), friction = 0.5)]
+    slope: Contact,
+}
+
+#[test]
+fn single_precision_sticks_too() {
+    let m = Small { tilt: 0.35 };
+    let (sine, cosine) = (m.tilt / 2.0).sin_cos();
+    let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];
+    let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.01_f32)).duration(60.0);
+    let moved = (run.finish().unwrap().q - SVector::from(q)).norm();
+    assert!(moved < 1e-5, "{moved:e}");
+    // At 0.5 it slides, at g (sin 0.5 − 0.5 cos 0.5).
+    let m = Small { tilt: 0.5 };
+    let (sine, cosine) = (m.tilt / 2.0).sin_cos();
+    let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];
+    let end =
+        simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.01_f32)).duration(1.0).finish().unwrap();
+    let speed = 9.81 * (m.tilt.sin() - 0.5 * m.tilt.cos());
+    assert!(
+        (end.v.fixed_rows::<3>(3).norm().max(end.v.fixed_rows::<3>(0).norm()) - speed).abs() < 1e-3,
+        "{}",
+        end.v
+    );
+}
