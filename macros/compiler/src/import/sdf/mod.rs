@@ -110,7 +110,10 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
             *count += usize::from(node.tag_name().name() == element && !named);
         }
     }
-    let found = ASIDE.into_iter().zip(counts).filter(|(_, count)| *count > 0);
+    let all = root.descendants().filter(|node| node.tag_name().name() == "model");
+    let standing = all.filter(|model| is_static(*model)).count();
+    let models = ("", "static models of the world");
+    let found = ASIDE.into_iter().zip(counts).chain([(models, standing)]).filter(|(_, count)| *count > 0);
     found.map(|((_, what), count)| format!("{what}: {count}")).collect()
 }
 
@@ -131,6 +134,10 @@ fn find_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     };
     let mut found = named(root, "model");
     found.extend(named(root, "world").into_iter().flat_map(|world| named(world, "model")));
+    // What stands in the world is not the mechanism, where there is one that moves.
+    if found.len() > 1 {
+        found.retain(|model| !is_static(*model));
+    }
     match found.as_slice() {
         [one] => return Some(*one),
         [] => cx.error(&place(root, cx), "SDF file without a model", |d| {
@@ -143,6 +150,12 @@ fn find_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
         }),
     }
     None
+}
+
+/// True for a model that nothing moves.
+fn is_static(model: Node<'_>) -> bool {
+    let said = elements(model).find(|child| child.tag_name().name() == "static");
+    said.and_then(|said| said.text()).is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
 /// Gravity of a world, which is 9.8 m/s² unless it says another; a model alone says nothing of it.

@@ -46,6 +46,18 @@ fn frames_carry_joints_and_joints_close_loops() {
 }
 
 #[test]
+fn what_stands_in_the_world_is_listed() {
+    check_with(
+        &sdf(),
+        "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/></model>\
+         <model name='m'><link name='a'/></model></world></sdf>",
+        "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         Weld root_joint: ground -> a
+         left out static models of the world: 1",
+    );
+}
+
+#[test]
 fn poses_name_frames_that_there_are() {
     let model = |pose: &str| {
         format!(
