@@ -106,7 +106,11 @@
 //! | [`Aircraft`] | 6 | trim in level flight, level turn |
 //! | [`CruisingAircraft`] (a transport and a light aircraft by their derivatives) | 6 | published matrices and modes |
 //! | [`Fighter`] (tables, an engine that lags) | 6 and 1 state | published rates, trims and matrices |
+//! | [`Glider`] | 6 | flattest glide and slowest sink, phugoid, stability of the spiral |
+//! | [`HypersonicGlider`] (over the round Earth, which turns) | 6 | lift to the east and west, Coriolis, ground track |
 //! | [`PlanarRotorcraft`] | 3 | hovering, free fall |
+//! | [`Quadrotor`] (rotors that lag) | 6 and 4 states | hovering, transfer functions |
+//! | [`WheeledSatellite`] (reaction wheels) | 6 | turns by its wheels, nutation |
 //!
 //! # By joint
 //!
@@ -181,8 +185,10 @@
 //! | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
 //! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
-//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
+//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
 //! | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
+//! | gliding, hovering, turning by wheels | | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
+//! | six degrees of freedom over the round Earth, which turns | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
 //! | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
 //! | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
 //! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
@@ -229,10 +235,12 @@ mod four_bar;
 mod free_rigid_body;
 mod furuta_pendulum;
 mod gear_pair;
+mod glider;
 mod gravity_gradient_satellite;
 mod gyroscope;
 mod heavy_top;
 mod humanoid;
+mod hypersonic_glider;
 mod jeffcott_rotor;
 mod kapitza_pendulum;
 mod nut_on_screw;
@@ -240,6 +248,7 @@ mod pendulum;
 mod pendulum_chain;
 mod pendulum_on_collar;
 mod planar_rotorcraft;
+mod quadrotor;
 mod quadruped;
 mod rate_gyroscope;
 mod rattleback;
@@ -256,6 +265,7 @@ mod spring_chain;
 mod stewart_platform;
 mod tuned_suspension;
 mod two_bodies;
+mod wheeled_satellite;
 mod wilberforce_pendulum;
 mod windows;
 
@@ -291,10 +301,12 @@ pub use four_bar::FourBar;
 pub use free_rigid_body::FreeRigidBody;
 pub use furuta_pendulum::FurutaPendulum;
 pub use gear_pair::GearPair;
+pub use glider::Glider;
 pub use gravity_gradient_satellite::GravityGradientSatellite;
 pub use gyroscope::Gyroscope;
 pub use heavy_top::HeavyTop;
 pub use humanoid::SimpleHumanoid;
+pub use hypersonic_glider::HypersonicGlider;
 pub use jeffcott_rotor::JeffcottRotor;
 pub use kapitza_pendulum::KapitzaPendulum;
 pub use nut_on_screw::NutOnScrew;
@@ -302,6 +314,7 @@ pub use pendulum::Pendulum;
 pub use pendulum_chain::{QuintuplePendulum, TriplePendulum};
 pub use pendulum_on_collar::PendulumOnCollar;
 pub use planar_rotorcraft::PlanarRotorcraft;
+pub use quadrotor::Quadrotor;
 pub use quadruped::{AnymalB, Solo12};
 pub use rate_gyroscope::RateGyroscope;
 pub use rattleback::Rattleback;
@@ -318,5 +331,6 @@ pub use spring_chain::SpringChain;
 pub use stewart_platform::StewartPlatform;
 pub use tuned_suspension::TunedSuspension;
 pub use two_bodies::TwoBodies;
+pub use wheeled_satellite::WheeledSatellite;
 pub use wilberforce_pendulum::WilberforcePendulum;
 pub use windows::TwoWindows;

@@ -1,5 +1,7 @@
 //! The flight gallery: trim, modes and derivatives against published figures and closed forms.
 
+#[path = "flight/craft.rs"]
+mod craft;
 #[path = "flight/cruise.rs"]
 mod cruise;
 #[path = "flight/fighter.rs"]
