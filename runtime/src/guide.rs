@@ -3,6 +3,7 @@
 //! | chapter | about |
 //! | --- | --- |
 //! | [`first_mechanism`] | a pendulum, from its declaration to its motion; a controller |
+//! | [`recipes`] | how do I …? |
 //! | [`language`] | all that can stand in a mechanism's struct |
 //! | [`robots`] | mechanisms from URDF, MJCF and SDF files |
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
@@ -19,6 +20,9 @@
 
 #[doc = include_str!("../guide/first_mechanism.md")]
 pub mod first_mechanism {}
+
+#[doc = include_str!("../guide/recipes.md")]
+pub mod recipes {}
 
 #[doc = include_str!("../guide/language.md")]
 pub mod language {}

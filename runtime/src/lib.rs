@@ -39,7 +39,8 @@
 //!
 //! # Where to read on
 //!
-//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), and has chapters on the
+//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), answers
+//! [how do I …?](guide/recipes/index.html), and has chapters on the
 //! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
 //! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
 //! [simulating](guide/simulating/index.html), [control](guide/control/index.html), [batches](guide/batches/index.html) of states,
