@@ -1,97 +1,16 @@
-//! Geometry for contact → shapes that contacts name.
+//! Geometry for contact → shapes that contacts name, and contacts with the planes of the world.
 
 use super::body::Shaped;
 use super::defaults::Element;
 use super::reader::{Reader, origin};
-use crate::diag::Place;
+use super::touch::{Law, Plane, Touching};
 use crate::import::context::Cx;
 use crate::import::element::place;
-use crate::import::pose::{Pose, apply};
+use crate::import::pose::Pose;
 use crate::import::robot::{FileCollision, unused};
+use crate::syntax::Shape;
 use crate::syntax::contact::TOUCHES;
-use crate::syntax::{Contact, Expr, ExprKind, GROUND, Name, Shape};
-use std::cmp::Ordering;
 use std::collections::BTreeSet;
-
-/// What a shape says of its contacts.
-pub(super) struct Law {
-    /// `contype` and `conaffinity`.
-    bits: [u32; 2],
-    priority: f64,
-    /// One without friction, three with that of slip, more with those of spin and rolling.
-    dimensions: f64,
-    /// Of slip.
-    friction: f64,
-}
-
-/// A plane of the world.
-pub(super) struct Plane {
-    name: String,
-    pose: Pose,
-    law: Law,
-}
-
-/// A shape of a body.
-pub(super) struct Touching {
-    link: usize,
-    /// Which of the body's shapes it is.
-    number: usize,
-    name: Option<String>,
-    law: Law,
-    place: Place,
-}
-
-impl Law {
-    fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
-        let mut of =
-            |attribute: &str, usual: f64| shape.number(attribute, cx).map_or(usual, |found| found.value);
-        let (bits, priority) =
-            ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
-        let dimensions = of("condim", 3.0);
-        let usual = [1.0, 0.005, 0.0001];
-        let [friction, ..] = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
-        Law { bits, priority, dimensions, friction }
-    }
-
-    fn meets(&self, other: &Law) -> bool {
-        self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
-    }
-
-    /// The larger coefficient in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact").
-    fn friction_with(&self, other: &Law) -> f64 {
-        let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
-            Ordering::Greater => (self.dimensions, self.friction),
-            Ordering::Less => (other.dimensions, other.friction),
-            Ordering::Equal => (self.dimensions.max(other.dimensions), self.friction.max(other.friction)),
-        };
-        if dimensions < 3.0 { 0.0 } else { friction }
-    }
-}
-
-impl Touching {
-    /// Its contact with a plane.
-    fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
-        let at = &self.place;
-        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
-        let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-        let method = |of: Expr, word: &str, argument: Expr| Expr {
-            kind: ExprKind::Method(Box::new(of), named(word), vec![argument]),
-            place: at.clone(),
-        };
-        let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
-        let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
-        let friction = self.law.friction_with(&plane.law);
-        Contact {
-            name: named(&name),
-            first: method(body(link), "collision", Expr::number(self.number as f64, at)),
-            second: method(point, "plane", normal),
-            friction: (friction != 0.0).then(|| Expr::number(friction, at)),
-            restitution: None,
-            soft: None,
-            of_file: true,
-        }
-    }
-}
 
 impl<'a> Reader<'a> {
     /// Adds those shapes of a link that touch others, if contacts name any.
@@ -133,7 +52,7 @@ impl<'a> Reader<'a> {
     pub(super) fn add_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         for (shape, outer) in shapes {
             let law = Law::read(shape, cx);
-            if !self.options.contacts || shape.text("type") != Some("plane") || law.bits == [0; 2] {
+            if !self.options.contacts || shape.text("type") != Some("plane") || law.touches_nothing() {
                 self.count("geometry of the ground", 1);
                 continue;
             }

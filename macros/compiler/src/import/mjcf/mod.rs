@@ -32,6 +32,7 @@ mod mesh;
 mod reader;
 mod settings;
 mod tendon;
+mod touch;
 mod visual;
 
 /// What a file may hold.

@@ -1,10 +1,10 @@
 //! What is read of a file, while it is read.
 
-use super::contact::{Plane, Touching};
 use super::defaults::Defaults;
 use super::geometry::Mass;
 use super::mesh::Meshes;
 use super::settings::Settings;
+use super::touch::{Plane, Touching};
 use crate::diag::Place;
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, roll_pitch_yaw, scale};

@@ -1,0 +1,95 @@
+//! What shapes say of their contacts → contacts with planes.
+
+use super::defaults::Element;
+use crate::diag::Place;
+use crate::import::context::Cx;
+use crate::import::pose::{Pose, apply};
+use crate::syntax::{Contact, Expr, ExprKind, GROUND, Name};
+use std::cmp::Ordering;
+
+/// What a shape says of its contacts.
+pub(super) struct Law {
+    /// `contype` and `conaffinity`.
+    bits: [u32; 2],
+    priority: f64,
+    /// One without friction, three with that of slip, more with those of spin and rolling.
+    dimensions: f64,
+    /// Of slip.
+    friction: f64,
+}
+
+/// A plane of the world.
+pub(super) struct Plane {
+    pub(super) name: String,
+    pub(super) pose: Pose,
+    pub(super) law: Law,
+}
+
+/// A shape of a body.
+pub(super) struct Touching {
+    pub(super) link: usize,
+    /// Which of the body's shapes it is.
+    pub(super) number: usize,
+    pub(super) name: Option<String>,
+    pub(super) law: Law,
+    pub(super) place: Place,
+}
+
+impl Law {
+    /// What a shape says, with its defaults.
+    pub(super) fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
+        let mut of =
+            |attribute: &str, usual: f64| shape.number(attribute, cx).map_or(usual, |found| found.value);
+        let (bits, priority) =
+            ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
+        let dimensions = of("condim", 3.0);
+        let usual = [1.0, 0.005, 0.0001];
+        let [friction, ..] = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
+        Law { bits, priority, dimensions, friction }
+    }
+
+    /// True if its masks let nothing touch it.
+    pub(super) fn touches_nothing(&self) -> bool {
+        self.bits == [0; 2]
+    }
+
+    /// True if the masks of two shapes let them touch.
+    pub(super) fn meets(&self, other: &Law) -> bool {
+        self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
+    }
+
+    /// The larger coefficient in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact").
+    fn friction_with(&self, other: &Law) -> f64 {
+        let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
+            Ordering::Greater => (self.dimensions, self.friction),
+            Ordering::Less => (other.dimensions, other.friction),
+            Ordering::Equal => (self.dimensions.max(other.dimensions), self.friction.max(other.friction)),
+        };
+        if dimensions < 3.0 { 0.0 } else { friction }
+    }
+}
+
+impl Touching {
+    /// Its contact with a plane.
+    pub(super) fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
+        let at = &self.place;
+        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
+        let method = |of: Expr, word: &str, argument: Expr| Expr {
+            kind: ExprKind::Method(Box::new(of), named(word), vec![argument]),
+            place: at.clone(),
+        };
+        let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
+        let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
+        let friction = self.law.friction_with(&plane.law);
+        Contact {
+            name: named(&name),
+            first: method(body(link), "collision", Expr::number(self.number as f64, at)),
+            second: method(point, "plane", normal),
+            friction: (friction != 0.0).then(|| Expr::number(friction, at)),
+            restitution: None,
+            soft: None,
+            of_file: true,
+        }
+    }
+}
