@@ -71,6 +71,11 @@ pub enum Error {
         /// The eigenvalue of the mode.
         mode: Complex<f64>,
     },
+    /// A complex pole without its conjugate, or a pole that is not finite.
+    Unpaired {
+        /// The pole.
+        pole: Complex<f64>,
+    },
     /// A matrix cannot be inverted where it must be.
     Singular {
         /// The matrix or equation.
@@ -158,6 +163,9 @@ impl fmt::Display for Error {
             Self::Unstable { pole } => write!(f, "not stable: the pole {pole}"),
             Self::Unstabilizable { mode } => write!(f, "no input moves the mode {mode}"),
             Self::Undetectable { mode } => write!(f, "no output shows the mode {mode}"),
+            Self::Unpaired { pole } => {
+                write!(f, "the pole {pole} is not finite, or comes without its conjugate")
+            }
             Self::Singular { what } => write!(f, "{what} is singular"),
             Self::Indefinite { matrix } => write!(f, "{matrix} is not symmetric and positive"),
             Self::AlgebraicLoop => {

@@ -38,6 +38,7 @@ mod modes;
 mod norms;
 
 pub mod picture;
+mod placement;
 mod polynomial;
 mod regulator;
 mod response;

@@ -21,6 +21,7 @@ pub use logarithm::logarithm;
 pub use lyapunov::{discrete_lyapunov, discrete_sylvester, lyapunov, sylvester};
 pub use rank::rank;
 pub(crate) use rank::{Compression, smallest_singular};
+pub(crate) use riccati::is_fixed;
 pub use riccati::{Cost, Riccati, discrete_riccati, riccati};
 pub(crate) use schur::Schur;
 

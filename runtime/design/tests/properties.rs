@@ -315,3 +315,34 @@ fn connections() {
     let direct = StateSpace::gain(dmatrix![1.0]).unwrap();
     assert_eq!(direct.feedback_gain(&dmatrix![-1.0]), Err(Error::AlgebraicLoop));
 }
+
+/// `det(s I − A + B K) = Π (s − pᵢ)` away from all poles, with repeated ones and with those that are there already.
+#[test]
+fn poles_are_put_where_they_should_be() {
+    let mut random = Random(31);
+    for k in 0..60 {
+        let (n, m) = (2 + k % 6, 1 + k % 3);
+        let system = random.system(n, m, 1, if k % 4 == 3 { 1.0 } else { 0.0 });
+        let mut poles: Vec<C> = match k % 5 {
+            4 => system.poles().unwrap(),
+            3 => vec![C::new(-1.0, 0.0); n.min(2)],
+            _ => vec![C::new(-1.0, 2.0), C::new(-1.0, -2.0)],
+        };
+        (poles.len()..n).for_each(|i| poles.push(C::new(-2.0 - 0.7 * i as f64, 0.0)));
+        let gain = system.place(&poles).unwrap();
+        let closed = (system.a() - system.b() * &gain).map(|x| C::new(x, 0.0));
+        for s in [C::new(0.5, 1.5), C::new(3.0, -0.4), C::new(-1.2, 5.0)] {
+            let found = (DMatrix::identity(n, n) * s - &closed).determinant();
+            let expected: C = poles.iter().map(|pole| s - pole).product();
+            assert!((found - expected).norm() < 1e-6 * expected.norm(), "{k}: {found} {expected}");
+        }
+    }
+    let fixed =
+        StateSpace::new(dmatrix![-3.0, 0.0; 0.0, 1.0], dmatrix![0.0; 1.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
+    let fixed = fixed.unwrap();
+    let (one, alone) = (C::new(-1.0, 0.0), C::new(-1.0, 1.0));
+    let Err(Error::Unstabilizable { mode }) = fixed.place(&[one, one]) else { panic!() };
+    assert!((mode - C::new(-3.0, 0.0)).norm() < 1e-12);
+    assert_eq!(fixed.place(&[one, alone]), Err(Error::Unpaired { pole: alone }));
+    assert!(matches!(fixed.place(&[one]), Err(Error::Count { expected: 2, found: 1, .. })));
+}
