@@ -69,6 +69,7 @@ use std::path::PathBuf;
 /// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
 /// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
 /// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
+/// | `momentum_derivatives` | adds derivatives of momenta and of their rates, which steps of implicit methods have in their Jacobians, and what `derivatives` adds |
 /// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' forces, contracted with factors, and what `derivatives` adds |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
 /// | `hamilton` | adds the Hamiltonian and the canonical equations as functions of configuration and momentum |

@@ -20,6 +20,14 @@ pub trait AsksForDerivatives<'a> {}
 )]
 pub trait AsksForSecondDerivatives<'a> {}
 
+/// A mechanism with the word `momentum_derivatives`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `momentum_derivatives`",
+    label = "this needs the word `momentum_derivatives`",
+    note = "add the word to the attribute: `#[mechanism(…, momentum_derivatives)]`"
+)]
+pub trait AsksForMomentumDerivatives<'a> {}
+
 /// A mechanism with the word `centroidal`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `centroidal`",
@@ -123,6 +131,14 @@ pub trait HasNoConstraints<'a> {}
     note = "its equations always have an answer: `constrained_dynamics`"
 )]
 pub trait HasSlipping<'a> {}
+
+/// A mechanism without contacts that slip.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has contacts that slip",
+    label = "only mechanisms whose friction does not follow from multipliers have this",
+    note = "`forward_dynamics_derivatives` takes the friction into account"
+)]
+pub trait HasNoSlipping<'a> {}
 
 /// A mechanism with contacts that open and close.
 #[diagnostic::on_unimplemented(

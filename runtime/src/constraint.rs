@@ -13,6 +13,7 @@ use nalgebra::{SMatrix, SVector};
 mod assemble;
 mod careful;
 mod complete;
+mod differentiable;
 mod layout;
 mod linearize;
 mod slipping;
@@ -23,6 +24,8 @@ mod stabilized;
 #[doc(hidden)]
 pub use assemble::{Loops, assemble};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
+pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
+pub(crate) use differentiable::{Frozen, column, each_column};
 #[doc(hidden)]
 pub use layout::{Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;

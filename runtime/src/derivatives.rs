@@ -1,6 +1,7 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
 use crate::blocks::{add_product, is_zero, product};
+use crate::constraint::{Frozen, Visitor};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{At, Mechanism, Real, Rheonomic};
@@ -25,6 +26,10 @@ pub type ByMotion<T, const NV: usize, const N: usize> =
     note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`"
 )]
 pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
+    /// There are [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
+    /// [`momentum_rate_derivatives`](Self::momentum_rate_derivatives): the word `momentum_derivatives` asks for them.
+    const MOMENTUM_DERIVATIVES: bool = false;
+
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
     fn integrate_derivatives(
         &self,
@@ -71,6 +76,34 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> ByMotion<Self::Scalar, NV, NU>;
+
+    /// `∂p/∂q` of [`generalized_momentum`](Mechanism::generalized_momentum); `∂p/∂v` is the mass matrix. NaN without
+    /// [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
+    fn generalized_momentum_derivatives(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV> {
+        unknown()
+    }
+
+    /// `(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Mechanism::momentum_rate). NaN without
+    /// [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
+    fn momentum_rate_derivatives(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        (unknown(), unknown())
+    }
+
+    /// Hands the mechanism to `visitor` with the numbers of its constraints, where it has derivatives of them; `None` elsewhere.
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
 
     /// The motion under the inputs `u` to first order.
     ///
@@ -131,6 +164,9 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
 pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Rheonomic<NQ, NV, NU>
 {
+    /// There are derivatives of momenta ([`Derivatives::MOMENTUM_DERIVATIVES`]).
+    const MOMENTUM_DERIVATIVES: bool = false;
+
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
     fn integrate_derivatives(
         &self,
@@ -178,6 +214,39 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> ByMotion<Self::Scalar, NV, NU>;
+
+    /// `∂p/∂q` of the generalized momentum ([`Derivatives::generalized_momentum_derivatives`]).
+    fn generalized_momentum_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV> {
+        unknown()
+    }
+
+    /// `(∂ṗ/∂q, ∂ṗ/∂v)` of its rate ([`Derivatives::momentum_rate_derivatives`]).
+    fn momentum_rate_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        (unknown(), unknown())
+    }
+
+    /// Hands the mechanism to `visitor` with the numbers of its constraints ([`Derivatives::visit_constraints`]).
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
+}
+
+/// What is not there.
+pub(crate) fn unknown<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+    SMatrix::repeat(constant(f64::NAN))
 }
 
 /// A motion under inputs to first order: how displacements `δq` (in body axes for ball and free joints) and changes of velocity
@@ -235,8 +304,17 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, N
 where
     M: Derivatives<NQ, NV, NU> + ?Sized,
 {
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
     each_function!(tangent, plain Derivatives, self => *self);
     each_function!(derivatives, plain Derivatives, self => *self);
+
+    fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        M::visit_constraints(self, visitor)
+    }
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
@@ -244,8 +322,17 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> RheonomicDerivatives<
 where
     M: Derivatives<NQ, NV, NU>,
 {
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
     each_function!(tangent, plain Derivatives, self => self);
     each_function!(derivatives, drop Derivatives, self => self);
+
+    fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        Derivatives::visit_constraints(self, visitor)
+    }
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU> for At<'_, M, T>
@@ -253,6 +340,15 @@ where
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(derivatives, at RheonomicDerivatives, self => self.mechanism, self.t);
+
+    fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        self.mechanism.visit_constraints(Frozen { visitor, t: self.t })
+    }
 }

@@ -35,12 +35,15 @@
 //! ```
 
 use crate::blocks::{add_product, product, zeros};
+use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
 use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives, column, entry};
-use crate::integrate::{Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Steered, System};
+use crate::integrate::{Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Steered, Step, System};
 use crate::private::{constant, to_f64};
 use crate::{At, Real, Rheonomic, at};
 use nalgebra::{SMatrix, SVector};
 
+mod implicit;
+mod projected;
 mod second;
 
 pub use second::{TwiceDifferentiableStep, second_order};
@@ -67,21 +70,61 @@ where
     S: FixedStep<T>,
 {
     method.check()?;
+    let step = taken(mechanism, method, t, q, v, u)?;
+    Ok((step.end.q, step.end.v))
+}
+
+/// A step with what leads through it.
+fn taken<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<Step<T, NQ, NV>, Error>
+where
+    T: Real,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    S: FixedStep<T>,
+{
     // Counted from its own start, a step is as long as it is.
     let start = State { t: T::zero(), q: *q, v: *v };
     let mut memory = method.memory();
-    let step = if NU == 0 {
-        System::new(mechanism, NoInputs).advance(method, &mut memory, t, &start, None, false)
-    } else {
-        let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
-        System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
-    }?;
-    Ok((step.end.q, step.end.v))
+    if NU == 0 {
+        return System::new(mechanism, NoInputs).advance(method, &mut memory, t, &start, None, false);
+    }
+    let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+    System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
+}
+
+/// The state after a step of `h` seconds, and the velocity that leads there.
+fn advanced<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+    h: T,
+) -> Result<(Projected<T, NQ, NV>, SVector<T, NV>), Error>
+where
+    T: Real,
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    S: FixedStep<T>,
+{
+    let step = taken(mechanism, method, t, q, v, u)?;
+    Ok(((step.end.q, step.end.v), step.displacement.at(T::one()) / h))
 }
 
 /// One step of a method under inputs that are held, and its Jacobians ([`Transition`]), exact to rounding.
 ///
-/// The mechanism has no constraints. One that has does not compile here:
+/// Under constraints the Jacobians are those of the whole step, which brings its end onto them; columns are along all motions, also
+/// those that the constraints forbid, which the step takes away. What has to be known of a mechanism:
+///
+/// - `derivatives` for [`Rk4`], and for [`SemiImplicitEuler`] without constraints;
+/// - `momentum_derivatives` for [`ImplicitMidpoint`], and for [`SemiImplicitEuler`] under constraints. One that does not ask for them
+///   does not compile here:
 ///
 /// ```compile_fail
 /// # use linkwork::{discrete, prelude::*};
@@ -95,12 +138,14 @@ where
 /// #     wire: Holonomic,
 /// # }
 /// let (q, v, u) = ([1.0, 0.0].into(), [0.0, 1.0].into(), [].into());
-/// let step = discrete::transition(&Bead, &Rk4::step(0.01), 0.0, &q, &v, &u);
+/// let step = discrete::transition(&Bead {}, &ImplicitMidpoint::step(0.01), 0.0, &q, &v, &u);
 /// ```
+///
+/// Steps that are implicit are differentiated by the implicit function theorem on their equations. Contacts do not open or slip.
 ///
 /// # Errors
 ///
-/// Those of [`step`].
+/// Those of [`step`], and [`Error::Constraint`] with [`Singular`](crate::ConstraintError::Singular) where constraints lose rank.
 pub fn transition<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -120,9 +165,25 @@ where
             "a step with derivatives is one of a mechanism without contacts: leave them out by `contact::apart`, or use one that stays closed as a constraint"
         )
     };
-    const { assert!(!M::CONSTRAINED, "a step with derivatives is one of a mechanism without constraints") };
+    const {
+        assert!(
+            !(M::CONSTRAINED && M::SLIPPING),
+            "a step with derivatives is one of a mechanism whose contacts do not slip"
+        );
+        let [free, held] = S::IN_MOMENTA;
+        let in_momenta = if M::CONSTRAINED { held } else { free && !M::FEEDBACK };
+        assert!(
+            !in_momenta || M::MOMENTUM_DERIVATIVES,
+            "a step of this method needs derivatives of momenta: `#[mechanism(…, momentum_derivatives)]`"
+        );
+    }
     method.check()?;
-    let found = method.differentiate(mechanism, t, q, v, u);
+    let found = if M::CONSTRAINED {
+        let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
+        mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))?
+    } else {
+        method.differentiate(mechanism, t, q, v, u)?
+    };
     let is_finite = found.q.iter().chain(found.v.iter()).all(|x| x.is_finite());
     if is_finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
@@ -136,9 +197,64 @@ impl<T: Real> FixedStep<T> for crate::integrate::TimeStepping<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
-/// Methods whose steps have derivatives: [`SemiImplicitEuler`] and [`Rk4`].
+/// A step that starts at a time, in a state and under inputs.
+struct Through<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+    method: &'a S,
+    t: T,
+    q: &'a SVector<T, NQ>,
+    v: &'a SVector<T, NV>,
+    u: &'a SVector<T, NU>,
+}
+
+impl<S, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
+    for Through<'_, S, T, NQ, NV, NU>
+where
+    T: Real,
+    S: DifferentiableStep<T>,
+{
+    type Output = Result<Transition<T, NQ, NV, NU>, Error>;
+
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        self.method.differentiate_held(mechanism, self.t, self.q, self.v, self.u)
+    }
+}
+
+/// Methods whose steps have derivatives: [`SemiImplicitEuler`], [`Rk4`] and [`ImplicitMidpoint`].
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
-    /// A step with its derivatives; what [`transition`] calls.
+    /// Whether steps need derivatives of momenta, without constraints and with them.
+    const IN_MOMENTA: [bool; 2];
+
+    /// A step of a mechanism with constraints; what [`transition`] calls for one.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`transition`].
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
+
+    /// A step of one without; what [`transition`] calls.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`step`].
     fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -146,7 +262,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Transition<T, NQ, NV, NU>
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>;
 }
@@ -351,6 +467,8 @@ where
 }
 
 impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
+    const IN_MOMENTA: [bool; 2] = [false, true];
+
     fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -358,7 +476,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Transition<T, NQ, NV, NU>
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -372,10 +490,10 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         };
         let displacement = after.scaled(h);
         if NQ != NV {
-            return Start { mechanism, t, q, u }.end(&displacement, &after);
+            return Ok(Start { mechanism, t, q, u }.end(&displacement, &after));
         }
         // q + h v⁺.
-        Transition {
+        Ok(Transition {
             q: mechanism.integrate(q, &displacement.value),
             v: after.value,
             q_by_q: SMatrix::identity() + displacement.by_q,
@@ -385,11 +503,34 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
             v_by_v: after.by_v,
             v_by_u: after.by_u,
             chained: Some(h),
-        }
+        })
+    }
+
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        implicit::pushed(self, mechanism, t, q, v, u)
     }
 }
 
 impl<T: Real> DifferentiableStep<T> for Rk4<T> {
+    const IN_MOMENTA: [bool; 2] = [false; 2];
+
     fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -397,7 +538,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Transition<T, NQ, NV, NU>
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -419,6 +560,27 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         let sixth = h / constant(6.0);
         let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
         let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
-        start.end(&displacement, &v.plus(T::one(), &change))
+        Ok(start.end(&displacement, &v.plus(T::one(), &change)))
+    }
+
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        projected::projected(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
-use crate::derivatives::ByMotion;
+use crate::derivatives::{ByMotion, unknown};
 use crate::private::put_block;
 use crate::{Real, Rheonomic, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
@@ -534,6 +534,33 @@ where
             bordered(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
             by_inputs,
         )
+    }
+
+    /// Not known: nothing tells how momenta change with the states.
+    fn generalized_momentum_derivatives(
+        &self,
+        _t: M::Scalar,
+        _q: &SVector<M::Scalar, NQ>,
+        _v: &SVector<M::Scalar, NE>,
+    ) -> SMatrix<M::Scalar, NE, NE> {
+        unknown()
+    }
+
+    /// Nor is this.
+    fn momentum_rate_derivatives(
+        &self,
+        _t: M::Scalar,
+        _q: &SVector<M::Scalar, NQ>,
+        _v: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        (unknown(), unknown())
+    }
+
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::constraint::Visitor<M::Scalar, NQ, NE, NU>,
+    {
+        None
     }
 }
 

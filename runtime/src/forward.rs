@@ -47,6 +47,8 @@ macro_rules! each_function {
             inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NU>);
+            generalized_momentum_derivatives(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
+            momentum_rate_derivatives(q: NQ, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
         }
     };
     (second, $($how:tt)+) => {

@@ -78,7 +78,7 @@ extern crate std;
 #[doc(inline)]
 pub use batch::Batch;
 #[doc(inline)]
-pub use constraint::{Constrained, ConstraintError};
+pub use constraint::{Constrained, ConstrainedDerivatives, ConstraintError};
 pub use contact::Contacts;
 pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
 #[doc(inline)]

@@ -156,9 +156,12 @@ fn without(passes: Passes, skipped: Skipped) -> Passes {
 /// What there is only where forces do not depend on accelerations.
 fn without_momentum(requests: Requests) -> Option<&'static str> {
     let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
-    [(canonical, "Hamilton's equations"), (requests.second_derivatives, "second derivatives")]
-        .into_iter()
-        .find_map(|(asked, what)| asked.then_some(what))
+    let asked = [
+        (canonical, "Hamilton's equations"),
+        (requests.second_derivatives, "second derivatives"),
+        (requests.momentum_derivatives, "derivatives of momenta"),
+    ];
+    asked.into_iter().find_map(|(asked, what)| asked.then_some(what))
 }
 
 /// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Attribute, name and fields of mechanisms that have, between them, every function.
 const MECHANISMS: [(&str, &str, &str); 7] = [
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
+        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
         "m: f64,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -22,7 +22,7 @@ const MECHANISMS: [(&str, &str, &str); 7] = [
         #[output(hinge)] angle: Scalar,",
     ),
     (
-        "gravity = -9.81 * y, second_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
+        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Closed",
         "m: f64,
         #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
@@ -34,7 +34,7 @@ const MECHANISMS: [(&str, &str, &str); 7] = [
         #[joint(coupler.at(2 * x) -> rocker.at(2 * x), about = z)] last: Pin,",
     ),
     (
-        "gravity = -9.81 * z, second_derivatives, batch",
+        "gravity = -9.81 * z, second_derivatives, momentum_derivatives, batch",
         "Sliding",
         "mu: f64,
         #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
@@ -50,7 +50,7 @@ const MECHANISMS: [(&str, &str, &str); 7] = [
         #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,",
     ),
     (
-        "second_derivatives, batch",
+        "second_derivatives, momentum_derivatives, batch",
         "Driven",
         "#[joint(ground -> bead, along = x)] slide: Sleeve,
         #[particle(mass = 1)] bead: Particle,

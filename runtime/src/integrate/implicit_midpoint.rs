@@ -48,6 +48,11 @@ impl<T: Real> ImplicitMidpoint<T> {
     pub const fn step(step: T) -> Self {
         Self { step }
     }
+
+    /// The step.
+    pub(crate) fn length(&self) -> T {
+        self.step
+    }
 }
 
 /// Iterates from the estimate `v` of the midpoint's velocity.

@@ -4,7 +4,7 @@ use linkwork::prelude::*;
 
 /// Names that C does not have, a ball joint, functions of many kinds, a reaction.
 #[mechanism(
-    gravity = -9.81 * z, second_derivatives, sensitivities, centroidal, hamilton, conserved, regressor, packed
+    gravity = -9.81 * z, second_derivatives, momentum_derivatives, sensitivities, centroidal, hamilton, conserved, regressor, packed
 )]
 #[allow(non_snake_case, reason = "a name that is a macro in C")]
 pub struct Awkward {

@@ -136,6 +136,33 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
+const MOMENTA: &[Need] = &[Need::Inertia, Need::MomentumDerivatives];
+
+/// Derivatives of momenta.
+pub const MOMENTUM_ROWS: &[Row] = &[
+    Row::derived(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
+        Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Square(f.nv),
+            docs: vec![
+                "`∂p/∂q` of [`generalized_momentum`](Self::generalized_momentum); `∂p/∂v` is the mass matrix.",
+                TANGENT,
+            ],
+            ..Declaration::default()
+        }
+    }),
+    Row::derived(Id::MomentumRateDerivatives, "momentum_rate_derivatives", MOMENTA, |f| Declaration {
+        arguments: vec![Q, V],
+        shape: Shape::Pair(f.nv),
+        docs: vec![
+            "`(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Self::momentum_rate).",
+            TANGENT,
+            "By differentiation of Hamilton's second equation. Discrete steps that are implicit in momenta have these in their Jacobians.",
+        ],
+        ..Declaration::default()
+    }),
+];
+
 const SECOND: &[Need] = &[Need::Inertia, Need::SecondDerivatives];
 const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 

@@ -16,6 +16,8 @@ pub enum Need {
     Derivatives,
     /// The word `second_derivatives`.
     SecondDerivatives,
+    /// The word `momentum_derivatives`.
+    MomentumDerivatives,
     /// The word `centroidal`.
     Centroidal,
     /// The word `hamilton`.
@@ -38,6 +40,8 @@ pub enum Need {
     RegularMass,
     /// Contacts that slip.
     Slipping,
+    /// None of those.
+    NoSlipping,
     /// Contacts that open and close.
     Contacts,
     /// Parameters.
@@ -58,10 +62,11 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 24] = [
+    pub const ALL: [Need; 26] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
+        Need::MomentumDerivatives,
         Need::Centroidal,
         Need::Hamilton,
         Need::Conserved,
@@ -75,6 +80,7 @@ impl Need {
         Need::RegularMass,
         Need::Constraints,
         Need::Slipping,
+        Need::NoSlipping,
         Need::Contacts,
         Need::Parameters,
         Need::FileParameters,
@@ -93,6 +99,7 @@ impl Need {
             Need::NoConstraints => "HasNoConstraints",
             Need::Derivatives => "AsksForDerivatives",
             Need::SecondDerivatives => "AsksForSecondDerivatives",
+            Need::MomentumDerivatives => "AsksForMomentumDerivatives",
             Need::Centroidal => "AsksForCentroidal",
             Need::Hamilton => "AsksForHamilton",
             Need::Conserved => "AsksForConserved",
@@ -104,6 +111,7 @@ impl Need {
             Need::Drawing => "AsksForDrawing",
             Need::RegularMass => "HasRegularMass",
             Need::Slipping => "HasSlipping",
+            Need::NoSlipping => "HasNoSlipping",
             Need::Contacts => "HasContacts",
             Need::Parameters => "HasParameters",
             Need::FileParameters => "HasFileParameters",
@@ -215,6 +223,7 @@ impl Facts {
             Need::NoConstraints => self.constraints.is_none(),
             Need::Derivatives => self.requests.derivatives,
             Need::SecondDerivatives => self.requests.second_derivatives,
+            Need::MomentumDerivatives => self.requests.momentum_derivatives,
             Need::Centroidal => self.requests.centroidal,
             Need::Hamilton => self.requests.hamilton,
             Need::Conserved => self.requests.conserved,
@@ -226,6 +235,7 @@ impl Facts {
             Need::Drawing => self.requests.drawing,
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
+            Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),
             Need::Contacts => self.contacts[0] > 0,
             Need::Parameters => self.parameters > 0,
             Need::FileParameters => self.requests.file_parameters,

@@ -22,12 +22,13 @@ pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows in the order in which functions are generated: outputs come between both lists.
-const TABLES: [&[Row]; 10] = [
+const TABLES: [&[Row]; 11] = [
     dynamics::ROWS,
     constraints::ROWS,
     contacts::ROWS,
     requested::CENTROIDAL,
     derivatives::ROWS,
+    derivatives::MOMENTUM_ROWS,
     derivatives::SECOND_ROWS,
     requested::CANONICAL,
     requested::ROWS,

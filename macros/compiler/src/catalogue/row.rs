@@ -53,6 +53,8 @@ pub enum Id {
     MassMatrixInverse,
     CoriolisMatrix,
     InverseDynamicsDerivatives,
+    GeneralizedMomentumDerivatives,
+    MomentumRateDerivatives,
     ForwardDynamicsDerivatives,
     Linearize,
     AccelerationsAndInverse,

@@ -11,6 +11,10 @@ pub const CONSTRAINED: &[Row] = &[
     Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
     Row::written("forward_dynamics_derivatives", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
     Row::written("linearize", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
+    Row::written(
+        "multiplier_derivatives",
+        &[Need::Inertia, Need::Derivatives, Need::Constraints, Need::NoSlipping],
+    ),
     Row::written("assemble", &[Need::Constraints]),
     Row::written("complete_velocity", SOLVED),
     Row::written("constrained_dynamics", SOLVED),

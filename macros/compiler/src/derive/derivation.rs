@@ -173,6 +173,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::MassMatrixInverse => self.derivatives(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivatives(|d| plain(d.coriolis_matrix())),
             Id::InverseDynamicsDerivatives => self.derivatives(|d| plain(d.inverse_dynamics_derivatives())),
+            Id::GeneralizedMomentumDerivatives => self.derivatives(|d| plain(d.momentum_derivatives())),
+            Id::MomentumRateDerivatives => self.derivatives(|d| plain(d.momentum_rate_derivatives())),
             Id::ForwardDynamicsDerivatives => {
                 self.derivatives(|d| d.forward_dynamics_derivatives(known(Id::InverseDynamicsDerivatives)))
             }

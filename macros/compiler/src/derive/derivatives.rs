@@ -14,7 +14,7 @@ use crate::mechanics::derivatives::{
     symbolic,
 };
 use crate::mechanics::passive::passive_forces;
-use crate::mechanics::{self, added_mass, constraints, crba, forces, rnea};
+use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
 use crate::mechanism::{Chart, Model, Quantity};
 use crate::passes::{self, Form, Passes};
 use crate::vectorise::{self, Limbs};
@@ -100,6 +100,18 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn inverse_dynamics_derivatives(&self) -> Program {
         self.parts.inverse_dynamics()
+    }
+
+    pub(super) fn momentum_derivatives(&self) -> Program {
+        let Parts { model, joints, specialisation, .. } = &self.parts;
+        let p = momentum::generalized_momentum(model, joints, &mechanics::velocities(model));
+        specialisation.program(&columns(&symbolic::by_configuration(model, &p)))
+    }
+
+    pub(super) fn momentum_rate_derivatives(&self) -> Program {
+        let Parts { model, joints, specialisation, .. } = &self.parts;
+        let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
+        specialisation.program(&force_columns(&symbolic::derivatives(model, &rate)))
     }
 
     /// The derivatives of forward dynamics; those of inverse dynamics say which entries are always zero.

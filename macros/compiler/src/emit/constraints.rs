@@ -303,7 +303,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
             ::linkwork::__private::constrained_derivatives(&parts, {solve})
         }}
-        /// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
+        {multipliers}/// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
         ///
         /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
         ///
@@ -325,6 +325,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
                 preferred,
             }}.independent()
         }}",
+        multipliers = multiplier_derivatives(c, s),
         u = s.vector(nu),
         nx = np + ns,
         motion = if c.slipping.is_empty() {
@@ -334,6 +335,25 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         },
         jams = if c.slipping.is_empty() { "" } else { ", `Jammed` where friction jams" },
     );
+}
+
+/// How the multipliers change, where their derivatives are determined.
+fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
+    if !are_differentiable(c) {
+        return String::new();
+    }
+    let Words { q, v, t, any, .. } = Words::new(c, s);
+    let rows = s.shape(Shape::Matrix(c.names.len(), s.nv));
+    format!(
+        "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
+        ///
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Of redundant constraints the derivatives of least norm.
+        #[must_use]
+        pub fn multiplier_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({rows}, {rows}, {rows}) {{
+            ::linkwork::ConstrainedDerivatives::multiplier_derivatives(self, {any}, q, v, tau)
+        }}
+        "
+    )
 }
 
 /// Overrides of the trait's projection, and of the dynamics that can fail.
@@ -382,5 +402,40 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
         #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}
         #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}"
+    );
+}
+
+/// Whether derivatives of the equations determine those of accelerations and multipliers: forces of friction that follow from
+/// multipliers are not among them.
+pub fn are_differentiable(c: &Constraints) -> bool {
+    !c.names.is_empty() && c.slipping.is_empty()
+}
+
+/// What leads generic code from the trait of derivatives to that of constraints.
+pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if are_differentiable(c) {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn visit_constraints<V: ::linkwork::constraint::Visitor<{}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+                ::core::option::Option::Some(::linkwork::constraint::Visitor::visit(visitor, self))
+            }}",
+            s.scalar.name(),
+            s.nq,
+            s.nv,
+            s.nu
+        );
+    }
+}
+
+/// The trait of derivatives of constrained mechanisms.
+pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
+    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
+    let t = Argument::T.name();
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn equation_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: &{multipliers}) -> ::linkwork::constraint::EquationDerivatives<{scalar}, {nv}, {nc}> {{
+            ::linkwork::constraint::EquationDerivatives::from(self.__motion_derivatives({pass}q, v, a, &lambda.data.0[0]))
+        }}"
     );
 }

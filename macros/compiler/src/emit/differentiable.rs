@@ -138,7 +138,7 @@ pub fn write_second_trait(out: &mut String, s: &Signature<'_>) {
 }
 
 /// The trait's functions, in terms of the inherent ones.
-pub fn write_trait(out: &mut String, s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     let _ = writeln!(
@@ -147,12 +147,19 @@ pub fn write_trait(out: &mut String, s: &Signature<'_>) {
         #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ Self::tangent_rate_derivatives(self, dv, v) }}"
     );
     let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
-    for (name, arguments, result) in [
+    let pair = format!("({square}, {square})");
+    let mut functions = vec![
         ("coriolis_matrix", vec![Q, V], square.clone()),
-        ("inverse_dynamics_derivatives", vec![Q, V, A], format!("({square}, {square})")),
+        ("inverse_dynamics_derivatives", vec![Q, V, A], pair.clone()),
         ("forward_dynamics_derivatives", vec![Q, V, Tau], format!("({square}, {square}, {square})")),
         ("generalized_forces_derivatives", vec![Q, V, U], format!("({square}, {square}, {inputs})")),
-    ] {
+    ];
+    if i.facts.requests.momentum_derivatives {
+        out.push_str("const MOMENTUM_DERIVATIVES: bool = true;\n");
+        functions.push(("generalized_momentum_derivatives", vec![Q, V], square));
+        functions.push(("momentum_rate_derivatives", vec![Q, V], pair));
+    }
+    for (name, arguments, result) in functions {
         let arguments = s.timed(&arguments);
         let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
         let _ = writeln!(

@@ -39,7 +39,8 @@ pub fn write_impls(
     out.push_str("}\n");
     if i.facts.requests.derivatives {
         begin(out, if s.time { "RheonomicDerivatives" } else { "Derivatives" });
-        differentiable::write_trait(out, s);
+        differentiable::write_trait(out, i, s);
+        constraints::write_visit(out, &i.constraints, s);
         out.push_str("}\n");
     }
     if i.facts.requests.second_derivatives && i.facts.constraints.is_none() {
@@ -71,6 +72,14 @@ pub fn write_impls(
         );
         constraints::write_trait(out, &i.constraints, s);
         out.push_str("}\n");
+        if constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives {
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl{generics} ::linkwork::ConstrainedDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
+            );
+            constraints::write_derivatives_trait(out, &i.constraints, s);
+            out.push_str("}\n");
+        }
     }
 }
 

@@ -567,8 +567,9 @@ fn read_requests(
 ) -> Requests {
     let is_asked = |word| asked.iter().any(|(known, _)| *known == word);
     let requests = Requests {
-        derivatives: is_asked("derivatives") || is_asked("second_derivatives"),
+        derivatives: ["derivatives", "second_derivatives", "momentum_derivatives"].into_iter().any(is_asked),
         second_derivatives: is_asked("second_derivatives"),
+        momentum_derivatives: is_asked("momentum_derivatives"),
         centroidal: is_asked("centroidal"),
         hamilton: is_asked("hamilton"),
         conserved: is_asked("conserved"),

@@ -26,6 +26,8 @@ pub struct Requests {
     pub derivatives: bool,
     /// Second derivatives, too.
     pub second_derivatives: bool,
+    /// Derivatives of momenta and of their rates, too.
+    pub momentum_derivatives: bool,
     /// The matrix of the momentum, and its bias.
     pub centroidal: bool,
     /// Energy and canonical equations as functions of configuration and momentum.
@@ -247,9 +249,10 @@ pub struct FileOptions {
 }
 
 /// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 11] = [
+pub(super) const REQUESTS: [&str; 12] = [
     "derivatives",
     "second_derivatives",
+    "momentum_derivatives",
     "centroidal",
     "hamilton",
     "conserved",

@@ -29,7 +29,7 @@ pub fn add_resistance<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
 }
 
 /// A column for each velocity: the rate of the expressions where that velocity is one and all others are zero.
-fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
     let direction = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);

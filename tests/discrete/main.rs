@@ -5,8 +5,10 @@ use linkwork::prelude::*;
 use linkwork::{Frames, Rheonomic, RheonomicDerivatives, frame, index_of};
 use support::random::Random;
 
+mod implicit;
+
 /// A flying body with four rotors, of which two also turn it by drag, and a pendulum on a ball joint below.
-#[mechanism(gravity = -9.81 * z, derivatives)]
+#[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Carrier {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
     frame: Body,
@@ -25,7 +27,7 @@ struct Carrier {
 }
 
 /// A pendulum on a pivot that is driven up and down, with a motor.
-#[mechanism(gravity = -9.81 * y, derivatives)]
+#[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Driven {
     rate: f64,
     #[point(at = 0.1 * sin(rate * t) * y)]
@@ -43,7 +45,7 @@ struct Driven {
 struct Panda;
 
 /// A loop: its derivatives hold the constraints' forces.
-#[mechanism(gravity = -9.81 * y, derivatives)]
+#[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Linkage {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
     crank: Body,
@@ -68,14 +70,17 @@ fn direction<const N: usize>(k: usize, first: usize, size: f64) -> SVector<f64, 
     SVector::from_fn(|i, _| if first + i == k { size } else { 0.0 })
 }
 
-/// How `f` changes along each direction of state and inputs: central differences of fourth order.
+/// How `f` changes along each direction of state and inputs: central differences of eighth order.
 fn slopes<const NV: usize, const NU: usize, const R: usize>(
     f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
 ) -> Vec<SVector<f64, R>> {
-    let h = 5e-4;
+    let h = 1e-3;
+    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let along = |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
-    let slope =
-        |k| (along(k, -2.0 * h) - along(k, 2.0 * h) + (along(k, h) - along(k, -h)) * 8.0) / (12.0 * h);
+    let slope = |k| {
+        let change = |x: f64| along(k, x) - along(k, -x);
+        weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| change(x) * (w / h)).sum()
+    };
     (0..2 * NV + NU).map(slope).collect()
 }
 
@@ -83,7 +88,7 @@ fn assert_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
     let found: Vec<f64> = found.concat();
     assert_eq!(found.len(), expected.len(), "{what}");
     let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(worst < 1e-9 * scale, "{what}: off by {worst:e}, {found:?} instead of {expected:?}");
+    assert!(worst < 1e-10 * scale, "{what}: off by {worst:e}, {found:?} instead of {expected:?}");
 }
 
 /// The Jacobians of steps at random states against differences of steps.
@@ -102,37 +107,47 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform(1.2)));
         let v = SVector::from_fn(|_, _| random.uniform(speed));
         let u = SVector::from_fn(|_, _| random.uniform(push));
-        let t = random.uniform(1.0);
-        let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
-        let found = discrete::transition(m, method, t, &q, &v, &u).expect("it is regular");
-        let (next_q, next_v) = step(&q, &v, &u);
-        assert!(m.difference(&next_q, &found.q).amax() < 1e-14 && (next_v - found.v).amax() < 1e-13);
-        let moved = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
-            step(&m.integrate(&q, dq), &(v + dv), &(u + du))
-        };
-        let by_q: Vec<f64> = slopes(|dq, dv, du| m.difference(&next_q, &moved(dq, dv, du).0))
-            .iter()
-            .flatten()
-            .copied()
-            .collect();
-        let by_v: Vec<f64> = slopes(|dq, dv, du| moved(dq, dv, du).1).iter().flatten().copied().collect();
-        let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
-        let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
-        let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
-        assert_columns(&format!("{name}, {seed}: configuration"), &q_blocks, &by_q, scale(&q_blocks));
-        assert_columns(&format!("{name}, {seed}: velocity"), &v_blocks, &by_v, scale(&v_blocks));
-        // Adjoint products are those of the transposed blocks.
-        let (a, b) =
-            (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
-        let (back_q, back_v, back_u) = found.adjoint(&a, &b);
-        let (dq, dv) =
-            (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
-        let du = SVector::from_fn(|_, _| random.uniform(1.0));
-        let forth = a.dot(&(found.q_by_q * dq + found.q_by_v * dv + found.q_by_u * du))
-            + b.dot(&(found.v_by_q * dq + found.v_by_v * dv + found.v_by_u * du));
-        let back = back_q.dot(&dq) + back_v.dot(&dv) + back_u.dot(&du);
-        assert!((forth - back).abs() < 1e-11 * scale(&v_blocks), "{name}: {forth} {back}");
+        check_step(&format!("{name}, {seed}"), m, method, random.uniform(1.0), (&q, &v, &u));
     }
+}
+
+/// The Jacobians of one step against differences of steps.
+fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    method: &S,
+    t: f64,
+    (q, v, u): (&SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>),
+) where
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    S: DifferentiableStep<f64>,
+{
+    let mut random = Random::new(5);
+    let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
+    let found = discrete::transition(m, method, t, q, v, u).expect("it is regular");
+    let (next_q, next_v) = step(q, v, u);
+    assert!(m.difference(&next_q, &found.q).amax() < 1e-14 && (next_v - found.v).amax() < 1e-13);
+    let moved = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
+        step(&m.integrate(q, dq), &(v + dv), &(u + du))
+    };
+    let by_q: Vec<f64> =
+        slopes(|dq, dv, du| m.difference(&next_q, &moved(dq, dv, du).0)).iter().flatten().copied().collect();
+    let by_v: Vec<f64> = slopes(|dq, dv, du| moved(dq, dv, du).1).iter().flatten().copied().collect();
+    let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
+    let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
+    let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+    assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, scale(&q_blocks));
+    assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, scale(&v_blocks));
+    // Adjoint products are those of the transposed blocks.
+    let (a, b) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+    let (back_q, back_v, back_u) = found.adjoint(&a, &b);
+    let (dq, dv) =
+        (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+    let du = SVector::from_fn(|_, _| random.uniform(1.0));
+    let forth = a.dot(&(found.q_by_q * dq + found.q_by_v * dv + found.q_by_u * du))
+        + b.dot(&(found.v_by_q * dq + found.v_by_v * dv + found.v_by_u * du));
+    let back = back_q.dot(&dq) + back_v.dot(&dv) + back_u.dot(&du);
+    assert!((forth - back).abs() < 1e-11 * scale(&v_blocks), "{name}: {forth} {back}");
 }
 
 #[test]

@@ -1,0 +1,217 @@
+//! Derivatives of the equations of constrained motion, of accelerations, multipliers and projections, for generic code.
+
+use super::layout::MotionDerivatives;
+use super::{Constrained, Solution};
+use crate::blocks::zeros;
+use crate::{At, Real, RheonomicDerivatives};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)`: a row for each of the `NC` constraints.
+pub type MultiplierDerivatives<T, const NV: usize, const NC: usize> =
+    (SMatrix<T, NC, NV>, SMatrix<T, NC, NV>, SMatrix<T, NC, NV>);
+
+/// First derivatives of a mechanism's constrained equations. `#[mechanism(…, derivatives)]` implements it for mechanisms with
+/// constraints whose contacts do not slip.
+///
+/// A derivative by `q` is along motions of the configuration, whether the constraints allow them or not: column `i` is along
+/// `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Constrained`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no derivatives of constrained motion",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
+)]
+pub trait ConstrainedDerivatives<
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>: Constrained<NQ, NV, NU, NH, NC> + RheonomicDerivatives<NQ, NV, NU>
+{
+    /// Derivatives of `M a + h − Jᵀ λ`, of `J a + b` and of the constraints' rates, at any `a` and `λ`.
+    fn equation_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        lambda: &SVector<Self::Scalar, NC>,
+    ) -> EquationDerivatives<Self::Scalar, NV, NC>;
+
+    /// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics); of
+    /// redundant constraints those of least norm. Differentiating both equations gives
+    /// `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)`, `J δv̇ = −∂(J a + b)`.
+    fn multiplier_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> MultiplierDerivatives<Self::Scalar, NV, NC> {
+        let (a, lambda) = self.constrained_dynamics(t, q, v, tau);
+        let parts = self.equation_derivatives(t, q, v, &a, &lambda);
+        let mass = self.mass_matrix(t, q);
+        // Forces that hold the balance of a change of velocity, and are constraints' alone.
+        let of = |forces: &SMatrix<_, NV, NV>, gaps: &SMatrix<_, NC, NV>| {
+            each_column(|j| {
+                let p = -column(forces, j);
+                let change = self.constraint_response(t, q, &p, &column(gaps, j));
+                let held = tau + p - mass * change;
+                self.constrained_dynamics(t, q, v, &held).1 - lambda
+            })
+        };
+        (
+            of(&parts.forces_by_q, &parts.accelerations_by_q),
+            of(&parts.forces_by_v, &parts.accelerations_by_v),
+            of(&-SMatrix::identity(), &SMatrix::zeros()),
+        )
+    }
+}
+
+/// First derivatives of the equations `M a + h − Jᵀ λ = τ` and `J a + b = 0`, and of the rates `J v + …` of the constraints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquationDerivatives<T, const NV: usize, const NC: usize> {
+    /// `∂(M a + h − Jᵀ λ)/∂q`.
+    pub forces_by_q: SMatrix<T, NV, NV>,
+    /// `∂(M a + h − Jᵀ λ)/∂v`.
+    pub forces_by_v: SMatrix<T, NV, NV>,
+    /// `∂(J a + b)/∂q`.
+    pub accelerations_by_q: SMatrix<T, NC, NV>,
+    /// `∂(J a + b)/∂v`.
+    pub accelerations_by_v: SMatrix<T, NC, NV>,
+    /// `∂(J v + …)/∂q`.
+    pub rates_by_q: SMatrix<T, NC, NV>,
+}
+
+impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
+    for EquationDerivatives<T, NV, NC>
+{
+    fn from(parts: MotionDerivatives<T, NV, NC>) -> Self {
+        Self {
+            forces_by_q: SMatrix::from_array_storage(ArrayStorage(parts.forces_by_q)),
+            forces_by_v: SMatrix::from_array_storage(ArrayStorage(parts.forces_by_v)),
+            accelerations_by_q: SMatrix::from_array_storage(ArrayStorage(parts.bias_by_q)),
+            accelerations_by_v: SMatrix::from_array_storage(ArrayStorage(parts.bias_by_v)),
+            rates_by_q: SMatrix::from_array_storage(ArrayStorage(parts.rates_by_q)),
+        }
+    }
+}
+
+/// What is done with a mechanism whose constraints are of any number, by
+/// [`visit_constraints`](crate::Derivatives::visit_constraints): generic code that knows nothing of constraints reaches them.
+pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
+}
+
+/// A visitor of a mechanism at an instant.
+pub(crate) struct Frozen<V, T> {
+    pub(crate) visitor: V,
+    pub(crate) t: T,
+}
+
+impl<V, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU> for Frozen<V, T>
+where
+    T: Real,
+    V: Visitor<T, NQ, NV, NU>,
+{
+    type Output = V::Output;
+
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> V::Output
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        self.visitor.visit(&crate::at(mechanism, self.t))
+    }
+}
+
+/// A constrained mechanism at an instant is one at any time.
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    Constrained<NQ, NV, NU, NH, NC> for At<'_, M, T>
+where
+    T: Real,
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    const CONSTRAINTS: [&'static str; NC] = M::CONSTRAINTS;
+
+    fn constraint_residuals(&self, _t: T, q: &SVector<T, NQ>) -> SVector<T, NH> {
+        self.mechanism.constraint_residuals(self.t, q)
+    }
+
+    fn constraint_rates(&self, _t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NC> {
+        self.mechanism.constraint_rates(self.t, q, v)
+    }
+
+    fn constraint_jacobian(&self, _t: T, q: &SVector<T, NQ>) -> SMatrix<T, NC, NV> {
+        self.mechanism.constraint_jacobian(self.t, q)
+    }
+
+    fn constraint_bias(&self, _t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NC> {
+        self.mechanism.constraint_bias(self.t, q, v)
+    }
+
+    fn constrained_dynamics(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Solution<T, NV, NC> {
+        self.mechanism.constrained_dynamics(self.t, q, v, tau)
+    }
+
+    fn constraint_correction(&self, _t: T, q: &SVector<T, NQ>, gap: &SVector<T, NC>) -> SVector<T, NV> {
+        self.mechanism.constraint_correction(self.t, q, gap)
+    }
+
+    fn constraint_response(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        p: &SVector<T, NV>,
+        gap: &SVector<T, NC>,
+    ) -> SVector<T, NV> {
+        self.mechanism.constraint_response(self.t, q, p, gap)
+    }
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    ConstrainedDerivatives<NQ, NV, NU, NH, NC> for At<'_, M, T>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    fn equation_derivatives(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        a: &SVector<T, NV>,
+        lambda: &SVector<T, NC>,
+    ) -> EquationDerivatives<T, NV, NC> {
+        self.mechanism.equation_derivatives(self.t, q, v, a, lambda)
+    }
+}
+
+/// A column of a matrix.
+pub(crate) fn column<T: Real, const R: usize, const C: usize>(
+    m: &SMatrix<T, R, C>,
+    j: usize,
+) -> SVector<T, R> {
+    m.data.0.get(j).map_or_else(SVector::zeros, |column| SVector::from(*column))
+}
+
+/// A matrix by its columns.
+pub(crate) fn each_column<T: Real, const R: usize, const C: usize>(
+    column: impl Fn(usize) -> SVector<T, R>,
+) -> SMatrix<T, R, C> {
+    let mut m = zeros();
+    for (j, out) in m.data.0.iter_mut().enumerate() {
+        *out = column(j).data.0[0];
+    }
+    m
+}

@@ -1,0 +1,442 @@
+//! Steps that are implicit in momenta, by the implicit function theorem on their equations.
+//!
+//! With the velocity `w` of the midpoint `q_m = q ⊕ (h/2) w` and momenta `p(q, v) = M v + …`, whose rates are `f`, a step is
+//! `p(q_m, w) = p₀ + Jᵀ(q) λ + (h/2) f(q_m, w)`, `q⁺ = q ⊕ h w`,
+//! `p(q⁺, v⁺) = p(q_m, w) + (h/2) f(q_m, w) + Jᵀ(q⁺) μ`, with constraints on configurations that hold at `q⁺`, those on
+//! velocities at the midpoint, and all of their rates at the end ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
+
+use super::projected::{balance, check_regular, multipliers};
+use super::{DifferentiableStep, Transition, advanced};
+use crate::constraint::{ConstrainedDerivatives, column, each_column};
+use crate::derivatives::{ByMotion, Derivatives, RheonomicDerivatives};
+use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
+use crate::private::{constant, epsilon};
+use crate::{Real, at};
+use nalgebra::{SMatrix, SVector};
+
+/// Derivatives of the momentum by configuration and velocity.
+fn momentum<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    // The velocity itself stands for it.
+    if M::FEEDBACK {
+        return (SMatrix::zeros(), SMatrix::identity());
+    }
+    (m.generalized_momentum_derivatives(t, q, v), m.mass_matrix(t, q))
+}
+
+/// Derivatives of its rate under inputs.
+fn rate<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> ByMotion<T, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    if M::FEEDBACK {
+        let motion = at(m, t).linear_motion(q, v, u);
+        return (motion.by_q, motion.by_v, motion.by_u);
+    }
+    let (by_q, by_v) = m.momentum_rate_derivatives(t, q, v);
+    let (force_by_q, force_by_v, by_u) = m.generalized_forces_derivatives(t, q, v, u);
+    (by_q + force_by_q, by_v + force_by_v, by_u)
+}
+
+/// Derivatives of what velocities contribute to the rate.
+fn inertial<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+) -> ByMotion<T, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let (by_q, by_v) = m.momentum_rate_derivatives(t, q, v);
+    (by_q - m.momentum_rate_derivatives(t, q, &SVector::zeros()).0, by_v, SMatrix::zeros())
+}
+
+/// A step that has been made: its state before, its period, the velocity of its midpoint, and how the rate of the momentum there and
+/// the momentum at the start change.
+struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+    m: &'a M,
+    t: T,
+    h: T,
+    q: &'a SVector<T, NQ>,
+    w: SVector<T, NV>,
+    end: (SVector<T, NQ>, SVector<T, NV>),
+    rate: ByMotion<T, NV, NU>,
+    start: ByMotion<T, NV, NU>,
+    /// What the momentum gains before the midpoint, besides half a step of the rate.
+    kick: SVector<T, NV>,
+}
+
+/// How changes in the equations of the midpoint and of the end are answered.
+trait Answer<T, const NV: usize> {
+    /// The change of the midpoint's velocity by forces and by the configuration at the start.
+    fn middle<const C: usize>(
+        &self,
+        force: &SMatrix<T, NV, C>,
+        by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C>;
+    /// The change of the velocity at the end by momenta and by the configuration there.
+    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C>;
+}
+
+/// Without constraints.
+struct Free<T, const NV: usize> {
+    matrix: SMatrix<T, NV, NV>,
+    mass: SMatrix<T, NV, NV>,
+    momentum_by_q: SMatrix<T, NV, NV>,
+}
+
+impl<T: Real, const NV: usize> Answer<T, NV> for Free<T, NV> {
+    fn middle<const C: usize>(
+        &self,
+        force: &SMatrix<T, NV, C>,
+        _by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C> {
+        eliminated(self.matrix, *force)
+    }
+
+    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C> {
+        eliminated(self.mass, p - self.momentum_by_q * by_q)
+    }
+}
+
+/// With constraints.
+struct Held<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
+    m: &'a M,
+    matrix: SMatrix<T, NV, NV>,
+    /// How pushes at the start move the midpoint.
+    pushed: SMatrix<T, NV, NC>,
+    /// How those change with the configuration.
+    pushes_by_q: SMatrix<T, NV, NV>,
+    /// How the constraints of the step change with the velocity of the midpoint and with the configuration at the start.
+    by_w: SMatrix<T, NC, NV>,
+    by_q: SMatrix<T, NC, NV>,
+    /// The end, with how momentum less pushes, and rates, change with its configuration.
+    t: T,
+    end: &'a SVector<T, NQ>,
+    balance_by_q: SMatrix<T, NV, NV>,
+    rates_by_q: SMatrix<T, NC, NV>,
+}
+
+/// The same with the numbers of its traits.
+struct Numbered<
+    'a,
+    'b,
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(&'b Held<'a, M, T, NQ, NV, NC>);
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize> Answer<T, NV>
+    for Numbered<'_, '_, M, T, NQ, NV, NU, NH, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    fn middle<const C: usize>(
+        &self,
+        force: &SMatrix<T, NV, C>,
+        by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C> {
+        let held = self.0;
+        let free = eliminated(held.matrix, force + held.pushes_by_q * by_q);
+        let lacking = held.by_q * by_q + held.by_w * free;
+        free - held.pushed * eliminated(held.by_w * held.pushed, lacking)
+    }
+
+    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C> {
+        let held = self.0;
+        let (forces, gaps) = (p - held.balance_by_q * by_q, held.rates_by_q * by_q);
+        each_column(|j| held.m.constraint_response(held.t, held.end, &column(&forces, j), &column(&gaps, j)))
+    }
+}
+
+impl<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> Made<'a, M, T, NQ, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    fn half(&self) -> T {
+        self.h * constant(0.5)
+    }
+
+    /// The configuration of the midpoint.
+    fn middle(&self) -> SVector<T, NQ> {
+        self.m.integrate(self.q, &(self.w * self.half()))
+    }
+
+    /// The derivative of what the midpoint's equation lacks by its velocity.
+    fn matrix(&self) -> SMatrix<T, NV, NV> {
+        let half = self.half();
+        let (by_q, by_v) = momentum(self.m, self.t + half, &self.middle(), &self.w);
+        let moves = self.m.integrate_derivatives(&(self.w * half)).1;
+        by_v - self.rate.1 * half + (by_q - self.rate.0 * half) * moves * half
+    }
+
+    /// Changes of configuration and velocity after the step with those of the configuration before, of the momentum at the start and
+    /// of the rate.
+    fn changes<const C: usize>(
+        &self,
+        answer: &impl Answer<T, NV>,
+        by_q: &SMatrix<T, NV, C>,
+        start: &SMatrix<T, NV, C>,
+        rate: &SMatrix<T, NV, C>,
+    ) -> (SMatrix<T, NV, C>, SMatrix<T, NV, C>) {
+        let half = self.half();
+        let (p_by_q, mass) = momentum(self.m, self.t + half, &self.middle(), &self.w);
+        let (turned, moves) = self.m.integrate_derivatives(&(self.w * half));
+        let force = start + rate * half - (p_by_q - self.rate.0 * half) * turned * by_q;
+        let w = answer.middle(&force, by_q);
+        let middle = turned * by_q + moves * w * half;
+        let p = (p_by_q + self.rate.0 * half) * middle + (mass + self.rate.1 * half) * w + rate * half;
+        let (turned, moves) = self.m.integrate_derivatives(&(self.w * self.h));
+        let end = turned * by_q + moves * w * self.h;
+        (end, answer.end(&p, &end))
+    }
+
+    fn transition(&self, answer: &impl Answer<T, NV>) -> Transition<T, NQ, NV, NU> {
+        let none = SMatrix::zeros();
+        let (q_by_q, v_by_q) = self.changes(answer, &SMatrix::identity(), &self.start.0, &none);
+        let (q_by_v, v_by_v) = self.changes(answer, &none, &self.start.1, &none);
+        let (q_by_u, v_by_u) = self.changes(answer, &SMatrix::zeros(), &self.start.2, &self.rate.2);
+        let (q, v) = self.end;
+        Transition { q, v, q_by_q, q_by_v, q_by_u, v_by_q, v_by_v, v_by_u, chained: None }
+    }
+
+    fn free(&self) -> Transition<T, NQ, NV, NU> {
+        let (q, v) = &self.end;
+        let (momentum_by_q, mass) = momentum(self.m, self.t + self.h, q, v);
+        self.transition(&Free { matrix: self.matrix(), mass, momentum_by_q })
+    }
+
+    fn held<const NH: usize, const NC: usize>(
+        &self,
+        gain: &SVector<T, NV>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        let (m, t, h, half, still) = (self.m, self.t, self.h, self.half(), SVector::zeros());
+        let (middle, (end, after)) = (self.middle(), &self.end);
+        check_regular(m, t, self.q)?;
+        check_regular(m, t + h, end)?;
+        let matrix = self.matrix();
+        let own = m.generalized_momentum(t + half, &middle, &self.w);
+        let lambda = multipliers(m, t, self.q, &(own - self.kick - gain));
+        let jacobian = m.constraint_jacobian(t, self.q);
+        // Constraints on configurations at the end, divided by the period; those on velocities half-way.
+        let (mut by_w, mut by_q) = (SMatrix::<T, NC, NV>::zeros(), SMatrix::<T, NC, NV>::zeros());
+        let at_end = m.constraint_jacobian(t + h, end);
+        let (turned, moves) = m.integrate_derivatives(&(self.w * h));
+        let (of_w, of_q) = (at_end * moves, at_end * turned / h);
+        let (turned, moves) = m.integrate_derivatives(&(self.w * half));
+        let rates = m.equation_derivatives(t + half, &middle, &self.w, &still, &SVector::zeros()).rates_by_q;
+        let on_w = rates * moves * half + m.constraint_jacobian(t + half, &middle);
+        let on_q = rates * turned;
+        for k in 0..NC {
+            let (w, q) = if k < NH { (of_w.row(k), of_q.row(k)) } else { (on_w.row(k), on_q.row(k)) };
+            by_w.set_row(k, &w);
+            by_q.set_row(k, &q);
+        }
+        let p = own + gain;
+        let mu = multipliers(m, t + h, end, &(m.generalized_momentum(t + h, end, after) - p));
+        let held = Held {
+            m,
+            matrix,
+            pushed: eliminated(matrix, jacobian.transpose()),
+            pushes_by_q: -balance(m, t, self.q, &still, &lambda).0,
+            by_w,
+            by_q,
+            t: t + h,
+            end,
+            balance_by_q: momentum(m, t + h, end, after).0 + balance(m, t + h, end, &still, &mu).0,
+            rates_by_q: m.equation_derivatives(t + h, end, after, &still, &SVector::zeros()).rates_by_q,
+        };
+        Ok(self.transition(&Numbered::<M, T, NQ, NV, NU, NH, NC>(&held)))
+    }
+}
+
+impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
+    const IN_MOMENTA: [bool; 2] = [true; 2];
+
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        m: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        Ok(self.made(m, t, q, v, u)?.free())
+    }
+
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        m: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        let made = self.made(m, t, q, v, u)?;
+        let (now, middle) = (t + made.half(), made.middle());
+        let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
+        made.held(&(force * made.half()))
+    }
+}
+
+impl<T: Real> ImplicitMidpoint<T> {
+    fn made<'a, M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        m: &'a M,
+        t: T,
+        q: &'a SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Made<'a, M, T, NQ, NV, NU>, Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let h = self.length();
+        let (end, w) = advanced(m, self, t, q, v, u, h)?;
+        let half = h * constant(0.5);
+        let (by_q, by_v) = momentum(m, t, q, v);
+        let middle = m.integrate(q, &(w * half));
+        Ok(Made {
+            m,
+            t,
+            h,
+            q,
+            w,
+            end,
+            rate: rate(m, t + half, &middle, &w, u),
+            start: (by_q, by_v, SMatrix::zeros()),
+            kick: m.generalized_momentum(t, q, v),
+        })
+    }
+}
+
+/// A constrained step of the semi-implicit Euler method: forces push at its start, inertia goes on.
+pub(super) fn pushed<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    method: &SemiImplicitEuler<T>,
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<Transition<T, NQ, NV, NU>, Error>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let (h, still) = (method.length(), SVector::zeros());
+    let (end, w) = advanced(m, method, t, q, v, u, h)?;
+    let half = h * constant(0.5);
+    let (by_q, by_v) = momentum(m, t, q, v);
+    let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
+    let rest_by_q = m.momentum_rate_derivatives(t, q, &still).0;
+    let middle = m.integrate(q, &(w * half));
+    let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
+    let made = Made {
+        m,
+        t,
+        h,
+        q,
+        w,
+        end,
+        rate: inertial(m, t + half, &middle, &w),
+        start: (by_q + (force_by_q + rest_by_q) * h, by_v + force_by_v * h, force_by_u * h),
+        kick: m.generalized_momentum(t, q, v) + force * h,
+    };
+    let rest = m.momentum_rate(t + half, &middle, &still);
+    let gain = m.momentum_rate(t + half, &middle, &w) - rest;
+    made.held(&(gain * half))
+}
+
+/// `x` with `m x = b` by Gaussian elimination with complete pivots; what pivots of rounding alone would determine is zero.
+fn eliminated<T: Real, const N: usize, const C: usize>(
+    mut m: SMatrix<T, N, N>,
+    mut b: SMatrix<T, N, C>,
+) -> SMatrix<T, N, C> {
+    let mut order: [usize; N] = core::array::from_fn(|k| k);
+    let least = epsilon::<T>().sqrt() * constant(1e-2) * m.amax();
+    let mut rank = 0;
+    for k in 0..N {
+        let (mut row, mut chosen) = (k, k);
+        for j in k..N {
+            for i in k..N {
+                if m[(i, j)].abs() > m[(row, chosen)].abs() {
+                    (row, chosen) = (i, j);
+                }
+            }
+        }
+        if m[(row, chosen)].abs() <= least {
+            break;
+        }
+        m.swap_rows(k, row);
+        b.swap_rows(k, row);
+        m.swap_columns(k, chosen);
+        order.swap(k, chosen);
+        for i in k + 1..N {
+            let factor = m[(i, k)] / m[(k, k)];
+            for j in k..N {
+                let own = m[(k, j)];
+                m[(i, j)] -= factor * own;
+            }
+            for j in 0..C {
+                let own = b[(k, j)];
+                b[(i, j)] -= factor * own;
+            }
+        }
+        rank = k + 1;
+    }
+    let mut x = SMatrix::zeros();
+    for j in 0..C {
+        for k in (0..rank).rev() {
+            let rest = (k + 1..rank).fold(b[(k, j)], |sum, i| sum - m[(k, i)] * x[(order[i], j)]);
+            x[(order[k], j)] = rest / m[(k, k)];
+        }
+    }
+    x
+}

@@ -1,0 +1,157 @@
+//! Derivatives of the projection onto constraints that ends a step.
+
+use super::Transition;
+use crate::Real;
+use crate::blocks::product;
+use crate::constraint::{ConstrainedDerivatives, ConstraintError, EquationDerivatives, column, each_column};
+use crate::integrate::Error;
+use crate::private::{constant, epsilon, to_f64};
+use nalgebra::{SMatrix, SVector};
+
+/// Corrections of a configuration that are followed; the second is rounding for what steps leave.
+const MOST_CORRECTIONS: usize = 8;
+
+/// Multipliers `μ` of forces `p` that are constraints' alone, `p = Jᵀ μ`.
+pub(super) fn multipliers<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    p: &SVector<T, NV>,
+) -> SVector<T, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let still = SVector::zeros();
+    let rest = m.bias_forces(t, q, &still);
+    m.constrained_dynamics(t, q, &still, &(rest - p)).1 - m.constrained_dynamics(t, q, &still, &rest).1
+}
+
+/// Derivatives of `M x − Jᵀ λ` and `J x` by the configuration.
+pub(super) fn balance<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    x: &SVector<T, NV>,
+    lambda: &SVector<T, NC>,
+) -> (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let still = SVector::zeros();
+    let with: EquationDerivatives<T, NV, NC> = m.equation_derivatives(t, q, &still, x, lambda);
+    let without = m.equation_derivatives(t, q, &still, &still, &SVector::zeros());
+    (with.forces_by_q - without.forces_by_q, with.accelerations_by_q - without.accelerations_by_q)
+}
+
+/// The error of a step that begins or ends where constraints lose rank, as it counts time.
+pub(super) fn check_regular<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+) -> Result<(), Error>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    if m.is_nearly_singular(t, q, &SVector::zeros()) {
+        return Err(Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular });
+    }
+    Ok(())
+}
+
+/// A step brought onto the constraints at the time `t` of its end.
+///
+/// The configuration goes by Newton's corrections `M x = Jᵀ λ`, `J x = −φ`, the velocity by one, `J x = −(J v + …)`; each is
+/// differentiated as it is.
+pub(super) fn projected<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    free: Transition<T, NQ, NV, NU>,
+) -> Result<Transition<T, NQ, NV, NU>, Error>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let failed = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, &free.q, &free.v).map_err(failed)?;
+    check_regular(m, t, &q)?;
+    let mut near = free.q;
+    let mut moved = SMatrix::<T, NV, NV>::identity();
+    for _ in 0..MOST_CORRECTIONS {
+        let residuals = m.constraint_residuals(t, &near);
+        let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
+        let x = m.constraint_correction(t, &near, &gap);
+        let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
+        let own = multipliers(m, t, &near, &(m.mass_matrix(t, &near) * x));
+        let (forces, mut gaps) = balance(m, t, &near, &x, &own);
+        let jacobian = m.constraint_jacobian(t, &near);
+        for k in 0..NH {
+            gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
+        }
+        let change: SMatrix<T, NV, NV> =
+            each_column(|j| m.constraint_response(t, &near, &-column(&forces, j), &column(&gaps, j)));
+        let (by_q, by_x) = m.integrate_derivatives(&x);
+        moved = product(&(by_q + product(&by_x, &change)), &moved);
+        near = m.integrate(&near, &x);
+        if done {
+            break;
+        }
+    }
+    let x = v - free.v;
+    let own = multipliers(m, t, &q, &(m.mass_matrix(t, &q) * x));
+    let forces = balance(m, t, &q, &x, &own).0;
+    let still = SVector::zeros();
+    let rates = m.equation_derivatives(t, &q, &v, &still, &SVector::zeros()).rates_by_q;
+    let jacobian = m.constraint_jacobian(t, &q);
+    let none = SVector::zeros();
+    let turned: SMatrix<T, NV, NV> =
+        each_column(|j| m.constraint_response(t, &q, &-column(&forces, j), &column(&rates, j)));
+    let kept: SMatrix<T, NV, NV> = SMatrix::identity()
+        + each_column::<T, NV, NV>(|j| m.constraint_response(t, &q, &none, &column(&jacobian, j)));
+    let turned = product(&turned, &moved);
+    Ok(Transition {
+        q,
+        v,
+        q_by_q: product(&moved, &free.q_by_q),
+        q_by_v: product(&moved, &free.q_by_v),
+        q_by_u: product(&moved, &free.q_by_u),
+        v_by_q: product(&turned, &free.q_by_q) + product(&kept, &free.v_by_q),
+        v_by_v: product(&turned, &free.q_by_v) + product(&kept, &free.v_by_v),
+        v_by_u: product(&turned, &free.q_by_u) + product(&kept, &free.v_by_u),
+        chained: None,
+    })
+}

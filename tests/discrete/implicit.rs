@@ -1,0 +1,157 @@
+//! Steps that are implicit in momenta, and steps under constraints: their Jacobians against differences of steps, and those of
+//! multipliers.
+
+use super::{Carrier, Driven, Linkage, assert_columns, check_step, check_steps, slopes};
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+use linkwork::{ConstrainedDerivatives, Rheonomic, discrete};
+use support::random::Random;
+
+/// A ball that rolls on a tilted plane, pushed and turned, with a pendulum inside: constraints on velocities and on a configuration.
+#[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
+struct Ballbot {
+    radius: f64,
+    mass: f64,
+    #[body(mass = 2, com = 0.03 * z, inertia = diagonal(0.01, 0.02, 0.015))]
+    shell: Body,
+    #[body(mass = mass, com = -radius / 2 * z, inertia = diagonal(0.004, 0.005, 0.001))]
+    pendulum: Body,
+    #[joint(ground -> shell)]
+    flight: Free,
+    #[joint(shell -> pendulum, about = unit(x + 0.3 * y))]
+    hinge: Pin,
+    #[constraint(rolls(shell.sphere(radius), ground.plane(unit(0.2 * x + z))))]
+    contact: Rolling,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = shell.at(0.1 * x), along = shell.y)]
+    push: Force,
+}
+
+/// Two arms on ball joints whose ends are held together by a rod that becomes longer and shorter: a spatial loop, in time.
+#[mechanism(gravity = -9.81 * z, momentum_derivatives)]
+struct Arms {
+    span: f64,
+    mass: f64,
+    rate: f64,
+    #[body(mass = mass, com = 0.3 * x, inertia = diagonal(0.01, 0.05, 0.06))]
+    left: Body,
+    #[body(mass = 1.1, com = -0.4 * x + 0.1 * y, inertia = diagonal(0.03, 0.05, 0.05))]
+    right: Body,
+    #[joint(ground -> left)]
+    shoulder: Ball,
+    #[joint(ground.at(span * x) -> right, about = (y, z))]
+    other: Universal,
+    #[constraint(norm(r(right.at(-0.8 * x) / left.at(0.7 * x))) = span - 1.4 + 0.05 * sin(rate * t))]
+    rod: Holonomic,
+    #[acts(on = other.first)]
+    motor: Torque,
+}
+
+/// A loop of four pins in space: two of the constraints of each pin are redundant.
+#[mechanism(gravity = -9.81 * y, momentum_derivatives)]
+struct FourBar {
+    base: f64,
+    crank_length: f64,
+    mass: f64,
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    crank: Body,
+    #[body(mass = mass, com = x, inertia = rod(mass, 2, x))]
+    coupler: Body,
+    #[body(mass = 1.5, com = 0.75 * x, inertia = rod(1.5, 1.5, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    first: Pin,
+    #[joint(crank.at(crank_length * x) -> coupler, about = z)]
+    second: Pin,
+    #[joint(ground.at(base * x) -> rocker, about = z)]
+    third: Pin,
+    #[joint(rocker.at(1.5 * x) -> coupler.at(2 * x), about = z)]
+    closing: Pin,
+    #[acts(on = first)]
+    motor: Torque,
+}
+
+#[test]
+fn implicit_steps_change_as_their_jacobians_say() {
+    for h in [0.01, 0.03] {
+        check_steps(&format!("carrier, {h}"), &Carrier {}, &ImplicitMidpoint::step(h), 2.0, 5.0);
+        check_steps(&format!("driven, {h}"), &Driven { rate: 30.0 }, &ImplicitMidpoint::step(h), 2.0, 1.0);
+    }
+}
+
+/// All methods on a mechanism with constraints, at states that fulfil them: also along directions that they forbid.
+fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    name: &str,
+    m: &M,
+    random: &mut Random,
+    preferred: &SVector<f64, NQ>,
+) where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
+{
+    let t = random.uniform(0.3);
+    let mut near = m.integrate(preferred, &random.vector(0.1));
+    for _ in 0..10 {
+        let residuals = m.constraint_residuals(t, &near);
+        let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(0.0));
+        near = m.integrate(&near, &m.constraint_correction(t, &near, &gap));
+    }
+    let (q, v) = m.project(t, &near, &random.vector(1.0)).expect("it can be assembled");
+    let u = random.vector(2.0);
+    check_step(&format!("{name}, Rk4"), m, &Rk4::step(0.01), t, (&q, &v, &u));
+    check_step(&format!("{name}, Euler"), m, &SemiImplicitEuler::step(0.01), t, (&q, &v, &u));
+    check_step(&format!("{name}, midpoint"), m, &ImplicitMidpoint::step(0.01), t, (&q, &v, &u));
+    check_multipliers(name, m, t, (&q, &v, &random.vector(3.0)));
+}
+
+fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    name: &str,
+    m: &M,
+    t: f64,
+    (q, v, tau): (&SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>),
+) where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
+{
+    let (by_q, by_v, by_tau) = m.multiplier_derivatives(t, q, v, tau);
+    let expected = slopes(|dq, dv, dtau: &SVector<f64, NV>| {
+        m.constrained_dynamics(t, &m.integrate(q, dq), &(v + dv), &(tau + dtau)).1
+    });
+    let expected: Vec<f64> = expected.iter().flatten().copied().collect();
+    let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+    let found = [by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()];
+    assert_columns(&format!("{name}, multipliers"), &found, &expected, scale);
+}
+
+#[test]
+fn constrained_steps_change_as_their_jacobians_say() {
+    let mut random = Random::new(17);
+    let linkage = Linkage {};
+    let closed = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
+    check_constrained("linkage", &linkage, &mut random, &closed);
+    for k in 0..3 {
+        let mut near = |x: f64| x * (1.0 + random.uniform(0.15));
+        let bars = FourBar { base: near(1.8), crank_length: near(0.9), mass: near(2.0) };
+        let arms = Arms { span: near(1.9), mass: near(0.8), rate: near(5.0) };
+        let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
+        check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
+        let bent = arms.integrate(&Rheonomic::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
+        check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
+        let mut lifted = Mechanism::neutral(&ball);
+        lifted[2] = ball.radius;
+        check_constrained(&format!("ball, {k}"), &ball, &mut random, &lifted);
+    }
+}
+
+/// What a step takes away: its end fulfils the constraints whatever moves its start.
+#[test]
+fn ends_stay_on_constraints_to_first_order() {
+    let linkage = Linkage {};
+    let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
+    let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
+    let step = discrete::transition(&linkage, &ImplicitMidpoint::step(0.01), 0.0, &q, &v, &[3.0].into())
+        .expect("it moves");
+    let j = linkage.constraint_jacobian(&step.q);
+    for block in [step.q_by_q, step.q_by_v] {
+        assert!((j * block).amax() < 1e-11, "{}", j * block);
+    }
+}
