@@ -123,8 +123,8 @@ where
 /// those that the constraints forbid, which the step takes away. What has to be known of a mechanism:
 ///
 /// - `derivatives` for [`Rk4`], and for [`SemiImplicitEuler`] without constraints;
-/// - `momentum_derivatives` for [`ImplicitMidpoint`], and for [`SemiImplicitEuler`] under constraints. One that does not ask for them
-///   does not compile here:
+/// - `momentum_derivatives` for [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), and for [`SemiImplicitEuler`] under
+///   constraints. One that does not ask for them does not compile here:
 ///
 /// ```compile_fail
 /// # use linkwork::{discrete, prelude::*};
@@ -222,7 +222,7 @@ where
     }
 }
 
-/// Methods whose steps have derivatives: [`SemiImplicitEuler`], [`Rk4`] and [`ImplicitMidpoint`].
+/// Methods whose steps have derivatives: [`SemiImplicitEuler`], [`Rk4`] and [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint).
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// Whether steps need derivatives of momenta, without constraints and with them.
     const IN_MOMENTA: [bool; 2];
