@@ -280,6 +280,10 @@ pub enum Input {}
 /// of a file too. A limit exerts no force, but with `restitution`, the part of its speed that a coordinate keeps when it strikes, both
 /// bounds are stops: contacts named `name.from` and `name.to` ([`contact`](crate::contact)).
 ///
+/// A stop may be on an expression of coordinates and time as well, m: `on = norm(r(bob / peg)), to = length` is a rope, `on = left + right`
+/// one over a wheel without mass, `on = r1 * input + r2 * output, from = -play, to = play` teeth with play. Where a bound is struck the
+/// expression needs a slope, which a distance has not where it is zero.
+///
 /// Errors: numbers of which the lower is above the upper, and negative magnitudes, do not compile.
 #[doc(alias = "joint limit")]
 #[doc(alias = "range")]

@@ -95,3 +95,118 @@ fn a_piston_strikes_a_stop() {
         assert!((lost - 0.5 * (1.0 - e * e) * 4.0 / weight).abs() < 1e-12, "{lost}");
     }
 }
+
+/// A bob on a rope, which may be slack.
+#[mechanism(gravity = -9.81 * y)]
+struct Tethered {
+    length: f64,
+    #[particle(mass = 0.3)]
+    bob: Particle,
+    #[joint(ground -> bob, along = (x, y))]
+    place: Stage,
+    #[limit(on = norm(r(bob / ground)), to = length, restitution = 0)]
+    rope: Limit,
+}
+
+/// It falls from beside the peg until the rope is taut, which takes the velocity along the rope, and swings then.
+#[test]
+fn a_rope_becomes_taut() {
+    let m = Tethered { length: 1.0 };
+    assert_eq!(Tethered::CONTACTS, ["rope.to"]);
+    let run = simulate(&m)
+        .from([0.6, 0.0], [0.0; 2])
+        .method(EventDriven::new().tolerance(1e-11, 1e-11))
+        .sample_every(0.05)
+        .duration(2.0);
+    let taut = (1.6 / 9.81_f64).sqrt();
+    // Of the speed g t the part 0.6 is across the rope, 0.8 m below the peg.
+    let energy = 0.3 * 9.81 * (0.5 * 0.36 * 1.6 - 0.8);
+    let mut swings = 0;
+    for sample in run {
+        let sample = sample.unwrap();
+        let length = sample.q.norm();
+        if sample.t < taut {
+            assert!((sample.q[0] - 0.6).abs() < 1e-12 && length < 1.0);
+            continue;
+        }
+        let now = m.kinetic_energy(&sample.q, &sample.v) + m.potential_energy(&sample.q);
+        assert!((length - 1.0).abs() < 1e-9, "{length} at {}", sample.t);
+        assert!((now - energy).abs() < 1e-8, "{now} {energy} at {}", sample.t);
+        swings += 1;
+    }
+    assert!(swings > 30);
+}
+
+/// Two weights on a rope over a wheel without mass.
+#[mechanism(gravity = -9.81 * z)]
+struct Atwood {
+    #[particle(mass = 3)]
+    heavy: Particle,
+    #[particle(mass = 2)]
+    light: Particle,
+    #[joint(ground -> heavy, along = -z)]
+    left: Sleeve,
+    #[joint(ground.at(0.3 * x) -> light, along = -z)]
+    right: Sleeve,
+    #[limit(on = left + right, to = 2, restitution = 0)]
+    rope: Limit,
+}
+
+/// The rope is slack by 0.1 m: both fall. It pulls both to one speed then, which momentum along it gives, and the heavy one goes
+/// on down with `(m₁ − m₂) g / (m₁ + m₂)`.
+#[test]
+fn weights_on_a_rope_over_a_wheel() {
+    let fall = (0.1 / 9.81_f64).sqrt();
+    let run = simulate(&Atwood {}).from([1.0, 0.9], [0.0; 2]).method(EventDriven::new());
+    let end = run.duration(fall + 0.2).finish().unwrap();
+    let speed = 9.81 * fall * (3.0 - 2.0) / 5.0;
+    let acceleration = 9.81 / 5.0;
+    assert!((end.v[0] - (speed + acceleration * 0.2)).abs() < 1e-9, "{}", end.v);
+    assert!((end.v[0] + end.v[1]).abs() < 1e-12 && (end.q.sum() - 2.0).abs() < 1e-9, "{} {}", end.q, end.v);
+    // The rope carries 2 m₁ m₂ g / (m₁ + m₂).
+    let force = contact::acting(&Atwood {}, 0.0, &end.q, &end.v, &SVector::zeros()).unwrap();
+    assert!((force[0] - 2.4 * 9.81).abs() < 1e-6, "{force}");
+}
+
+/// A wheel drives another one by teeth with play.
+#[mechanism]
+struct Gears {
+    play: f64,
+    restitution: f64,
+    #[body(mass = 1, inertia = diagonal(1, 1, 0.02))]
+    first: Body,
+    #[body(mass = 1, inertia = diagonal(1, 1, 0.03))]
+    second: Body,
+    #[joint(ground -> first, about = z)]
+    input: Pin,
+    #[joint(ground.at(0.2 * x) -> second, about = z)]
+    output: Pin,
+    #[limit(on = 0.1 * input + 0.05 * output, from = -play, to = play, restitution = restitution)]
+    teeth: Limit,
+}
+
+/// The rattle of gears: at each impact the speed of the teeth is turned round by the coefficient of restitution, while
+/// `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` stays. Without restitution they stay together.
+#[test]
+fn gears_rattle_in_their_play() {
+    let kept = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
+    let teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
+    let start = SVector::from([3.0, 1.0]);
+    for (restitution, impacts) in [(1.0, 4), (0.5, 3), (0.0, 1)] {
+        let m = Gears { play: 0.004, restitution };
+        let method = EventDriven::new().tolerance(1e-12, 1e-12);
+        // From the middle of the play to the first impact, then from side to side ever more slowly.
+        let speed = teeth(&start);
+        let (mut t, mut now) = (0.004 / speed, speed);
+        for _ in 1..impacts {
+            now *= restitution;
+            t += 0.008 / now;
+        }
+        let run = simulate(&m).from([0.0; 2], start).method(method).duration(t * 1.0001);
+        let end = run.finish().unwrap();
+        let wanted = speed * restitution.powi(impacts) * if impacts % 2 == 0 { 1.0 } else { -1.0 };
+        assert!((teeth(&end.v) - wanted).abs() < 1e-9, "{} {wanted}", teeth(&end.v));
+        assert!((kept(&end.v) - kept(&start)).abs() < 1e-12);
+        assert!(m.contact_gaps(&end.q).min() > -1e-9);
+    }
+}

@@ -10,12 +10,34 @@ impl<'g> Builder<'_, 'g> {
     /// Adds all limits to the model.
     pub fn add_limits(&mut self, cx: &mut Diagnostics) {
         for limit in &self.description.limits {
+            if self.scope.is_moving(&limit.on) {
+                self.check_stop(limit, cx);
+                continue;
+            }
             let Some((coordinate, angle)) = self.coordinate(&limit.on, cx) else { continue };
             let bounds =
                 self.bounds(limit, angle == Some(true), cx).filter(|bounds| check(limit, bounds, cx));
             if let Some(bounds) = bounds {
                 self.bound(limit, &coordinate, bounds, cx);
             }
+        }
+    }
+
+    /// Reads the limit of an expression, which is a stop, for its mistakes alone.
+    fn check_stop(&self, limit: &syntax::Limit, cx: &mut Diagnostics) {
+        let others = [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)];
+        if let Some((key, e)) = others.into_iter().find_map(|(key, e)| Some((key, e.as_ref()?))) {
+            cx.error(
+                e.place.clone(),
+                format!("a `{key}` is that of a coordinate, and this is an expression"),
+            )
+            .help("write it in a limit of the joint");
+        } else if limit.restitution.is_none() {
+            cx.error(limit.on.place.clone(), "a limit of an expression is a stop, and has a restitution").help(
+                "add `restitution = e`, from 0 to 1: the part of the speed that is left when the bound is struck",
+            );
+        } else if let Some(bounds) = self.bounds(limit, false, cx) {
+            check(limit, &bounds, cx);
         }
     }
 

@@ -150,11 +150,8 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the stops at the bounds of a limit.
     fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
         let laws = self.laws(None, limit.restitution.as_ref(), &limit.name.text, cx);
-        let (Some((friction, restitution)), Some((c, angle))) = (laws, self.coordinate(&limit.on, cx)) else {
-            return;
-        };
+        let (Some(laws), Some((own, rate, turns))) = (laws, self.stopped(limit, cx)) else { return };
         let g = self.scope.graph;
-        let turns = angle == Some(true);
         let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
             // Mistakes are told where the limit is read.
             true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
@@ -162,13 +159,32 @@ impl<'g> Builder<'_, 'g> {
         };
         let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
         let bounds = bounds.map(|(word, e, side)| Some((word, value(e.as_ref()?)?, side)));
-        let (q, v) = (Quantity::Configuration(c.q).expr(g), Quantity::Velocity(c.v).expr(g));
         for (word, bound, side) in bounds.into_iter().flatten() {
-            let (own, rate) = (q * g.num(c.ratio) + g.num(c.offset), v * g.num(c.ratio));
             let gap = (own - bound) * g.num(side);
             let name = format!("{}.{word}", limit.name.text);
-            self.push_contact(name, gap, turns, vec![rate * g.num(side)], (friction, restitution));
+            self.push_contact(name, gap, turns, vec![rate * g.num(side)], laws);
         }
+    }
+
+    /// What a limit stops: its value, its rate, and whether it is an angle.
+    fn stopped(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
+        let g = self.scope.graph;
+        if !self.scope.is_moving(&limit.on) {
+            let (c, angle) = self.coordinate(&limit.on, cx)?;
+            let (q, v) = (Quantity::Configuration(c.q).expr(g), Quantity::Velocity(c.v).expr(g));
+            let ratio = g.num(c.ratio);
+            return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
+        }
+        let value = self
+            .scope
+            .in_context(Context::new(Allowed::Placement, None), |scope| scope.scalar(&limit.on, cx))?;
+        let rate = time_derivative(self.model.space(), value);
+        if velocity_gradient(rate).is_empty() {
+            cx.error(limit.on.place.clone(), "nothing moves what is limited")
+                .help("a limit is on an expression of coordinates, as a distance `norm(r(ball / anchor))`");
+            return None;
+        }
+        Some((value, rate, false))
     }
 
     fn push_contact(

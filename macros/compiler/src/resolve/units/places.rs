@@ -224,8 +224,12 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn limit(&mut self, limit: &'a Limit, inference: &Inference<'a>) {
-        let Some(q) = coordinate(&limit.on, inference) else { return };
+    fn limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
+        let q = coordinate(&limit.on, inference).unwrap_or_else(|| {
+            let unknown = Dimension::variable(inference.system.variable());
+            self.add(&limit.on, &unknown, "");
+            unknown
+        });
         let [length, speed, effort] = match (q.is_plain(), q.is_known()) {
             (true, _) => ["rad", "rad/s", "N·m"],
             (_, true) => ["m", "m/s", "N"],
