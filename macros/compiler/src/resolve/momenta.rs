@@ -61,6 +61,8 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         match (kinematics.places.get(name), kinematics.masses.get(name)) {
             (Some(placed), Some(masses)) => Some((placed.clone(), *masses)),
+            // Its figures could not be read, and that was told.
+            (Some(_), None) if !cx.is_empty() && self.bodies.contains(name) => None,
             (Some(_), None) => {
                 cx.error(e.place.clone(), format!("`{name}` has no mass")).help("name a body or a particle");
                 None
