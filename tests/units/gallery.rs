@@ -32,7 +32,7 @@ impl Source {
             let unit = first.split(", ").map(str::trim).find(|part| is_unit(part))?;
             Some((f.ident.as_ref()?.to_string(), unit.to_string()))
         };
-        self.item.fields.iter().filter_map(field).collect()
+        self.item.fields.iter().filter(|f| is_parameter(f)).filter_map(field).collect()
     }
 
     /// The same with another text for one occurrence of a parameter; none if there are not so many.
@@ -54,8 +54,9 @@ impl Source {
     /// The same with the unit of every parameter but one.
     fn pinned(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
-        for (field, unit) in item.fields.iter_mut().zip(units) {
-            let is_free = field.attrs.iter().all(|attribute| !attribute.path().is_ident("unit"));
+        for (field, unit) in item.fields.iter_mut().filter(|field| is_parameter(field)).zip(units) {
+            let is_free =
+                field.attrs.iter().all(|a| !a.path().is_ident("unit") && !a.path().is_ident("state"));
             if is_free && unit != "any" && field.ident.as_ref().is_some_and(|name| name != except) {
                 let unit: TokenStream =
                     unit.replace('·', "*").replace('²', "2").replace('³', "3").parse().unwrap();
@@ -65,16 +66,29 @@ impl Source {
         Source { arguments: self.arguments.clone(), item }
     }
 
+    fn has_tables(&self) -> bool {
+        self.item
+            .fields
+            .iter()
+            .any(|f| matches!(&f.ty, syn::Type::Path(path) if path.path.segments[0].ident == "Table"))
+    }
+
     /// The parameters with their units.
     fn parameters(&self) -> Vec<(String, String)> {
         let units = self.units().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
-        let fields = self.item.fields.iter().map(|f| f.ident.as_ref().unwrap().to_string());
+        let fields = self.item.fields.iter().filter(|field| is_parameter(field));
+        let fields = fields.map(|field| field.ident.as_ref().unwrap().to_string());
         fields.zip(units.parameters).collect()
     }
 
     fn units(&self) -> Result<Units, Vec<String>> {
         units(&self.arguments.to_string(), &self.item.to_token_stream().to_string())
     }
+}
+
+/// Parameters stand before all else but tables; states are parameters, too.
+fn is_parameter(field: &syn::Field) -> bool {
+    matches!(&field.ty, syn::Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("State"))
 }
 
 fn is_unit(text: &str) -> bool {
@@ -127,7 +141,10 @@ fn gallery() -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/src");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
-    let all = paths.iter().flat_map(|path| sources(&fs::read_to_string(path).unwrap()));
+    let all = paths
+        .iter()
+        .filter(|path| path.is_file())
+        .flat_map(|path| sources(&fs::read_to_string(path).unwrap()));
     all.filter(|source| !source.documented().is_empty()).collect()
 }
 
@@ -191,7 +208,8 @@ fn dimension(unit: &str) -> [i32; 3] {
 /// Parameters that have a unit, and their occurrences with another text in turn.
 fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
-    for source in gallery() {
+    // Tables take any unit, and so does what stands beside them.
+    for source in gallery().into_iter().filter(|source| !source.has_tables()) {
         let parameters = source.parameters();
         let units: Vec<String> = parameters.iter().map(|(_, unit)| unit.clone()).collect();
         for (parameter, unit) in
