@@ -1,6 +1,7 @@
 //! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming adds to costs.
 
-use super::{DifferentiableStep, Sensitive, Start};
+use super::DifferentiableStep;
+use super::explicit::{Sensitive, Start};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;

@@ -1,0 +1,250 @@
+//! Explicit steps, whose derivatives are carried forwards through their stages.
+
+use super::{DifferentiableStep, Transition, implicit, projected};
+use crate::blocks::{add_product, product, zeros};
+use crate::constraint::ConstrainedDerivatives;
+use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives};
+use crate::integrate::{Error, Rk4, SemiImplicitEuler};
+use crate::private::constant;
+use crate::{At, Real, at};
+use nalgebra::{SMatrix, SVector};
+
+/// How a vector of the tangent space changes with the state and the inputs at the start of a step.
+#[derive(Clone, Copy)]
+pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
+    pub(super) value: SVector<T, NV>,
+    pub(super) by_q: SMatrix<T, NV, NV>,
+    pub(super) by_v: SMatrix<T, NV, NV>,
+    pub(super) by_u: SMatrix<T, NV, NU>,
+}
+
+impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
+    /// The velocity at the start.
+    pub(super) fn velocity(v: &SVector<T, NV>) -> Self {
+        let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
+        Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
+    }
+
+    /// `self + s other`.
+    pub(super) fn plus(&self, s: T, other: &Self) -> Self {
+        Self {
+            value: self.value + other.value * s,
+            by_q: self.by_q + other.by_q * s,
+            by_v: self.by_v + other.by_v * s,
+            by_u: self.by_u + other.by_u * s,
+        }
+    }
+
+    pub(super) fn scaled(&self, s: T) -> Self {
+        Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
+    }
+
+    /// A function of two of these, by its derivatives.
+    pub(super) fn of(
+        value: SVector<T, NV>,
+        (by_a, a): (&SMatrix<T, NV, NV>, &Self),
+        (by_b, b): (&SMatrix<T, NV, NV>, &Self),
+    ) -> Self {
+        let mut sum = Self { value, by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        for (by, part) in [(by_a, a), (by_b, b)] {
+            add_product(&mut sum.by_q, by, &part.by_q);
+            add_product(&mut sum.by_v, by, &part.by_v);
+            add_product(&mut sum.by_u, by, &part.by_u);
+        }
+        sum
+    }
+}
+
+/// A mechanism under inputs at the start of a step.
+pub(super) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+    pub(super) mechanism: &'a M,
+    pub(super) t: T,
+    pub(super) q: &'a SVector<T, NQ>,
+    pub(super) u: &'a SVector<T, NU>,
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Start<'_, M, T, NQ, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    /// The configuration `q ⊕ displacement` with how it moves.
+    pub(super) fn moved(
+        &self,
+        displacement: &Sensitive<T, NV, NU>,
+    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        let q = self.mechanism.integrate(self.q, &displacement.value);
+        if NQ == NV {
+            // Plain coordinates: a displacement is added.
+            let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
+            return (q, Sensitive { by_q, ..*displacement });
+        }
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&displacement.value);
+        let mut motion = Sensitive {
+            value: displacement.value,
+            by_q,
+            by_v: product(&by_dv, &displacement.by_v),
+            by_u: product(&by_dv, &displacement.by_u),
+        };
+        add_product(&mut motion.by_q, &by_dv, &displacement.by_q);
+        (q, motion)
+    }
+
+    /// The acceleration at a time `h` after the start.
+    pub(super) fn acceleration(
+        &self,
+        h: T,
+        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
+        v: &Sensitive<T, NV, NU>,
+    ) -> Sensitive<T, NV, NU> {
+        let now: At<'_, M, T> = at(self.mechanism, self.t + h);
+        let LinearMotion { acceleration, by_q, by_v, by_u, .. } = now.linear_motion(q, &v.value, self.u);
+        let found = Sensitive::of(acceleration, (&by_q, motion), (&by_v, v));
+        Sensitive { by_u: found.by_u + by_u, ..found }
+    }
+
+    /// The end of a step.
+    pub(super) fn end(
+        &self,
+        displacement: &Sensitive<T, NV, NU>,
+        v: &Sensitive<T, NV, NU>,
+    ) -> Transition<T, NQ, NV, NU> {
+        let (q, motion) = self.moved(displacement);
+        Transition {
+            q,
+            v: v.value,
+            q_by_q: motion.by_q,
+            q_by_v: motion.by_v,
+            q_by_u: motion.by_u,
+            v_by_q: v.by_q,
+            v_by_v: v.by_v,
+            v_by_u: v.by_u,
+            chained: None,
+        }
+    }
+
+    /// Where it starts: the configuration moves as itself.
+    pub(super) fn here(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        let (value, zero) = (SVector::zeros(), SMatrix::zeros());
+        (*self.q, Sensitive { value, by_q: SMatrix::identity(), by_v: zero, by_u: SMatrix::zeros() })
+    }
+}
+
+impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
+    const IN_MOMENTA: [bool; 2] = [false, true];
+
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let h = self.length();
+        let motion = at(mechanism, t).linear_motion(q, v, u);
+        let after = Sensitive {
+            value: v + motion.acceleration * h,
+            by_q: motion.by_q * h,
+            by_v: SMatrix::identity() + motion.by_v * h,
+            by_u: motion.by_u * h,
+        };
+        let displacement = after.scaled(h);
+        if NQ != NV {
+            return Ok(Start { mechanism, t, q, u }.end(&displacement, &after));
+        }
+        // q + h v⁺.
+        Ok(Transition {
+            q: mechanism.integrate(q, &displacement.value),
+            v: after.value,
+            q_by_q: SMatrix::identity() + displacement.by_q,
+            q_by_v: displacement.by_v,
+            q_by_u: displacement.by_u,
+            v_by_q: after.by_q,
+            v_by_v: after.by_v,
+            v_by_u: after.by_u,
+            chained: Some(h),
+        })
+    }
+
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        implicit::pushed(self, mechanism, t, q, v, u)
+    }
+}
+
+impl<T: Real> DifferentiableStep<T> for Rk4<T> {
+    const IN_MOMENTA: [bool; 2] = [false; 2];
+
+    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        let v = Sensitive::velocity(v);
+        let stage = |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
+            let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
+            let (by_dv, by_v) = mechanism.tangent_rate_derivatives(&displacement.value, &v.value);
+            let value = mechanism.tangent_rate(&displacement.value, &v.value);
+            let rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
+            (rate, start.acceleration(h, &start.moved(&displacement), &v))
+        };
+        let half = h * constant(0.5);
+        let k1 = (v, start.acceleration(T::zero(), &start.here(), &v));
+        let k2 = stage(half, &k1);
+        let k3 = stage(half, &k2);
+        let k4 = stage(h, &k3);
+        let two = constant::<T>(2.0);
+        let sixth = h / constant(6.0);
+        let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
+        let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
+        Ok(start.end(&displacement, &v.plus(T::one(), &change)))
+    }
+
+    fn differentiate_held<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NH: usize,
+        const NC: usize,
+    >(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        projected::projected(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
+    }
+}
