@@ -240,7 +240,7 @@ fn can_be_a_function(name: &str) -> bool {
 fn check_rates(description: &Description, functions: &[derive::Function], cx: &mut Diagnostics) -> bool {
     let before = cx.len();
     for (state, _) in &description.states {
-        let name = format!("{}{}", state.text, syntax::state::RATE);
+        let name = format!("{}{}", state.text, syntax::RATE_OF_STATE);
         let written = description.outputs.iter().find(|output| output.name.text == name);
         let rate = functions.iter().find(|f| f.id == catalogue::Id::Output && f.name == name);
         if let Some(written) = written

@@ -4,12 +4,12 @@ use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
 use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Shape};
 use crate::derive::Function;
-use crate::syntax::state::RATE;
+use crate::syntax::RATE_OF_STATE;
 use std::fmt::Write;
 
 /// The name of the function for a state's rate.
 pub fn rate(state: &str) -> String {
-    format!("{state}{RATE}")
+    format!("{state}{RATE_OF_STATE}")
 }
 
 /// Implements them, if there are such states and dynamics.

@@ -21,7 +21,7 @@ mod lists;
 pub mod mechanism;
 pub mod skipped;
 pub mod sound;
-pub mod state;
+mod state;
 mod table;
 pub mod words;
 
@@ -31,6 +31,9 @@ pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests,
     Shell, Skipped,
 };
+
+/// What stands after a state's name in that of the function for its rate.
+pub const RATE_OF_STATE: &str = "_rate";
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]

@@ -1,8 +1,7 @@
 //! What of a mechanism can be read in spite of mistakes of grammar: everything that has to do with none of them. What is said
 //! of it is true however they are mended, so that all mistakes are told in one round.
 
-use super::state::RATE;
-use super::{Body, Description, Formulation, Name};
+use super::{Body, Description, Formulation, Name, RATE_OF_STATE};
 use crate::diag::nearest;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
@@ -92,7 +91,8 @@ impl Reading {
         d.points.retain(|p| kept(&p.name));
         d.definitions.retain(|d| kept(&d.name));
         // Rates of states stand among the outputs.
-        let is_lost_rate = |name: &str| name.strip_suffix(RATE).is_some_and(|state| lost.contains(state));
+        let is_lost_rate =
+            |name: &str| name.strip_suffix(RATE_OF_STATE).is_some_and(|state| lost.contains(state));
         d.outputs.retain(|d| kept(&d.name) && !is_lost_rate(&d.name.text));
         d.states.retain(|(name, _)| kept(name));
         d.energies.retain(|(name, _)| kept(name));

@@ -2,13 +2,10 @@
 
 use super::attribute::span_of;
 use super::mechanism::Shell;
-use super::{Definition, Description, Name, ScalarType, element};
+use super::{Definition, Description, Name, RATE_OF_STATE, ScalarType, element};
 use crate::diag::Diagnostics;
 use proc_macro2::Span;
 use syn::{Field, Ident};
-
-/// What stands after a state's name in that of the function for its rate.
-pub const RATE: &str = "_rate";
 
 /// A state: a parameter for all functions, and a hidden output for its rate.
 pub fn read_state(
@@ -36,7 +33,7 @@ pub fn read_state(
     description.states.push((name.clone(), description.parameters.len()));
     description.parameters.push(name.clone());
     if let Some(value) = rate {
-        let text = format!("{}{RATE}", name.text);
+        let text = format!("{}{RATE_OF_STATE}", name.text);
         let name = Name { text, place: name.place.clone() };
         description.outputs.push(Definition { name, vector: false, value, resolved_in: None });
     }

@@ -14,7 +14,7 @@ mod walk;
 
 use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
-use crate::syntax::state::RATE;
+use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind};
 use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
@@ -49,7 +49,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     }
     // A state's rate is the state per second.
     for (name, parameter) in &d.states {
-        let rate = format!("{}{RATE}", name.text);
+        let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
         let Some(dimension) = Dimension::variable(*parameter).over(&si::TIME) else { continue };
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
