@@ -187,7 +187,7 @@
 //! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
 //! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
 //! | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
-//! | gliding, hovering, turning by wheels | | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
+//! | gliding, hovering, turning by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
 //! | six degrees of freedom over the round Earth, which turns | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
 //! | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
 //! | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
