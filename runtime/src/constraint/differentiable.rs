@@ -130,6 +130,7 @@ where
 }
 
 /// A constrained mechanism at an instant is one at any time.
+#[diagnostic::do_not_recommend]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
     Constrained<NQ, NV, NU, NH, NC> for At<'_, M, T>
 where
