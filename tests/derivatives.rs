@@ -120,7 +120,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints(model);
     let v = mechanics::velocities(model);
     let still = vec![model.graph.zero(); model.nv()];
-    let c = analytic::coriolis_matrix(model, &joints, &v);
+    let c = analytic::coriolis_matrix(model, &joints, &v, 1);
     let bias = |v: &[Expr<'g>]| rnea::inverse_dynamics(model, &joints, v, None);
     let (moving, resting) = (bias(&v), bias(&still));
     let zero = model.graph.zero();

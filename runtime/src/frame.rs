@@ -294,6 +294,20 @@ pub fn origin<T: Real>(p: &[T; 12]) -> [T; 3] {
     [x, y, z]
 }
 
+/// The twist of a motion, which is its twist and its acceleration.
+#[inline(always)]
+pub fn twist<T: Real>(motion: &[T; 12]) -> [T; 6] {
+    let [a, b, c, d, e, f, ..] = *motion;
+    [a, b, c, d, e, f]
+}
+
+/// The sum of two motions.
+#[inline(always)]
+pub fn sum<T: Real>(a: &[T; 6], b: &[T; 6]) -> [T; 6] {
+    let ([a0, a1, a2, a3, a4, a5], [b0, b1, b2, b3, b4, b5]) = (*a, *b);
+    [a0 + b0, a1 + b1, a2 + b2, a3 + b3, a4 + b4, a5 + b5]
+}
+
 /// Six numbers as nalgebra's type.
 #[inline(always)]
 pub fn six<T: Real>(s: [T; 6]) -> SVector<T, 6> {

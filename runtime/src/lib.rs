@@ -174,7 +174,7 @@ pub mod __private {
         nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
     pub use crate::first_order::columns;
-    pub use crate::frame::{Message, identity_placement, join, origin, placement, six};
+    pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
     pub use crate::lie::jacobians::{
         ball_integrate_derivatives, ball_tangent_rate_derivatives, free_integrate_derivatives,

@@ -386,7 +386,16 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn coriolis_matrix(&self) -> Program {
         let v = mechanics::velocities(self.model);
-        self.specialisation.program(&columns(&analytic::coriolis_matrix(self.model, &self.joints, &v)))
+        let program = |most: usize| {
+            let matrix = analytic::coriolis_matrix(self.model, &self.joints, &v, most);
+            self.specialisation.program(&columns(&matrix))
+        };
+        let wide = self.wide.iter().map(|most| program(*most));
+        let in_lanes = self.limbs.iter().flat_map(|lanes| {
+            let most = [1].iter().chain(self.wide);
+            most.map(|most| lower(&columns(&in_lanes::coriolis_matrix(&lanes.limbs, *most))))
+        });
+        program(1).or_in_lanes(wide.chain(in_lanes))
     }
 
     /// `M⁻¹` with how its outputs make it; on request after the accelerations.

@@ -48,6 +48,12 @@ pub fn inverse_dynamics_derivatives<'g>(
     scattered
 }
 
+/// A Coriolis matrix, by rows; in up to `most` lanes.
+pub fn coriolis_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> crba::Matrix<'g> {
+    let v = limbs.symbols(Quantity::Velocity);
+    scattered_rows(limbs, &analytic::coriolis_matrix(&limbs.model, &limbs.joints, &v, most))
+}
+
 /// Accelerations here under forces, with the inverse of the mass matrix in its parts.
 pub fn accelerations<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
     inverse.solve(&unbalanced(limbs))

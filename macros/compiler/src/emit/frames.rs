@@ -37,6 +37,9 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
         step(format!("__frame{k}_twist"), given(18), 6, &frame.twist);
         step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
     }
+    for (k, link) in links.iter().enumerate() {
+        write_path(out, k, link, s);
+    }
 }
 
 /// Time as the first argument of a call, where functions take it.
@@ -92,105 +95,114 @@ pub fn write_frame_impl(
     s: &Signature<'_>,
 ) {
     let scalar = s.scalar.name();
-    let path = path(links, frame.link);
     let method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
         let all: Vec<Argument> = std::iter::once(Argument::T).chain(arguments.iter().copied()).collect();
         let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(&all));
     };
+    let t = time(s);
     method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
-    for link in &path {
-        write_link_placement(out, *link, &links[*link], s);
-    }
+    write_path_placement(out, frame.link, s);
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
     method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
-    write_motion(out, &path, links, false, s);
-    let last = path.last().map_or(String::new(), |l| format!("&::linkwork::__private::join(&x{l}, &w{l})"));
+    write_path_placement(out, frame.link, s);
+    let last = frame.link.map_or(String::new(), |l| {
+        format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_twist({t}q, v))")
+    });
     let _ = writeln!(out, "self.__frame{k}_twist({last})\n}}");
 
     method(out, "acceleration", &[Argument::Q, Argument::V, Argument::A], &format!("[{scalar}; 6]"));
-    write_motion(out, &path, links, true, s);
-    let last = path.last().map_or(String::new(), |l| {
-        let join = "::linkwork::__private::join";
-        format!("&{join}(&{join}::<_, 12, 6, 18>(&x{l}, &w{l}), &a{l})")
+    write_path_placement(out, frame.link, s);
+    let last = frame.link.map_or(String::new(), |l| {
+        format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_motion({t}q, v, a))")
     });
     let _ = writeln!(out, "self.__frame{k}_acceleration({last})\n}}");
-    write_jacobian(out, k, frame, links, &path, s);
+    write_jacobian(out, k, frame, links, s);
 }
 
-fn write_motion(
-    out: &mut String,
-    path: &[usize],
-    links: &[LinkSteps],
-    accelerations: bool,
-    s: &Signature<'_>,
-) {
-    let t = time(s);
-    for &k in path {
-        write_link_placement(out, k, &links[k], s);
-        let parent = links[k].parent.map_or(String::new(), |p| format!(", &w{p}"));
-        let _ = writeln!(out, "let w{k} = self.__link{k}_twist({t}q, v{parent});");
-        if accelerations {
-            let parent = links[k]
-                .parent
-                .map_or(String::new(), |p| format!(", &::linkwork::__private::join(&w{p}, &a{p})"));
-            let _ = writeln!(out, "let a{k} = self.__link{k}_acceleration({t}q, v, a{parent});");
-        }
+/// The placement of the frame's link.
+fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
+    if let Some(k) = link {
+        let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time(s));
     }
 }
 
-fn write_jacobian(
-    out: &mut String,
-    k: usize,
-    frame: &FrameSteps,
-    links: &[LinkSteps],
-    path: &[usize],
-    s: &Signature<'_>,
-) {
+/// Writes what is known of a link from the ground on: its placement, its twist, and its twist and acceleration.
+fn write_path(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+    use Argument::{A, Q, V};
+    let (scalar, t) = (s.scalar.name(), time(s));
+    let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
+        let parameters = s.parameters(&s.timed(arguments));
+        let _ = writeln!(
+            out,
+            "#[inline(always)]\nfn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}] {{\n{body}\n}}"
+        );
+    };
+    let of_parent = |name: &str, state: &str| {
+        link.parent.map_or(String::new(), |p| format!(", &self.__link{p}_path_{name}({t}{state})"))
+    };
+    let placement = format!("self.__link{k}_placement({t}q{})", of_parent("placement", "q"));
+    method("placement", &[Q], 12, &placement);
+    let twist = format!("self.__link{k}_twist({t}q, v{})", of_parent("twist", "q, v"));
+    method("twist", &[Q, V], 6, &twist);
+    let motion = match link.parent {
+        Some(p) => format!(
+            "let p = self.__link{p}_path_motion({t}q, v, a);\n\
+             let w = self.__link{k}_twist({t}q, v, &::linkwork::__private::twist(&p));\n\
+             ::linkwork::__private::join(&w, &self.__link{k}_acceleration({t}q, v, a, &p))"
+        ),
+        None => format!(
+            "::linkwork::__private::join(&self.__link{k}_twist({t}q, v), &self.__link{k}_acceleration({t}q, v, a))"
+        ),
+    };
+    method("motion", &[Q, V, A], 12, &motion);
+}
+
+fn write_jacobian(out: &mut String, k: usize, frame: &FrameSteps, links: &[LinkSteps], s: &Signature<'_>) {
+    let path = path(links, frame.link);
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
     let _ =
         writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
-    for &link in path {
+    for &link in &path {
         write_link_placement(out, link, &links[link], s);
     }
     if !path.is_empty() {
         let placement = frame_placement(k, frame);
         let _ = writeln!(out, "let o = ::linkwork::__private::origin(&{placement});");
     }
-    // Several coordinates that follow one another share a column.
-    let mut columns: Vec<Vec<String>> = vec![Vec::new(); nv];
-    for &link in path {
-        let velocities = &links[link].velocities;
-        let names: Vec<String> = (0..velocities.len()).map(|c| format!("j{link}_{c}")).collect();
-        let state = if links[link].driven { format!("{}q, ", time(s)) } else { String::new() };
-        let entries: Vec<String> =
-            names.iter().map(|n| format!("{n}_0, {n}_1, {n}_2, {n}_3, {n}_4, {n}_5")).collect();
-        let _ =
-            writeln!(out, "let [{}] = self.__link{link}_columns({state}&x{link}, &o);", entries.join(", "));
-        for (name, v) in names.iter().zip(velocities) {
-            columns[*v].push(name.clone());
-        }
+    let _ = writeln!(out, "let mut columns = [[::linkwork::__private::constant::<{scalar}>(0.0); 6]; {nv}];");
+    let mut written = vec![false; nv];
+    for link in path {
+        write_columns(out, link, &links[link], &mut written, s);
     }
-    if columns.iter().any(Vec::is_empty) {
-        let _ = writeln!(out, "let zero = ::linkwork::__private::constant::<{scalar}>(0.0);");
-    }
-    let columns: Vec<String> = columns
-        .iter()
-        .map(|terms| {
-            let entry = |row: usize| {
-                let sum: Vec<String> = terms.iter().map(|t| format!("{t}_{row}")).collect();
-                if sum.is_empty() { "zero".to_string() } else { sum.join(" + ") }
-            };
-            let entries: Vec<String> = (0..6).map(entry).collect();
-            format!("[{}]", entries.join(", "))
-        })
-        .collect();
     let _ = writeln!(
         out,
-        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))\n}}",
-        columns.join(",\n")
+        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(columns))\n}}"
     );
+}
+
+/// The columns of a link. Several coordinates that follow one another share a column.
+fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bool], s: &Signature<'_>) {
+    let state = if link.driven { format!("{}q, ", time(s)) } else { String::new() };
+    let call = format!("self.__link{k}_columns({state}&x{k}, &o)");
+    let mut write = |column: usize, value: &str, out: &mut String| {
+        let value = match std::mem::replace(&mut written[column], true) {
+            false => value.to_string(),
+            true => format!("::linkwork::__private::sum(&columns[{column}], &{value})"),
+        };
+        let _ = writeln!(out, "columns[{column}] = {value};");
+    };
+    if let [column] = link.velocities[..] {
+        write(column, &call, out);
+        return;
+    }
+    let names = |c: usize| (0..6).map(|row| format!("j{c}_{row}")).collect::<Vec<_>>().join(", ");
+    let all: Vec<String> = (0..link.velocities.len()).map(names).collect();
+    let _ = writeln!(out, "let [{}] = {call};", all.join(", "));
+    for (column, entries) in link.velocities.iter().zip(&all) {
+        write(*column, &format!("[{entries}]"), out);
+    }
 }
 
 /// The trait of frames by number: each is found among its implementations of `NamedFrame`.

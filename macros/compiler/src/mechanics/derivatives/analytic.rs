@@ -36,14 +36,20 @@ pub fn inverse_dynamics<'g>(
     entries(model, joints, &columns, &sums, most)
 }
 
-/// A matrix with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew: half of the velocity map, and `Ṡ`.
-pub fn coriolis_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Matrix<'g> {
+/// A matrix with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew: half of the velocity map, and `Ṡ`; in
+/// up to `most` lanes, one for none.
+pub fn coriolis_matrix<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    v: &[Expr<'g>],
+    most: usize,
+) -> Matrix<'g> {
     let twists = twists(model, joints, v);
     let columns: Vec<Vec<Column<'g>>> =
         joints.iter().zip(&twists).map(|(j, t)| rate_columns(model, j, t)).collect();
     let still = vec![Spatial::zero(model); joints.len()];
     let sums = subtrees(model, joints, &twists, &still, 1.0);
-    let mut matrix = entries(model, joints, &columns, &sums, 1).by_v;
+    let mut matrix = entries(model, joints, &columns, &sums, most).by_v;
     add_inertances(model, &mut matrix);
     matrix
 }
