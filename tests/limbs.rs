@@ -125,6 +125,13 @@ fn functions_agree() {
         let tau = robot.inverse_dynamics(&q, &v, &a);
         assert!((m * a + h - tau).amax() < 1e-12 * (1.0 + tau.amax()));
         assert!((robot.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-10);
+        // Dashpots are odd in the velocities, Coriolis forces even.
+        let (c, back, weight) = (
+            robot.coriolis_matrix(&q, &v),
+            robot.bias_forces(&q, &-v),
+            robot.bias_forces(&q, &SVector::zeros()),
+        );
+        assert!((c * v - ((h + back) / 2.0 - weight)).amax() < 1e-11 * (1.0 + h.amax()));
         // Energies and momenta are not evaluated in lanes.
         assert!((v.dot(&(m * v)) / 2.0 - robot.kinetic_energy(&q, &v)).abs() < 1e-12);
         assert!((m * v - robot.generalized_momentum(&q, &v)).amax() < 1e-12);
