@@ -282,3 +282,67 @@ fn extremes_are_exact() {
     }
     assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
 }
+
+/// Two bodies in space with a thruster between points of them, and two carts on one rail.
+#[mechanism(derivatives)]
+struct Pushed {
+    #[body(mass = 2, inertia = diagonal(0.1, 0.2, 0.3))]
+    first: Body,
+    #[body(mass = 3, inertia = diagonal(0.3, 0.1, 0.2))]
+    second: Body,
+    #[joint(ground -> first)]
+    pose: Free,
+    #[joint(ground -> second)]
+    other: Free,
+    #[acts(between = (first.at(0.3 * x), second.at(0.2 * y - 0.1 * z)))]
+    piston: Force,
+    #[acts(between = (first, second), value = 4 * norm(r(second / first)))]
+    drive: Force,
+    #[output(norm(r(second.at(0.2 * y - 0.1 * z) / first.at(0.3 * x))))]
+    length: Scalar,
+    #[output(norm(r(second / first)))]
+    distance: Scalar,
+}
+
+#[mechanism]
+struct Buffers {
+    #[body(mass = 2)]
+    left: Body,
+    #[body(mass = 3)]
+    right: Body,
+    #[joint(ground -> left, along = x)]
+    rail: Sleeve,
+    #[joint(ground -> right, along = x)]
+    other: Sleeve,
+    #[acts(between = (left, right))]
+    piston: Force,
+}
+
+/// A force between two points pushes them apart, does work on their distance alone, and changes no momentum.
+#[test]
+fn forces_between_points_push_them_apart() {
+    let (m, mut random) = (Pushed {}, support::random::Random::new(3));
+    assert_eq!(Pushed::INPUTS, ["piston"]);
+    for _ in 0..10 {
+        let q = random.configuration(&m);
+        let v: SVector<f64, 12> = random.vector(2.0);
+        let u = [7.0].into();
+        let work = |f: &dyn Fn(&SVector<f64, 14>) -> f64| {
+            (f(&m.integrate(&q, &(v * 1e-5))) - f(&m.integrate(&q, &(v * -1e-5)))) / 2e-5
+        };
+        let tau = m.generalized_forces(&q, &u);
+        assert_close("input", &[tau.dot(&v)], &[7.0 * work(&|q| m.length(q))], 1e-8);
+        let still = SVector::zeros();
+        let drive = -m.bias_forces(&q, &still);
+        assert_close("value", &[drive.dot(&v)], &[4.0 * m.distance(&q) * work(&|q| m.distance(q))], 1e-8);
+        let a = m.forward_dynamics(&q, &still, &tau);
+        let rate = m.momentum(&q, &a);
+        assert!(rate.amax() < 1e-12, "{rate}");
+    }
+    // Whichever of them is in front.
+    let m = Buffers {};
+    for side in [1.0, -1.0] {
+        let tau = m.generalized_forces(&[0.0, 2.0 * side].into(), &[5.0].into());
+        assert_eq!(tau, SVector::from([-5.0 * side, 5.0 * side]));
+    }
+}

@@ -212,10 +212,13 @@ pub enum Inerter {}
 /// - `#[acts(on = sleeve)]`: along a joint's coordinate, on the child, and opposite on the parent.
 /// - `#[acts(on = body.at(point), along = direction)]`: at a point of a body (its origin if none is named) along a
 ///   unit vector.
+/// - `#[acts(between = (p, q))]`: along the line of two points, equal and opposite on both; positive, it pushes them apart
+///   (a hydraulic cylinder), negative, it pulls (a cable, a muscle). It has no direction where they meet.
 ///
 /// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
-/// scalar on a coordinate, a vector on a body or point.
+/// scalar on a coordinate or between two points, a vector on a body or point.
 #[doc(alias = "actuator")]
+#[doc(alias = "cylinder")]
 #[doc(alias = "thruster")]
 #[doc(alias = "input")]
 pub enum Force {}

@@ -62,6 +62,9 @@ impl<'g> Builder<'_, 'g> {
             (ActionKind::Torque { about, value: Some(value) }, On::On(on)) => {
                 self.add_value(on, about.as_ref(), value, true, cx);
             }
+            (ActionKind::Force { along, value }, On::Between(a, b)) => {
+                self.add_force_between(action, [a, b], along.as_ref(), value.as_ref(), cx);
+            }
             (ActionKind::Gravity { constant, mu }, on) => {
                 self.add_gravity(action, on, constant.as_ref(), mu.as_ref(), cx);
             }

@@ -286,6 +286,9 @@ impl<'g> Builder<'_, 'g> {
                 ActionKind::Dashpot { .. } => {
                     self.draw_element(action, PieceKind::Damper, PieceKind::Brake, pieces)
                 }
+                ActionKind::Force { .. } if matches!(action.on, Target::Between(..)) => {
+                    self.draw_element(action, PieceKind::Bar, PieceKind::Bar, pieces)
+                }
                 _ => {}
             }
         }

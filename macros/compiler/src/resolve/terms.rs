@@ -81,6 +81,38 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
+    /// A force along the line of two points, by a value or as an input. It pushes them apart where it is positive.
+    pub fn add_force_between(
+        &mut self,
+        action: &syntax::Action,
+        [a, b]: [&syntax::Expr; 2],
+        along: Option<&syntax::Expr>,
+        value: Option<&syntax::Expr>,
+        cx: &mut Diagnostics,
+    ) {
+        if let Some(along) = along {
+            cx.error(along.place.clone(), "a force between two points acts along their line")
+                .help("remove this argument, or let a force act on each of two bodies");
+        }
+        let Some(stretch) = self.distance(a, b, cx) else { return };
+        let rate = match stretch.signed {
+            true => stretch.value.call(Function::Signum) * stretch.rate,
+            false => stretch.rate,
+        };
+        let g = self.scope.graph;
+        let Some(value) = value else {
+            let input = self.model.inputs.iter().position(|(name, _)| *name == action.name.text);
+            if let Some(force) = input.map(|k| Quantity::Input(k).expr(g)) {
+                self.model.loads.push(Load { rate, force, dissipative: false });
+            }
+            return;
+        };
+        let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(g))));
+        if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
+            self.add_value_load(rate, force, &value.place, cx);
+        }
+    }
+
     /// A spring with any law.
     pub fn add_spring(&mut self, stretch: Stretch<'g>, law: &Law, free: Expr<'g>, cx: &mut Diagnostics) {
         let g = self.scope.graph;

@@ -18,7 +18,7 @@ pub fn read_action(
         "Friction" => &["on", "coulomb", "stiction", "stribeck_speed", "viscous", "speed"],
         "Gravity" => &["on", "between", "constant", "mu"],
         "Attraction" => &["between", "strength"],
-        "Force" => &["on", "along", "value"],
+        "Force" => &["on", "between", "along", "value"],
         _ => &["on", "about", "value"],
     };
     let refused = arguments.place_of("between").is_some() && !keys.contains(&"between");

@@ -221,10 +221,7 @@ pub const FORCE: Words = &[
     ("magnitude force f vector expression", "value"),
     ("at point position location", AT),
     ("max min limit limits saturation", SATURATION),
-    (
-        "between from to",
-        "a `Force` acts on one body; one between two points is a `Spring` or a `Dashpot` with `force = …`",
-    ),
+    ("points ends connects from to", "between"),
 ];
 
 /// Arguments of a torque.
