@@ -2,7 +2,8 @@
 //!
 //! A generated body is written once, generic over [`Arithmetic`]: [`Compiled`] has the instructions of the compilation's
 //! target; large functions may run with more of them ([`dispatch`](dispatch::dispatch)). Everything of a body is inlined, so that it is compiled
-//! with the features of the function that it ends up in.
+//! with the features of the function that it ends up in. Without optimisation nothing here has to be inlined: each call would
+//! keep its arguments on the stack of the body, which is then twice as large.
 
 /// Gives the elementary functions to a macro, which makes something of each.
 macro_rules! elementary_functions {
@@ -70,7 +71,8 @@ pub struct Compiled;
 macro_rules! elementary {
     ($($(#[$doc:meta])* $name:ident($($argument:ident),+);)+) => {$(
         $(#[$doc])*
-        #[inline(always)]
+        #[cfg_attr(debug_assertions, inline)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn $name<X: Elementary<Self>>($($argument: X),+) -> X {
             X::$name($($argument),+)
         }
@@ -80,37 +82,43 @@ macro_rules! elementary {
 /// What generated bodies call: operations on numbers (every [`Real`](crate::Real)) and on lanes (`Vector`).
 pub trait Arithmetic: Registers {
     /// `a b + c`, fused where the hardware can.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(a, b, c) } else { a * b + c }
     }
 
     /// `a b - c`, fused where the hardware can.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_sub<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(a, b, -c) } else { a * b - c }
     }
 
     /// `c - a b`, fused where the hardware can.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg_mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(-a, b, c) } else { c - a * b }
     }
 
     /// Numbers as lanes.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lanes<T, const N: usize>(numbers: [T; N]) -> Vector<Self, T, N> {
         Vector::from(Lanes(numbers))
     }
 
     /// The same number in every lane.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn splat<T: Copy, const N: usize>(x: T) -> Vector<Self, T, N> {
         Vector::from(Lanes([x; N]))
     }
 
     /// The lanes of one vector, then those of another. Does not compile if `M` is not `2 N`.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn join<T: Copy, const N: usize, const M: usize>(
         a: Vector<Self, T, N>,
         b: Vector<Self, T, N>,
@@ -120,7 +128,8 @@ pub trait Arithmetic: Registers {
 
     /// Puts lane `I` of one vector and lane `J` of another into rows `ROW` and `ROW + 1` of a column. Does not compile if
     /// there are fewer lanes or rows.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_two<
         const I: usize,
         const J: usize,
@@ -141,26 +150,30 @@ pub trait Arithmetic: Registers {
     }
 
     /// Arguments in lanes.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {
         Vector::from_lanes(numbers)
     }
 
     /// Sine and cosine of an angle, or of one in each lane, rad.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos<X: Elementary<Self>>(x: X) -> (X, X) {
         let ([s], [c]) = X::sin_cos_all([x]);
         (s, c)
     }
 
     /// Sines and cosines of several angles, rad. Of numbers it is fastest for a multiple of eight.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos_all<X: Elementary<Self>, const N: usize>(x: [X; N]) -> ([X; N], [X; N]) {
         X::sin_cos_all(x)
     }
 
     /// The value of a table, or its derivative of these orders.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn tabulated<X: Elementary<Self>, const N: usize>(table: &Table<N>, x: [X; N], orders: [u8; N]) -> X {
         X::tabulated(table, x, orders)
     }
