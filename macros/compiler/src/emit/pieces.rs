@@ -37,16 +37,19 @@ pub struct Outputs<'a> {
 impl Outputs<'_> {
     /// An array of some of them.
     pub fn list(&self, range: std::ops::Range<usize>) -> String {
-        let texts: Vec<&str> =
-            self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect();
-        format!("[{}]", texts.join(", "))
+        array(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
+    }
+
+    /// An array of columns, from the first so many outputs on.
+    fn columns(&self, first: usize, rows: usize, columns: usize) -> String {
+        let columns: Vec<String> =
+            (0..columns).map(|k| self.list(first + k * rows..first + (k + 1) * rows)).collect();
+        array(columns.iter().map(String::as_str).collect())
     }
 
     /// The matrix of so many rows and columns, from its columns after the first so many outputs.
     pub fn matrix(&self, first: usize, rows: usize, columns: usize) -> String {
-        let column = |k: usize| self.list(first + k * rows..first + (k + 1) * rows);
-        let columns: Vec<String> = (0..columns).map(column).collect();
-        storage(&format!("[{}]", columns.join(", ")), "SMatrix")
+        storage(&self.columns(first, rows, columns), "SMatrix")
     }
 
     /// A struct whose fields are the outputs in their order.
@@ -54,10 +57,9 @@ impl Outputs<'_> {
         let mut text = format!("::linkwork::__private::{} {{\n", record.name().0);
         let mut first = 0;
         for field in record.fields() {
-            let columns = |k: usize| self.list(first + k * field.rows..first + (k + 1) * field.rows);
             let value = match field.columns {
-                None => columns(0),
-                Some(n) => format!("[{}]", (0..n).map(columns).collect::<Vec<_>>().join(", ")),
+                None => self.list(first..first + field.rows),
+                Some(n) => self.columns(first, field.rows, n),
             };
             let _ = writeln!(text, "{}: {value},", field.name);
             first += field.length();
@@ -69,6 +71,16 @@ impl Outputs<'_> {
     /// True for a constant zero.
     pub fn is_zero(&self, k: usize) -> bool {
         (self.is_zero)(k)
+    }
+}
+
+/// An array; what is the same everywhere is written once.
+fn array(texts: Vec<&str>) -> String {
+    match texts.as_slice() {
+        [first, rest @ ..] if rest.len() > 1 && rest.iter().all(|text| text == first) => {
+            format!("[{first}; {}]", texts.len())
+        }
+        _ => format!("[{}]", texts.join(", ")),
     }
 }
 
