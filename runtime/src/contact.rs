@@ -32,6 +32,7 @@ use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
 mod apart;
+mod derivatives;
 mod held;
 mod phase;
 mod problem;
@@ -39,6 +40,11 @@ mod response;
 mod total;
 
 pub use apart::{Apart, apart};
+#[doc(hidden)]
+pub use derivatives::Columns;
+pub use derivatives::{
+    ContactDerivatives, FirstOrder, HeldDerivatives, forward_dynamics_derivatives, linear_motion,
+};
 pub use held::{Held, forward_dynamics};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;

@@ -173,6 +173,7 @@ pub mod __private {
         careful_dynamics, careful_response, constrained_derivatives, independent_solution, least_solution,
         nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
+    pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::first_order::columns;
     pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};

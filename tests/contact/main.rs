@@ -2,6 +2,7 @@
 
 mod bodies;
 mod both;
+mod derivatives;
 mod events;
 mod files;
 mod forces;

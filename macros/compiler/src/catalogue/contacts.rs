@@ -2,8 +2,8 @@
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
-use super::shape::Argument::{Q, V};
-use super::shape::Shape;
+use super::shape::Argument::{self, A, Q, V};
+use super::shape::{CONTACT_FORCES, Record, Shape};
 
 const TOUCHING: &[Need] = &[Need::Contacts];
 
@@ -54,6 +54,17 @@ pub const ROWS: &[Row] = &[
         |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Array(f.contacts[1] * (f.nv + f.contacts[1])),
+            ..Declaration::default()
+        },
+    )
+    .alone(),
+    Row::derived(
+        Id::ContactDerivatives,
+        "__contact_derivatives",
+        &[Need::Contacts, Need::Inertia, Need::Derivatives],
+        |f| Declaration {
+            arguments: vec![Q, V, A, Argument::Given(CONTACT_FORCES, 0, f.contacts[1])],
+            shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts[1])),
             ..Declaration::default()
         },
     )

@@ -38,6 +38,7 @@ pub enum Id {
     ContactBias,
     ContactLaws,
     ContactResponses,
+    ContactDerivatives,
     CentroidalMomentumMatrix,
     CentroidalMomentumBias,
     Hamiltonian,

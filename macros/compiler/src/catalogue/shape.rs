@@ -177,7 +177,7 @@ impl Shape {
     }
 }
 
-/// What generated functions hand to the runtime: a struct of `runtime::constraint`, whose fields are the outputs in their order.
+/// What generated functions hand to the runtime: a struct of the runtime, whose fields are the outputs in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
     /// What elimination finds, of so many velocities and constraints.
@@ -188,6 +188,8 @@ pub enum Record {
     MotionDerivatives(usize, usize),
     /// Forces of the inputs and their derivatives, of so many velocities and inputs.
     InputDerivatives(usize, usize),
+    /// Derivatives of what contacts do at given accelerations and forces, of so many velocities and rates.
+    ContactDerivatives(usize, usize),
 }
 
 /// A field of a record: an array, or a list of so many.
@@ -216,6 +218,7 @@ impl Record {
             Record::Responses(nv, nc) => ("Responses", [nv, nc]),
             Record::MotionDerivatives(nv, nc) => ("MotionDerivatives", [nv, nc]),
             Record::InputDerivatives(nv, nu) => ("InputDerivatives", [nv, nu]),
+            Record::ContactDerivatives(nv, nr) => ("ContactDerivatives", [nv, nr]),
         }
     }
 
@@ -244,6 +247,12 @@ impl Record {
             Record::InputDerivatives(nv, nu) => {
                 vec![array("forces", nv), list("by_q", nv, nv), list("by_v", nv, nv), list("by_u", nv, nu)]
             }
+            Record::ContactDerivatives(nv, nr) => vec![
+                list("forces_by_q", nv, nv),
+                list("accelerations_by_q", nr, nv),
+                list("accelerations_by_v", nr, nv),
+                list("rates_by_q", nr, nv),
+            ],
         }
     }
 }

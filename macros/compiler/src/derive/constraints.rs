@@ -1,8 +1,9 @@
 //! What constraints say of a state, as outputs of programs.
 
 use crate::expr::Expr;
-use crate::mechanics::constraints;
-use crate::mechanism::Model;
+use crate::mechanics::derivatives::symbolic;
+use crate::mechanics::{self, constraints};
+use crate::mechanism::{Model, Quantity};
 
 pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
 
@@ -19,6 +20,30 @@ pub(super) fn contact_jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// How the rates of contacts change with the velocities: a row for each.
 pub(super) fn contact_rows<'g>(model: &Model<'g>) -> Vec<Vec<Expr<'g>>> {
     constraints::jacobian_of(model, &model.contact_rates())
+}
+
+/// What contacts add to the motion to first order, at given accelerations `a` and forces `f`: derivatives of `Gᵀ f` by `q`, of
+/// `G a + b` by `q` and by `v`, and of the rates by `q`, each column by column.
+pub(super) fn contact_first_order<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let (rows, a) = (contact_rows(model), mechanics::accelerations(model));
+    let zero = model.graph.zero();
+    let force = |k: usize| {
+        let terms = rows.iter().enumerate();
+        terms.fold(zero, |sum, (i, row)| sum + row[k] * Quantity::ContactForce(i).expr(model.graph))
+    };
+    let forces: Vec<Expr<'g>> = (0..model.nv()).map(force).collect();
+    let along = |row: &Vec<Expr<'g>>| row.iter().zip(&a).fold(zero, |sum, (g, a)| sum + *g * *a);
+    let biases = model.contacts.iter().flat_map(|contact| &contact.biases);
+    let accelerations: Vec<Expr<'g>> =
+        rows.iter().zip(biases).map(|(row, bias)| along(row) + *bias).collect();
+    let accelerations = symbolic::derivatives(model, &accelerations);
+    let parts = [
+        symbolic::by_configuration(model, &forces),
+        accelerations.by_q,
+        accelerations.by_v,
+        symbolic::by_configuration(model, &model.contact_rates()),
+    ];
+    parts.iter().flat_map(|rows| by_columns(model, rows)).collect()
 }
 
 fn by_columns<'g>(model: &Model<'g>, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {

@@ -161,6 +161,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ContactResponses => {
                 plain(self.dynamics().contact_responses(&constraints::contact_rows(model)))
             }
+            Id::ContactDerivatives => of(&constraints::contact_first_order(model)),
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
             Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
             Id::SlippingResponse => plain(self.dynamics().slipping_response()),

@@ -97,6 +97,20 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
+/// The runtime's trait of their derivatives.
+pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let [_, rows] = i.facts.contacts;
+    let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
+    let pass = if s.time { "t, " } else { "" };
+    let _ = writeln!(
+        out,
+        "fn contact_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, a: &{v}, forces: &{}) -> ::linkwork::contact::FirstOrder<{scalar}, {nv}, {rows}> {{
+            ::linkwork::contact::FirstOrder::from(self.__contact_derivatives({pass}q, v, a, &forces.data.0[0]))
+        }}",
+        s.vector(rows)
+    );
+}
+
 /// What the trait of mechanisms has because of contacts.
 pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.contacts.is_empty() {

@@ -62,6 +62,14 @@ pub fn write_impls(
         );
         contacts::write_trait(out, i, s);
         out.push_str("}\n");
+        if i.facts.requests.derivatives {
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl{generics} ::linkwork::contact::ContactDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
+            );
+            contacts::write_derivatives(out, i, s);
+            out.push_str("}\n");
+        }
     }
     if !i.constraints.names.is_empty() {
         let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];

@@ -5,10 +5,13 @@ use super::super::total::Total;
 use super::{List, Problem, Square, entry};
 use crate::Real;
 use crate::private::{constant, epsilon};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion.
 const INDEPENDENT: f64 = 1e-6;
+
+/// How often what is left of equations that were told apart by a little is made up for.
+const PASSES: usize = 3;
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
@@ -92,51 +95,31 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
     ) -> Result<List<T, NR>, usize> {
-        let touches = Total::new(*touches, Touch::Open);
-        let slips = |k: usize| touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
+        let slips = self.slipping(touches);
         let mut forces =
-            if (0..self.count).any(slips) { List::repeat(T::zero()) } else { self.together(|_| true) };
-        let (places, reach) =
-            (self.places(), (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i])));
-        // What is left of the equations, and their matrix.
-        let equations = |forces: &List<T, NR>, system: &mut Square<T, NR>| {
-            identify(system);
-            let mut right = List::repeat(T::zero());
+            if slips.contains(&true) { List::repeat(T::zero()) } else { self.together(|_| true) };
+        let system = self.held_system(&slips, rates);
+        // What is left of the equations.
+        let left = |forces: &List<T, NR>| {
             let accelerations = self.rates(forces);
+            let mut left = List::repeat(T::zero());
             for k in 0..self.count {
                 let (n, tangents) = self.of(k);
-                let speed = tangents
-                    .clone()
-                    .fold(T::zero(), |sum, i| sum + entry(rates, places[i]) * entry(rates, places[i]))
-                    .sqrt();
                 for i in core::iter::once(n).chain(tangents) {
-                    if i == n || !slips(k) {
-                        system[i] = self.weights[i];
-                        right[i] = -accelerations[i];
-                    } else if speed > T::zero() {
-                        let share = self.friction[k] * entry(rates, places[i]) / speed;
-                        system[i][n] = share;
-                        right[i] = -(forces[i] + share * forces[n]);
-                    } else {
-                        right[i] = -forces[i];
-                    }
+                    left[i] = match i != n && slips[k] {
+                        true => -(forces[i] + system[i][n] * forces[n]),
+                        false => -accelerations[i],
+                    };
                 }
             }
-            right
+            left
         };
-        let mut system = square();
-        for _ in 0..3 {
-            let mut right = equations(&forces, &mut system);
-            for k in 0..self.count {
-                let (n, tangents) = self.of(k);
-                for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips(k)) {
-                    system[i][i] += reach * self.lift();
-                }
-            }
-            self.eliminate(&mut system, &mut right);
-            forces.iter_mut().zip(*right).for_each(|(force, change)| *force += change);
+        for _ in 0..PASSES {
+            let mut right = left(&forces).each(|left| [left]);
+            self.eliminate(&mut self.lifted(&system, &slips), &mut right);
+            forces.iter_mut().zip(*right).for_each(|(force, [change])| *force += change);
         }
-        let left = equations(&forces, &mut system);
+        let left = left(&forces);
         let most = self.rounding(&forces).max(self.speed() * self.lift());
         let is_lost = |k: &usize| {
             // It is where it is no number, too.
@@ -149,12 +132,104 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
+    /// Which contacts slip, or have no friction that would hold them.
+    fn slipping(&self, touches: &[Touch; NK]) -> Total<bool, NK> {
+        let touches = Total::new(*touches, Touch::Open);
+        let mut slips = Total::repeat(false);
+        for k in 0..self.count {
+            slips[k] = touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
+        }
+        slips
+    }
+
+    /// The matrix of the equations that hold contacts: rates of those that are held, and friction against the slip `rates`.
+    fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
+        let places = self.places();
+        let mut system = square();
+        identify(&mut system);
+        for k in 0..self.count {
+            let (n, tangents) = self.of(k);
+            let slip = |i: usize| entry(rates, places[i]);
+            let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip(i) * slip(i)).sqrt();
+            for i in core::iter::once(n).chain(tangents) {
+                if i == n || !slips[k] {
+                    system[i] = self.weights[i];
+                } else if speed > T::zero() {
+                    system[i][n] = self.friction[k] * slip(i) / speed;
+                }
+            }
+        }
+        system
+    }
+
+    /// The same where rates that depend on each other are told apart by a little.
+    fn lifted(&self, system: &Square<T, NR>, slips: &Total<bool, NK>) -> Square<T, NR> {
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
+        let mut system = *system;
+        for k in 0..self.count {
+            let (n, tangents) = self.of(k);
+            for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips[k]) {
+                system[i][i] += reach * self.lift();
+            }
+        }
+        system
+    }
+
+    /// By how much the forces that [`hold`](Self::hold) contacts change with those rates that they have without forces, columns by
+    /// columns: `gaps` are those changes.
+    pub(in super::super) fn answers<const N: usize>(
+        &self,
+        touches: &[Touch; NK],
+        rates: &SVector<T, NR>,
+        gaps: &SMatrix<T, NR, N>,
+    ) -> SMatrix<T, NR, N> {
+        let (slips, places) = (self.slipping(touches), self.places());
+        let mut system = self.held_system(&slips, rates);
+        let mut wanted = Total::repeat([T::zero(); N]);
+        for k in 0..self.count {
+            let (n, tangents) = self.of(k);
+            for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips[k]) {
+                let gap = |j: usize| gaps.get((places[i], j)).copied().unwrap_or(T::zero());
+                wanted[i] = core::array::from_fn(|j| -gap(j));
+            }
+        }
+        let mut changes = wanted;
+        if self.is_redundant(touches) {
+            changes = Total::repeat([T::zero(); N]);
+            for _ in 0..PASSES {
+                let mut right = wanted;
+                for i in 0..self.size {
+                    (0..self.size).for_each(|j| subtract(&mut right[i], system[i][j], &changes[j]));
+                }
+                self.eliminate(&mut self.lifted(&system, &slips), &mut right);
+                for (change, more) in changes.iter_mut().zip(right.iter()) {
+                    change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
+                }
+            }
+        } else {
+            self.eliminate(&mut system, &mut changes);
+        }
+        let mut all = SMatrix::<T, NR, N>::zeros();
+        for (place, change) in places.iter().zip(changes.iter()).take(self.size) {
+            for (j, change) in change.iter().enumerate() {
+                if let Some(entry) = all.get_mut((*place, j)) {
+                    *entry = *change;
+                }
+            }
+        }
+        all
+    }
+
     pub(super) fn lift(&self) -> T {
         epsilon::<T>().sqrt()
     }
 
-    /// Gaussian elimination with pivots of the columns; where there is none, nothing is to be done.
-    pub(super) fn eliminate(&self, system: &mut Square<T, NR>, right: &mut List<T, NR>) {
+    /// Gaussian elimination with pivots of the columns, for several right-hand sides; where there is no pivot, nothing is to be done.
+    pub(super) fn eliminate<const N: usize>(
+        &self,
+        system: &mut Square<T, NR>,
+        right: &mut Total<[T; N], NR>,
+    ) {
         let size = self.size;
         for column in 0..size {
             let mut best = column;
@@ -180,13 +255,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 for (entry, pivot) in system[row].iter_mut().zip(pivots.iter()).take(size).skip(column + 1) {
                     *entry -= factor * *pivot;
                 }
-                right[row] -= factor * value;
+                subtract(&mut right[row], factor, &value);
             }
         }
         for row in (0..size).rev() {
-            let sum = (row + 1..size).fold(right[row], |sum, c| sum - system[row][c] * right[c]);
+            let mut sum = right[row];
+            (row + 1..size).for_each(|c| subtract(&mut sum, system[row][c], &right[c]));
             let pivot = system[row][row];
-            right[row] = if pivot == T::zero() { T::zero() } else { sum / pivot };
+            right[row] = sum.map(|sum| if pivot == T::zero() { T::zero() } else { sum / pivot });
         }
     }
 }
@@ -236,6 +312,11 @@ fn substitute<T: Real, const NR: usize>(l: &Square<T, NR>, size: usize, x: &mut 
         let sum = terms.fold(x[j], |sum, (other, part)| sum - *other * *part);
         x[j] = sum * l[j][j];
     }
+}
+
+/// Takes a multiple of a row from another.
+fn subtract<T: Real, const N: usize>(from: &mut [T; N], factor: T, row: &[T; N]) {
+    from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
 }
 
 /// Zeros.

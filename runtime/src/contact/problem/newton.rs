@@ -18,12 +18,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut left = self.size_of_map(&impulses);
         let mut system = square();
         for _ in 0..NEWTON {
-            let mut right = self.linearise(&impulses, &mut system);
+            let mut right = self.linearise(&impulses, &mut system).each(|change| [change]);
             self.eliminate(&mut system, &mut right);
             let mut part = T::one();
             let next = loop {
                 let mut next = impulses;
-                next.iter_mut().zip(right.iter()).for_each(|(next, change)| *next += *change * part);
+                next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change * part);
                 let size = self.size_of_map(&next);
                 if size < left {
                     left = size;

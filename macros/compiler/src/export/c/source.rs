@@ -153,6 +153,7 @@ impl<'a> Chosen<'a> {
                 | Id::ForwardDynamicsDerivativesInto
                 | Id::MassMatrixInto => {}
                 Id::ContactLaws
+                | Id::ContactDerivatives
                 | Id::Figures
                 | Id::MotionDerivatives
                 | Id::InputDerivatives

@@ -1,0 +1,272 @@
+//! Derivatives of the motion while given contacts stay closed.
+
+use super::held::held;
+use super::problem::{Problem, entry};
+use super::{Contacts, Rows, Touch};
+use crate::constraint::ConstraintError;
+use crate::derivatives::LinearMotion;
+use crate::private::constant;
+use crate::{Real, RheonomicDerivatives};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+/// First derivatives of what contacts do. `#[mechanism(…, derivatives)]` implements it for mechanisms with contacts.
+///
+/// A derivative by `q` is along motions of the configuration, whether contacts allow them or not: column `i` is along `q ⊕ ε eᵢ`,
+/// for ball and free joints in body axes. Time `t` as for [`Contacts`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no derivatives of its contacts",
+    note = "the word asks for them: `#[mechanism(…, derivatives)]`, of a mechanism with contacts"
+)]
+pub trait ContactDerivatives<
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>: Contacts<NQ, NV, NU, NK, NR> + RheonomicDerivatives<NQ, NV, NU>
+{
+    /// Derivatives of `Gᵀ f`, of `G a + b` and of the rates, at any accelerations `a` and forces `f` of the contacts, N and N·m.
+    fn contact_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        forces: &SVector<Self::Scalar, NR>,
+    ) -> FirstOrder<Self::Scalar, NV, NR>;
+}
+
+/// First derivatives of what contacts do, with their Jacobian `G`, their bias `b` and their forces `f`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstOrder<T, const NV: usize, const NR: usize> {
+    /// `∂(Gᵀ f)/∂q`: how the generalized forces of the contacts change.
+    pub forces_by_q: SMatrix<T, NV, NV>,
+    /// `∂(G a + b)/∂q`.
+    pub accelerations_by_q: SMatrix<T, NR, NV>,
+    /// `∂(G a + b)/∂v`.
+    pub accelerations_by_v: SMatrix<T, NR, NV>,
+    /// Derivatives of [`contact_rates`](Contacts::contact_rates) by `q`; those by `v` are `G`.
+    pub rates_by_q: SMatrix<T, NR, NV>,
+}
+
+/// The same as lists of columns, as generated code makes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<T, const NV: usize, const NR: usize> {
+    /// `∂(Gᵀ f)/∂q`.
+    pub forces_by_q: [[T; NV]; NV],
+    /// `∂(G a + b)/∂q`.
+    pub accelerations_by_q: [[T; NR]; NV],
+    /// `∂(G a + b)/∂v`.
+    pub accelerations_by_v: [[T; NR]; NV],
+    /// Derivatives of the rates by `q`.
+    pub rates_by_q: [[T; NR]; NV],
+}
+
+impl<T, const NV: usize, const NR: usize> From<Columns<T, NV, NR>> for FirstOrder<T, NV, NR> {
+    fn from(parts: Columns<T, NV, NR>) -> Self {
+        Self {
+            forces_by_q: SMatrix::from_array_storage(ArrayStorage(parts.forces_by_q)),
+            accelerations_by_q: SMatrix::from_array_storage(ArrayStorage(parts.accelerations_by_q)),
+            accelerations_by_v: SMatrix::from_array_storage(ArrayStorage(parts.accelerations_by_v)),
+            rates_by_q: SMatrix::from_array_storage(ArrayStorage(parts.rates_by_q)),
+        }
+    }
+}
+
+/// Accelerations and forces of contacts, with their derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldDerivatives<T, const NV: usize, const NR: usize> {
+    /// The accelerations.
+    pub a: SVector<T, NV>,
+    /// The forces of the contacts, as in [`Held`](super::Held).
+    pub forces: SVector<T, NR>,
+    /// `∂v̇/∂q`.
+    pub by_q: SMatrix<T, NV, NV>,
+    /// `∂v̇/∂v`.
+    pub by_v: SMatrix<T, NV, NV>,
+    /// `∂v̇/∂τ`.
+    pub by_tau: SMatrix<T, NV, NV>,
+    /// `∂f/∂q`.
+    pub forces_by_q: SMatrix<T, NR, NV>,
+    /// `∂f/∂v`.
+    pub forces_by_v: SMatrix<T, NR, NV>,
+    /// `∂f/∂τ`.
+    pub forces_by_tau: SMatrix<T, NR, NV>,
+}
+
+/// The accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given contacts closed, and their
+/// first derivatives by configuration, velocity and generalized forces.
+///
+/// Differentiating the equations of motion, and those that hold the contacts, gives with the free response `∂v̇/∂x` under the
+/// forces `τ + Gᵀ f`
+///
+/// ```text
+/// G M⁻¹ Gᵀ δf = −(∂(G v̇ + b) + G ∂v̇),   δv̇ = ∂v̇ + M⁻¹ Gᵀ δf,
+/// ```
+///
+/// along the normals alone where surfaces slip, with `δfₜ` from Coulomb's law, whose direction turns with the slip (Mastalli et al.,
+/// *Crocoddyl: An Efficient and Versatile Framework for Multi-Contact Optimal Control*, 2020, without slip). Constraints of the
+/// mechanism are in the free response. A derivative by `q` is along motions that the contacts need not allow; of forces that are
+/// shared by more contacts than the motion can tell apart it is that of least norm, and only along motions that keep them shared.
+///
+/// ```
+/// use linkwork::contact::{self, Touch};
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z, derivatives)]
+/// struct Block {
+///     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.3, 0.3))]
+///     block: Body,
+///     #[joint(ground -> block)]
+///     pose: Free,
+///     #[contact(block, ground.plane(z), friction = 0.5)]
+///     foot: Contact,
+/// }
+///
+/// # fn main() -> Result<(), ConstraintError> {
+/// let (q, v) = (Block {}.neutral(), [1.0, 0.0, 0.0, 0.0, 0.0, 0.0].into());
+/// let tau = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0].into();
+/// // What presses the block down brakes it: friction takes half of it.
+/// let slips = contact::forward_dynamics_derivatives(&Block {}, 0.0, &q, &v, &tau, &[Touch::Slips])?;
+/// assert!((slips.by_tau[(0, 0)] - 0.5).abs() < 1e-12 && (slips.by_tau[(0, 2)] - 0.25).abs() < 1e-12);
+/// // Slip to the side turns friction: 0.5 · 2 · 9.81 N at 1 m/s.
+/// assert!((slips.by_v[(1, 1)] + 0.5 * 9.81).abs() < 1e-12);
+/// // Where it sticks, no force but torques move it, about its foot.
+/// let sticks = contact::forward_dynamics_derivatives(&Block {}, 0.0, &q, &v, &tau, &[Touch::Sticks])?;
+/// assert!(sticks.by_tau.fixed_view::<3, 6>(0, 0).amax() < 1e-12);
+/// assert!((sticks.forces_by_tau[(0, 2)] + 1.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// Those of [`forward_dynamics`](super::forward_dynamics).
+pub fn forward_dynamics_derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    tau: &SVector<T, NV>,
+    touches: &[Touch; NK],
+) -> Result<HeldDerivatives<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let along = mechanism.contact_rates(t, q, v);
+    let (held, responses) = held(mechanism, t, (q, v), tau, touches, &along)?;
+    let jacobian = mechanism.contact_jacobian(t, q);
+    let acting = tau + jacobian.tr_mul(&held.forces);
+    let (by_q, by_v, by_tau) = mechanism.forward_dynamics_derivatives(t, q, v, &acting);
+    let mut found = HeldDerivatives {
+        a: held.a,
+        forces: held.forces,
+        by_q,
+        by_v,
+        by_tau,
+        forces_by_q: SMatrix::zeros(),
+        forces_by_v: SMatrix::zeros(),
+        forces_by_tau: SMatrix::zeros(),
+    };
+    let Some(responses) = responses else { return Ok(found) };
+    let laws = mechanism.contact_laws();
+    let parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
+    // How friction turns with the slip while the normal forces stay.
+    let mut turned = [SMatrix::<T, NR, NV>::zeros(); 2];
+    for ((rows, touch), law) in M::CONTACT_ROWS.into_iter().zip(touches).zip(&laws) {
+        if *touch == Touch::Slips {
+            let normal = law.friction * entry(&held.forces, rows.first);
+            for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
+                turn(turned, rows, normal, &along, rates);
+            }
+        }
+    }
+    let [turned_by_q, turned_by_v] = turned;
+    found.by_q += by_tau * (parts.forces_by_q + jacobian.tr_mul(&turned_by_q));
+    found.by_v += by_tau * jacobian.tr_mul(&turned_by_v);
+    let closed = touches.map(|touch| touch != Touch::Open);
+    let mut problem =
+        Problem::new(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
+    problem.weigh(&responses.rates);
+    let by_q = problem.answers(touches, &along, &(parts.accelerations_by_q + jacobian * found.by_q));
+    let by_v = problem.answers(touches, &along, &(parts.accelerations_by_v + jacobian * found.by_v));
+    found.forces_by_tau = problem.answers(touches, &along, &(jacobian * found.by_tau));
+    found.by_q += responses.velocities * by_q;
+    found.by_v += responses.velocities * by_v;
+    found.by_tau += responses.velocities * found.forces_by_tau;
+    (found.forces_by_q, found.forces_by_v) = (by_q + turned_by_q, by_v + turned_by_v);
+    Ok(found)
+}
+
+/// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its coefficient: that of
+/// `−μ fₙ u / |u|`.
+fn turn<T: Real, const NV: usize, const NR: usize>(
+    turned: &mut SMatrix<T, NR, NV>,
+    Rows { first, count }: Rows,
+    friction: T,
+    rates: &SVector<T, NR>,
+    changes: &SMatrix<T, NR, NV>,
+) {
+    let tangents = first + 1..first + count;
+    let speed = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * entry(rates, i)).sqrt();
+    if speed == T::zero() {
+        return;
+    }
+    for j in 0..NV {
+        let change = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
+        let faster = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * change(i)) / speed;
+        for i in tangents.clone() {
+            if let Some(turned) = turned.get_mut((i, j)) {
+                *turned = -(change(i) - entry(rates, i) / speed * faster) * (friction / speed);
+            }
+        }
+    }
+}
+
+/// The motion under the inputs `u` to first order while given contacts stay closed: what
+/// [`linear_motion`](crate::Derivatives::linear_motion) is without contacts.
+///
+/// # Errors
+///
+/// Those of [`forward_dynamics`](super::forward_dynamics).
+pub fn linear_motion<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+    touches: &[Touch; NK],
+) -> Result<LinearMotion<T, NV, NU>, ConstraintError>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let tau = mechanism.generalized_forces(t, q, v, u);
+    let held = forward_dynamics_derivatives(mechanism, t, q, v, &tau, touches)?;
+    let (force_by_q, force_by_v, force_by_u) = mechanism.generalized_forces_derivatives(t, q, v, u);
+    let (turning, _) = mechanism.tangent_rate_derivatives(&SVector::zeros(), v);
+    Ok(LinearMotion {
+        acceleration: held.a,
+        by_q: held.by_q + held.by_tau * force_by_q,
+        by_v: held.by_v + held.by_tau * force_by_v,
+        by_u: held.by_tau * force_by_u,
+        turning: turning * constant::<T>(2.0),
+    })
+}

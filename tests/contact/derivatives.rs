@@ -1,0 +1,346 @@
+//! Derivatives of the motion while contacts stay closed, against differences of the motion itself.
+
+use linkwork::contact::{self, ContactDerivatives, Touch};
+use linkwork::prelude::*;
+
+/// A quadruped, with a coefficient of friction for each foot.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
+struct Solo {
+    #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    front_left: Contact,
+    #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.3)]
+    front_right: Contact,
+    #[contact(HL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    hind_left: Contact,
+    #[contact(HR_FOOT.sphere(0.016), ground.plane(z))]
+    hind_right: Contact,
+}
+
+/// A ball in a hollow, in wind that changes with time.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Hollow {
+    #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[acts(on = ball, value = sin(7 * t) * x - 0.3 * v(ball / ground / ground))]
+    wind: Force,
+    #[contact(ball.sphere(0.1), ground.terrain(0.2 * u * u + 0.1 * u * w + 0.3 * w * w), friction = 0.4)]
+    rest: Contact,
+}
+
+/// A crank that pushes a piston along a wall that it may touch.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Engine {
+    #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
+    crank: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[body(mass = 0.8, com = 0.06 * x, inertia = rod(0.8, 0.13, x))]
+    rod: Body,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[body(mass = 0.5, inertia = diagonal(0.001, 0.001, 0.001))]
+    piston: Body,
+    #[joint(rod.at(0.13 * x) -> piston, about = z)]
+    small_end: Pin,
+    #[constraint(dot(r(piston / ground), ground.y) = 0)]
+    bore: Holonomic,
+    #[contact(piston.sphere(0.02), ground.at(-0.02 * y).plane(y), friction = 0.2)]
+    wall: Contact,
+    #[acts(on = main)]
+    motor: Torque,
+}
+
+/// The derivative of a function at zero: central differences of the sixth order.
+fn slope<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+    let h = 2e-3;
+    let pair = |k: f64| f(k * h) - f(-k * h);
+    (pair(1.0) * 45.0 - pair(2.0) * 9.0 + pair(3.0)) / (60.0 * h)
+}
+
+/// Every column of every derivative.
+fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    m: &M,
+    t: f64,
+    (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
+    tau: &SVector<f64, NV>,
+    touches: &[Touch; NK],
+) where
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = f64>,
+{
+    let found = contact::forward_dynamics_derivatives(m, t, q, v, tau, touches).unwrap();
+    let motion = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, tau: &SVector<f64, NV>| {
+        contact::forward_dynamics(m, t, q, v, tau, touches).unwrap()
+    };
+    let held = motion(q, v, tau);
+    assert!(found.a == held.a && found.forces == held.forces);
+    for k in 0..NV {
+        let along = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let of_q = |s: f64| motion(&m.integrate(q, &along(s)), v, tau);
+        let of_v = |s: f64| motion(q, &(v + along(s)), tau);
+        let of_tau = |s: f64| motion(q, v, &(tau + along(s)));
+        for (what, expected, column) in [
+            ("∂v̇/∂q", slope(|s| of_q(s).a), found.by_q.column(k)),
+            ("∂v̇/∂v", slope(|s| of_v(s).a), found.by_v.column(k)),
+            ("∂v̇/∂τ", slope(|s| of_tau(s).a), found.by_tau.column(k)),
+        ] {
+            let off = (column - expected).amax();
+            assert!(off < 1e-9 * (1.0 + held.a.amax() + expected.amax()), "{what}, {k}: {off:e}");
+        }
+        for (what, expected, column) in [
+            ("∂f/∂q", slope(|s| of_q(s).forces), found.forces_by_q.column(k)),
+            ("∂f/∂v", slope(|s| of_v(s).forces), found.forces_by_v.column(k)),
+            ("∂f/∂τ", slope(|s| of_tau(s).forces), found.forces_by_tau.column(k)),
+        ] {
+            let off = (column - expected).amax();
+            assert!(off < 1e-9 * (1.0 + held.forces.amax() + expected.amax()), "{what}, {k}: {off:e}");
+        }
+    }
+}
+
+/// A state of the quadruped, and forces at its joints.
+fn stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
+    let mut q = Solo {}.neutral();
+    q[2] = 0.26;
+    q = Solo {}.integrate(&q, &SVector::from_fn(|k, _| if k < 3 { 0.0 } else { 0.1 * k as f64 - 0.35 }));
+    for leg in 0..4 {
+        let k = f64::from(leg as u32);
+        (q[7 + 3 * leg], q[8 + 3 * leg], q[9 + 3 * leg]) = (0.1 - 0.05 * k, 0.8 + 0.1 * k, -1.6 + 0.07 * k);
+    }
+    let v = SVector::from_fn(|k, _| 0.3 * (1.7 * k as f64 + 0.4).sin());
+    let tau = SVector::from_fn(|k, _| if k < 6 { 0.0 } else { 0.5 * (0.9 * k as f64).cos() });
+    (q, v, tau)
+}
+
+#[test]
+fn a_quadruped_on_its_feet() {
+    use Touch::{Open, Slips, Sticks};
+    let (q, v, tau) = stance();
+    for touches in [
+        [Sticks, Open, Open, Sticks],
+        [Sticks, Sticks, Sticks, Open],
+        [Slips, Sticks, Open, Slips],
+        [Slips, Slips, Slips, Slips],
+        [Open; 4],
+    ] {
+        check(&Solo {}, 0.0, (&q, &v), &tau, &touches);
+    }
+}
+
+/// Ground of any form, and equations that depend on time.
+#[test]
+fn a_ball_in_a_hollow_in_the_wind() {
+    let m = Hollow {};
+    let mut q = m.neutral();
+    (q[0], q[1], q[2]) = (0.3, 0.2, 0.13);
+    let v = SVector::from_fn(|k, _| 0.5 + 0.3 * k as f64);
+    let tau = SVector::from_fn(|k, _| 0.2 - 0.1 * k as f64);
+    for touch in [Touch::Sticks, Touch::Slips] {
+        check(&m, 0.3, (&q, &v), &tau, &[touch]);
+    }
+}
+
+/// Through a loop: the bore holds the piston where the wall does, and both are asked.
+#[test]
+fn a_piston_on_its_wall() {
+    let m = Engine {};
+    let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
+    let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
+    check(&m, 0.0, (&q, &v), &[1.5, 0.0, 0.1].into(), &[Touch::Open]);
+}
+
+/// With inputs, the chain rule.
+#[test]
+fn inputs_move_what_is_held() {
+    #[mechanism(gravity = -9.81 * y, derivatives)]
+    struct Cart {
+        #[body(mass = 3)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+        #[body(mass = 1, com = -0.3 * y, inertia = rod(1, 0.6, y))]
+        arm: Body,
+        #[joint(cart -> arm, about = z)]
+        hinge: Pin,
+        #[acts(on = rail)]
+        motor: Force,
+        #[contact(arm.at(-0.6 * y), ground.at(-0.5 * y).plane(y), friction = 0.6)]
+        tip: Contact,
+    }
+    let (q, v, u) = ([0.1, 0.4].into(), [0.3, -1.2].into(), [4.0].into());
+    let motion = |u: SVector<f64, 1>| {
+        let tau = Cart {}.generalized_forces(&q, &u);
+        contact::forward_dynamics(&Cart {}, 0.0, &q, &v, &tau, &[Touch::Slips]).unwrap().a
+    };
+    let linear = contact::linear_motion(&Cart {}, 0.0, &q, &v, &u, &[Touch::Slips]).unwrap();
+    assert_eq!(linear.acceleration, motion(u));
+    let expected = slope(|s| motion(u.add_scalar(s)));
+    assert!((linear.by_u - expected).amax() < 1e-10, "{expected}");
+    assert!(linear.by_u.amax() > 0.1, "the motor moves it");
+}
+
+/// Four points of one body: twelve forces of which six would do. What they do to the motion is determined.
+#[test]
+fn a_table_shares_its_weight() {
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct Table {
+        #[body(mass = 4, com = 0.1 * x + 0.2 * z, inertia = cuboid(4, 0.6, 0.4, 0.1))]
+        table: Body,
+        #[joint(ground -> table)]
+        pose: Free,
+        #[body(mass = 1, com = -0.2 * z, inertia = rod(1, 0.4, z))]
+        lamp: Body,
+        #[joint(table -> lamp, about = x)]
+        hinge: Pin,
+        #[contact(table.at(0.3 * x + 0.2 * y), ground.plane(z), friction = 0.5)]
+        a: Contact,
+        #[contact(table.at(0.3 * x - 0.2 * y), ground.plane(z), friction = 0.5)]
+        b: Contact,
+        #[contact(table.at(-0.3 * x + 0.2 * y), ground.plane(z), friction = 0.5)]
+        c: Contact,
+        #[contact(table.at(-0.3 * x - 0.2 * y), ground.plane(z), friction = 0.5)]
+        d: Contact,
+    }
+    let m = Table {};
+    let q = m.integrate(&m.neutral(), &SVector::from_fn(|k, _| 0.2 - 0.05 * k as f64));
+    // All four stay where they are only if the table does not turn.
+    let v = SVector::from_fn(|k, _| if k == 6 { 2.0 } else { 0.0 });
+    let tau = SVector::from_fn(|k, _| 0.3 * k as f64 - 1.0);
+    let touches = [Touch::Sticks; 4];
+    let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
+    let motion = |q, v, tau| contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap().a;
+    for k in 0..7 {
+        let along = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let mut columns = vec![
+            (slope(|s| motion(m.integrate(&q, &along(s)), v, tau)), found.by_q.column(k)),
+            (slope(|s| motion(q, v, tau + along(s))), found.by_tau.column(k)),
+        ];
+        if !(3..6).contains(&k) {
+            columns.push((slope(|s| motion(q, v + along(s), tau)), found.by_v.column(k)));
+        }
+        for (expected, column) in columns {
+            let off = (column - expected).amax();
+            assert!(off < 1e-7 * (1.0 + found.a.amax() + expected.amax()), "{k}: {off:e}");
+        }
+    }
+}
+
+/// Points as feet, which other engines know, too.
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
+struct OnPoints {
+    #[contact(FL_FOOT, ground.plane(z), friction = 0.8)]
+    front_left: Contact,
+    #[contact(HR_FOOT, ground.plane(z), friction = 0.8)]
+    hind_right: Contact,
+}
+
+/// Along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates: Pinocchio 3.4.0, `computeConstraintDynamicsDerivatives` with two
+/// contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without correctors, in the state of `stance`.
+#[test]
+fn a_quadruped_on_points_as_in_pinocchio() {
+    let (q, v, tau) = stance();
+    let m = OnPoints {};
+    let touches = [Touch::Sticks; 2];
+    let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
+    let w = SVector::<f64, 18>::from_fn(|k, _| (0.7 * k as f64 + 0.3).cos());
+    let close = |what: &str, found: &[f64], expected: &[f64]| {
+        let most = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9 * most, "{what}: {found} instead of {expected}");
+        }
+    };
+    let expected = [
+        0.752720604,
+        -1.541096802,
+        -10.734367453,
+        23.811331744,
+        1.559749983,
+        -12.781374936,
+        -1.353156697,
+        42.274515311,
+        -62.47660505,
+        -9.527163733,
+        19.292407748,
+        -867.423158299,
+        -2.708694421,
+        -113.891300479,
+        1068.638228395,
+        -36.182512905,
+        67.390730087,
+        -110.137521312,
+    ];
+    close("v̇", found.a.as_slice(), &expected);
+    let expected = [
+        -13.828883153,
+        10.026874698,
+        1.132675467,
+        1.019474489,
+        4.9119119,
+        29.234859982,
+        -102.22430089,
+        -26.808564515,
+        -79.988509142,
+        -55.811254877,
+        -53.466535211,
+        106.324101256,
+        114.774221767,
+        126.470923772,
+        -260.093146959,
+        -32.200270239,
+        2.53633402,
+        -25.8521223,
+    ];
+    close("∂v̇/∂q", (found.by_q * w).as_slice(), &expected);
+    let expected = [
+        -0.268296624,
+        0.109501004,
+        0.418740644,
+        0.350255166,
+        0.200724727,
+        0.014533704,
+        0.442796072,
+        -1.000458212,
+        1.930128965,
+        -0.260762219,
+        0.336556244,
+        -0.417879959,
+        -0.406389599,
+        -0.859452079,
+        -0.240474152,
+        -0.48137914,
+        -0.696063872,
+        -0.010691094,
+    ];
+    close("∂v̇/∂v", (found.by_v * w).as_slice(), &expected);
+    let expected = [
+        2.701384752,
+        -0.673243399,
+        3.849970587,
+        -26.297291356,
+        -22.35188282,
+        -47.199305998,
+        67.653007102,
+        28.95612525,
+        81.130761157,
+        668.182567958,
+        412.716462879,
+        -813.639454069,
+        -534.013505074,
+        190.349617214,
+        -1681.078525449,
+        -31.625203235,
+        -22.350708841,
+        34.316775057,
+    ];
+    close("∂v̇/∂τ", (found.by_tau * w).as_slice(), &expected);
+    let forces = found.forces;
+    close("f", &[forces[0], forces[3]], &[0.843975116, -2.168646151]);
+    let forces = found.forces_by_q * w;
+    close("∂f/∂q", &[forces[0], forces[3]], &[2.228905258, 0.487937632]);
+    let forces = found.forces_by_v * w;
+    close("∂f/∂v", &[forces[0], forces[3]], &[-0.008074612, 0.002499599]);
+    let forces = found.forces_by_tau * w;
+    close("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
+}
