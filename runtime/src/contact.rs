@@ -34,6 +34,7 @@ use nalgebra::{SMatrix, SVector};
 mod apart;
 mod derivatives;
 mod held;
+mod holding;
 mod phase;
 mod problem;
 mod response;
@@ -46,6 +47,7 @@ pub use derivatives::{
     ContactDerivatives, FirstOrder, HeldDerivatives, forward_dynamics_derivatives, linear_motion,
 };
 pub use held::{Held, forward_dynamics};
+pub use holding::{Holding, hold};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
 use total::Total;

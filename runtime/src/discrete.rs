@@ -162,7 +162,7 @@ where
     const {
         assert!(
             !M::CONTACTING,
-            "a step with derivatives is one of a mechanism without contacts: leave them out by `contact::apart`, or use one that stays closed as a constraint"
+            "a step with derivatives is one of a mechanism whose contacts do not open and close: hold chosen ones by `contact::hold`, or leave them out by `contact::apart`"
         )
     };
     const {

@@ -6,7 +6,8 @@
 
 /// Rows `name(argument: kind, …) -> result` in groups, handed to a macro that writes a function for each: `space` depends on
 /// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
-/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time, `second` those of second ones.
+/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time (`given_derivatives` without those of
+/// accelerations), `second` those of second ones.
 /// A kind is the length of a vector, or `scalar`.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
@@ -42,10 +43,15 @@ macro_rules! each_function {
         }
     };
     (derivatives, $($how:tt)+) => {
+        $crate::forward::each_function!(given_derivatives, $($how)+);
+        $crate::forward::write! { $($how)+;
+            forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+        }
+    };
+    (given_derivatives, $($how:tt)+) => {
         $crate::forward::write! { $($how)+;
             coriolis_matrix(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
             inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NU>);
             generalized_momentum_derivatives(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
             momentum_rate_derivatives(q: NQ, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);

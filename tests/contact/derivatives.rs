@@ -1,6 +1,8 @@
 //! Derivatives of the motion while contacts stay closed, against differences of the motion itself.
 
 use linkwork::contact::{self, ContactDerivatives, Touch};
+use linkwork::discrete;
+use linkwork::integrate::ImplicitMidpoint;
 use linkwork::prelude::*;
 
 /// A quadruped, with a coefficient of friction for each foot.
@@ -343,4 +345,67 @@ fn a_quadruped_on_points_as_in_pinocchio() {
     close("∂f/∂v", &[forces[0], forces[3]], &[-0.008074612, 0.002499599]);
     let forces = found.forces_by_tau * w;
     close("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
+}
+
+/// Steps with held contacts, with their Jacobians: explicit ones and implicit ones, with feedback and without.
+#[test]
+fn steps_of_a_held_quadruped() {
+    use discrete::DifferentiableStep;
+    let (q, v, _) = stance();
+    let m = OnPoints {};
+    let touches = [Touch::Sticks, Touch::Slips];
+    // As after touching down: points that stick have no velocity.
+    let mut q = q;
+    let v = contact::impact(&m, 0.0, &q, &v).unwrap().v;
+    q[2] += 0.01;
+
+    fn check<S: DifferentiableStep<f64>>(
+        m: &contact::Holding<'_, OnPoints, f64, 2, 6>,
+        method: &S,
+        (q, v): (&SVector<f64, 19>, &SVector<f64, 18>),
+    ) {
+        let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
+        let next = discrete::transition(m, method, 0.0, q, v, &u).unwrap();
+        let step = |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
+            let (q, v) = discrete::step(m, method, 0.0, q, v, u).unwrap();
+            let moved = OnPoints {}.difference(&next.q, &q);
+            SVector::<f64, 36>::from_fn(|k, _| if k < 18 { moved[k] } else { v[k - 18] })
+        };
+        let (a, b) = (next.a::<36>(), next.b::<36>());
+        for k in 0..36 {
+            let along = |s: f64, first: usize| {
+                SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
+            };
+            let expected = slope(|s| step(&OnPoints {}.integrate(q, &along(s, 0)), &(v + along(s, 18)), &u));
+            let off = (a.column(k) - expected).amax();
+            assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
+        }
+        for k in 0..12 {
+            let expected =
+                slope(|s| step(q, v, &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] })));
+            let off = (b.column(k) - expected).amax();
+            assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
+        }
+    }
+    for rate in [0.0, 30.0] {
+        let held = contact::hold(&m, touches).stabilized(rate);
+        check(&held, &Rk4::step(2e-3), (&q, &v));
+        check(&held, &ImplicitMidpoint::step(2e-3), (&q, &v));
+    }
+}
+
+/// What is off by a millimetre is brought back, and stays where it was without.
+#[test]
+fn gaps_of_what_is_held_decay() {
+    let (mut q, _, _) = stance();
+    let m = OnPoints {};
+    q[2] -= m.contact_gaps(&q)[0] - 1e-3;
+    let run = |rate: f64| {
+        let held = contact::hold(&m, [Touch::Sticks, Touch::Open]).stabilized(rate);
+        simulate(&held).from(q, SVector::zeros()).method(Rk4::step(1e-4)).duration(0.1).finish().unwrap()
+    };
+    let (free, steady) = (run(0.0), run(100.0));
+    assert!((m.contact_gaps(&free.q)[0] - 1e-3).abs() < 1e-8);
+    // Critically damped: (1 + α t) e^(−α t).
+    assert!((m.contact_gaps(&steady.q)[0] - 11.0 * (-10.0_f64).exp() * 1e-3).abs() < 1e-9);
 }

@@ -162,8 +162,32 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
+    derivatives(mechanism, t, (q, v), tau, touches, T::zero())
+}
+
+/// [`forward_dynamics_derivatives`] where gaps and rates of what is held decay.
+pub(super) fn derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    tau: &SVector<T, NV>,
+    touches: &[Touch; NK],
+    decay: T,
+) -> Result<HeldDerivatives<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
     let along = mechanism.contact_rates(t, q, v);
-    let (held, responses) = held(mechanism, t, (q, v), tau, touches, &along)?;
+    let (held, responses) = held(mechanism, t, (q, v), tau, touches, (&along, decay))?;
     let jacobian = mechanism.contact_jacobian(t, q);
     let acting = tau + jacobian.tr_mul(&held.forces);
     let (by_q, by_v, by_tau) = mechanism.forward_dynamics_derivatives(t, q, v, &acting);
@@ -179,7 +203,19 @@ where
     };
     let Some(responses) = responses else { return Ok(found) };
     let laws = mechanism.contact_laws();
-    let parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
+    let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
+    if decay != T::zero() {
+        let twice = decay * constant(2.0);
+        parts.accelerations_by_q += parts.rates_by_q * twice;
+        parts.accelerations_by_v += jacobian * twice;
+        for Rows { first, .. } in M::CONTACT_ROWS {
+            for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
+                if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
+                    *change += *by_q * decay * decay;
+                }
+            }
+        }
+    }
     // How friction turns with the slip while the normal forces stay.
     let mut turned = [SMatrix::<T, NR, NV>::zeros(); 2];
     for ((rows, touch), law) in M::CONTACT_ROWS.into_iter().zip(touches).zip(&laws) {

@@ -1,9 +1,10 @@
 //! Motion while given contacts stay closed, whatever that takes.
 
-use super::problem::Problem;
-use super::{Contacts, Responses, Touch};
+use super::problem::{Problem, entry, put};
+use super::{Contacts, Responses, Rows, Touch};
 use crate::Real;
 use crate::constraint::ConstraintError;
+use crate::private::constant;
 use nalgebra::SVector;
 
 /// Accelerations and forces of contacts.
@@ -77,10 +78,12 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    held(mechanism, t, (q, v), tau, touches, &mechanism.contact_rates(t, q, v)).map(|(held, _)| held)
+    let rates = mechanism.contact_rates(t, q, v);
+    held(mechanism, t, (q, v), tau, touches, (&rates, T::zero())).map(|(held, _)| held)
 }
 
-/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is closed.
+/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is closed. Gaps and rates of
+/// what is held decay by `decay`, 1/s, critically damped: `G v̇ + b = −2 α u − α² g`.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
 pub(super) fn held<
     M,
@@ -96,7 +99,7 @@ pub(super) fn held<
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     tau: &SVector<T, NV>,
     touches: &[Touch; NK],
-    along: &SVector<T, NR>,
+    (along, decay): (&SVector<T, NR>, T),
 ) -> Result<(Held<T, NV, NR>, Option<Responses<T, NV, NR>>), ConstraintError>
 where
     T: Real,
@@ -108,7 +111,14 @@ where
         return Ok((Held { a, forces: SVector::zeros() }, None));
     }
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
-    let free = moved + mechanism.contact_bias(t, q, v);
+    let mut free = moved + mechanism.contact_bias(t, q, v);
+    if decay != T::zero() {
+        free += mechanism.contact_rates(t, q, v) * (decay * constant(2.0));
+        for (gap, Rows { first, .. }) in mechanism.contact_gaps(t, q).iter().zip(M::CONTACT_ROWS) {
+            let rate = entry(&free, first);
+            put(&mut free, first, rate + *gap * decay * decay);
+        }
+    }
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }

@@ -266,7 +266,7 @@ where
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let Self { mechanism, phase } = self;
         let along = phase.braked(&mechanism.contact_rates(t, q, v), M::CONTACT_ROWS);
-        held(*mechanism, t, (q, v), tau, &phase.touches, &along).map(|(held, _)| held.a)
+        held(*mechanism, t, (q, v), tau, &phase.touches, (&along, T::zero())).map(|(held, _)| held.a)
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
@@ -301,7 +301,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let rates = mechanism.contact_rates(t, q, v);
         let along = phase.braked(&rates, M::CONTACT_ROWS);
         let past = -T::one();
-        let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, &along) else { return past };
+        let along = (&along, T::zero());
+        let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, along) else { return past };
         let bent = || {
             let driven = mechanism.contact_rates(t, q, &SVector::zeros());
             mechanism.contact_rates(t, q, &held.a) - driven + mechanism.contact_bias(t, q, v)

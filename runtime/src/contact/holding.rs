@@ -1,0 +1,208 @@
+//! A mechanism whose contacts do what they are told to.
+
+use super::derivatives::{ContactDerivatives, derivatives};
+use super::held::held;
+use super::{Contacts, Touch, Touched};
+use crate::constraint::{ConstraintError, Projected};
+use crate::derivatives::{ByMotion, RheonomicDerivatives, unknown};
+use crate::forward::each_function;
+use crate::private::constant;
+use crate::{Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// A mechanism while given contacts stay closed and all others open; made by [`hold`].
+#[derive(Clone, Copy, Debug)]
+pub struct Holding<'m, M, T, const NK: usize, const NR: usize> {
+    mechanism: &'m M,
+    touches: [Touch; NK],
+    decay: T,
+}
+
+/// The mechanism while given contacts stay closed, whatever that takes, as [`forward_dynamics`](super::forward_dynamics) moves it:
+/// for methods of integration, discrete steps with their Jacobians, and optimisers of motions whose contacts are known. With the
+/// word `derivatives` it has derivatives, too.
+///
+/// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they are at the start but
+/// for errors of the method; [`Holding::stabilized`] lets them decay. A velocity that fulfils the contacts is that after an
+/// [`impact`](super::impact).
+///
+/// ```
+/// use linkwork::contact::{self, Touch};
+/// use linkwork::discrete;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y, derivatives)]
+/// struct Hopper {
+///     #[body(mass = 5)]
+///     trunk: Body,
+///     #[joint(ground -> trunk, along = (x, y))]
+///     air: Stage,
+///     #[body(mass = 0.4, com = -0.2 * y, inertia = rod(0.4, 0.4, y))]
+///     leg: Body,
+///     #[joint(trunk -> leg, about = z)]
+///     hip: Pin,
+///     #[acts(on = hip)]
+///     motor: Torque,
+///     #[contact(leg.at(-0.4 * y), ground.plane(y), friction = 0.9)]
+///     foot: Contact,
+/// }
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let m = Hopper {};
+/// let (q, v, u) = ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into(), [0.5].into());
+/// // It stands on its foot, and falls forward like an inverted pendulum.
+/// let stance = contact::hold(&m, [Touch::Sticks]);
+/// let next = discrete::transition(&stance, &Rk4::step(0.01), 0.0, &q, &v, &u)?;
+/// assert!(m.contact_rates(&next.q, &next.v).amax() < 1e-8);
+/// // The motor at the hip pushes the trunk, against the ground.
+/// assert!(next.b::<6>()[(3, 0)] < -1e-3);
+/// # Ok(())
+/// # }
+/// ```
+pub fn hold<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    touches: [Touch; NK],
+) -> Holding<'_, M, M::Scalar, NK, NR>
+where
+    M: Contacts<NQ, NV, NU, NK, NR>,
+{
+    Holding { mechanism, touches, decay: constant(0.0) }
+}
+
+impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
+    /// The same with gaps and rates of what is held decaying at `rate`, 1/s, critically damped (Baumgarte, *Stabilization of
+    /// constraints and integrals of motion in dynamical systems*, 1972): a few times the fastest rate of the motion.
+    #[must_use]
+    pub fn stabilized(self, rate: T) -> Self {
+        Self { decay: rate, ..self }
+    }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
+    Rheonomic<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    type Scalar = T;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = false;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = true;
+    const CONTACTING: bool = false;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+
+    each_function!(space, plain Rheonomic, self => self.mechanism);
+    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
+
+    fn forward_dynamics(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.try_forward_dynamics(t, q, v, tau).unwrap_or_else(|_| SVector::repeat(constant(f64::NAN)))
+    }
+
+    fn try_forward_dynamics(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Result<SVector<T, NV>, ConstraintError> {
+        let rates = self.mechanism.contact_rates(t, q, v);
+        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.decay)).map(|(held, _)| held.a)
+    }
+
+    /// Nothing is brought onto contacts or constraints.
+    fn project(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Result<Projected<T, NQ, NV>, ConstraintError> {
+        Ok((*q, *v))
+    }
+
+    /// What is held stays so, whether the state does or not.
+    fn impulse(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        _h: T,
+        p: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        let still = SVector::zeros();
+        let tau = self.mechanism.bias_forces(t, q, &still) + p;
+        let along = self.mechanism.contact_rates(t, q, v);
+        let found = held(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, T::zero()));
+        found.map_or_else(|_| SVector::repeat(constant(f64::NAN)), |(held, _)| held.a)
+    }
+
+    fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
+        self.mechanism.is_nearly_singular(t, q, dv)
+    }
+
+    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.carry(t, dv, v)
+    }
+
+    /// Nothing opens or closes.
+    fn contact_step(
+        &self,
+        _t: T,
+        _start: (&SVector<T, NQ>, &SVector<T, NV>),
+        (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+        given: &SVector<T, NV>,
+        _h: T,
+    ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
+        Ok(Touched { q: *q, v: free + given })
+    }
+
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: super::Visitor<T, NQ, NV, NU>,
+    {
+        None
+    }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
+    RheonomicDerivatives<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
+    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
+    each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
+
+    fn forward_dynamics_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> ByMotion<T, NV, NV> {
+        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
+            Ok(found) => (found.by_q, found.by_v, found.by_tau),
+            Err(_) => (unknown(), unknown(), unknown()),
+        }
+    }
+
+    /// Contacts and constraints are in the accelerations.
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::constraint::Visitor<T, NQ, NV, NU>,
+    {
+        None
+    }
+}
