@@ -3,6 +3,7 @@
 use super::held::held;
 use super::problem::{Problem, entry};
 use super::{Contacts, Rows, Touch};
+use crate::blocks::{add_product, product, transposed, zeros};
 use crate::constraint::ConstraintError;
 use crate::derivatives::LinearMotion;
 use crate::private::constant;
@@ -227,18 +228,29 @@ where
         }
     }
     let [turned_by_q, turned_by_v] = turned;
-    found.by_q += by_tau * (parts.forces_by_q + jacobian.tr_mul(&turned_by_q));
-    found.by_v += by_tau * jacobian.tr_mul(&turned_by_v);
+    let across = transposed(&jacobian);
+    add_product(&mut parts.forces_by_q, &across, &turned_by_q);
+    add_product(&mut found.by_q, &by_tau, &parts.forces_by_q);
+    if touches.contains(&Touch::Slips) {
+        add_product(&mut found.by_v, &by_tau, &product(&across, &turned_by_v));
+    }
     let closed = touches.map(|touch| touch != Touch::Open);
     let mut problem =
         Problem::new(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
     problem.weigh(&responses.rates);
-    let by_q = problem.answers(touches, &along, &(parts.accelerations_by_q + jacobian * found.by_q));
-    let by_v = problem.answers(touches, &along, &(parts.accelerations_by_v + jacobian * found.by_v));
-    found.forces_by_tau = problem.answers(touches, &along, &(jacobian * found.by_tau));
-    found.by_q += responses.velocities * by_q;
-    found.by_v += responses.velocities * by_v;
-    found.by_tau += responses.velocities * found.forces_by_tau;
+    // How the forces answer to the rates, which all of the derivatives share.
+    let answer = problem.answers(touches, &along);
+    let changes = |accelerations: &SMatrix<T, NR, NV>, motion: &SMatrix<T, NV, NV>| {
+        let mut gaps = *accelerations;
+        add_product(&mut gaps, &jacobian, motion);
+        product(&answer, &gaps)
+    };
+    let (by_q, by_v) =
+        (changes(&parts.accelerations_by_q, &found.by_q), changes(&parts.accelerations_by_v, &found.by_v));
+    found.forces_by_tau = changes(&zeros(), &found.by_tau);
+    add_product(&mut found.by_q, &responses.velocities, &by_q);
+    add_product(&mut found.by_v, &responses.velocities, &by_v);
+    add_product(&mut found.by_tau, &responses.velocities, &found.forces_by_tau);
     (found.forces_by_q, found.forces_by_v) = (by_q + turned_by_q, by_v + turned_by_v);
     Ok(found)
 }
@@ -300,9 +312,9 @@ where
     let (turning, _) = mechanism.tangent_rate_derivatives(&SVector::zeros(), v);
     Ok(LinearMotion {
         acceleration: held.a,
-        by_q: held.by_q + held.by_tau * force_by_q,
-        by_v: held.by_v + held.by_tau * force_by_v,
-        by_u: held.by_tau * force_by_u,
+        by_q: held.by_q + product(&held.by_tau, &force_by_q),
+        by_v: held.by_v + product(&held.by_tau, &force_by_v),
+        by_u: product(&held.by_tau, &force_by_u),
         turning: turning * constant::<T>(2.0),
     })
 }

@@ -115,7 +115,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             left
         };
         for _ in 0..PASSES {
-            let mut right = left(&forces).each(|left| [left]);
+            let right = left(&forces);
+            let most = self.rounding(&forces);
+            if right.iter().take(self.size).all(|left| left.abs() <= most) {
+                break;
+            }
+            let mut right = right.each(|left| [left]);
             self.eliminate(&mut self.lifted(&system, &slips), &mut right);
             forces.iter_mut().zip(*right).for_each(|(force, [change])| *force += change);
         }
@@ -175,27 +180,26 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         system
     }
 
-    /// By how much the forces that [`hold`](Self::hold) contacts change with those rates that they have without forces, columns by
-    /// columns: `gaps` are those changes.
-    pub(in super::super) fn answers<const N: usize>(
+    /// By how much the forces that [`hold`](Self::hold) contacts change with each of the rates that they have without forces.
+    pub(in super::super) fn answers(
         &self,
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
-        gaps: &SMatrix<T, NR, N>,
-    ) -> SMatrix<T, NR, N> {
+    ) -> SMatrix<T, NR, NR> {
         let (slips, places) = (self.slipping(touches), self.places());
         let mut system = self.held_system(&slips, rates);
-        let mut wanted = Total::repeat([T::zero(); N]);
+        let mut wanted = Total::repeat([T::zero(); NR]);
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
             for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips[k]) {
-                let gap = |j: usize| gaps.get((places[i], j)).copied().unwrap_or(T::zero());
-                wanted[i] = core::array::from_fn(|j| -gap(j));
+                if let Some(wanted) = wanted[i].get_mut(places[i]) {
+                    *wanted = -T::one();
+                }
             }
         }
         let mut changes = wanted;
         if self.is_redundant(touches) {
-            changes = Total::repeat([T::zero(); N]);
+            changes = Total::repeat([T::zero(); NR]);
             for _ in 0..PASSES {
                 let mut right = wanted;
                 for i in 0..self.size {
@@ -209,10 +213,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         } else {
             self.eliminate(&mut system, &mut changes);
         }
-        let mut all = SMatrix::<T, NR, N>::zeros();
-        for (place, change) in places.iter().zip(changes.iter()).take(self.size) {
-            for (j, change) in change.iter().enumerate() {
-                if let Some(entry) = all.get_mut((*place, j)) {
+        let mut all = SMatrix::<T, NR, NR>::zeros();
+        for (column, entries) in all.data.0.iter_mut().enumerate() {
+            for (place, change) in places.iter().zip(changes.iter()).take(self.size) {
+                if let (Some(entry), Some(change)) = (entries.get_mut(*place), change.get(column)) {
                     *entry = *change;
                 }
             }
