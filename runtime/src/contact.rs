@@ -35,6 +35,7 @@ mod apart;
 mod derivatives;
 mod held;
 mod holding;
+mod landing;
 mod phase;
 mod problem;
 mod response;
@@ -48,6 +49,7 @@ pub use derivatives::{
 };
 pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
+pub use landing::{LandedDerivatives, land, land_derivatives};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
 use total::Total;

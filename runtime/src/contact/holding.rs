@@ -23,8 +23,8 @@ pub struct Holding<'m, M, T, const NK: usize, const NR: usize> {
 /// word `derivatives` it has derivatives, too.
 ///
 /// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they are at the start but
-/// for errors of the method; [`Holding::stabilized`] lets them decay. A velocity that fulfils the contacts is that after an
-/// [`impact`](super::impact).
+/// for errors of the method; [`Holding::stabilized`] lets them decay. A velocity that fulfils the contacts is that after they
+/// [`land`](super::land).
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};

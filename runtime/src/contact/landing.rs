@@ -1,0 +1,150 @@
+//! Impacts after which given contacts are closed, whatever that takes.
+
+use super::derivatives::ContactDerivatives;
+use super::problem::Problem;
+use super::{Contacts, Solved, Touch};
+use crate::Real;
+use crate::blocks::{add_product, product};
+use crate::constraint::ConstraintError;
+use nalgebra::{SMatrix, SVector};
+
+/// Velocity and impulses after given contacts have closed at once, without restitution:
+///
+/// ```text
+/// M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   G v⁺ = 0
+/// ```
+///
+/// where surfaces stick; along the normals alone, and without friction, where they slip. This is the touchdown between two phases of a
+/// gait whose contacts are known ([`hold`](super::hold)). Gaps are not looked at, and impulses may pull: [`impact`](super::impact)
+/// finds out itself which contacts act.
+///
+/// ```
+/// use linkwork::contact::{self, Touch};
+/// use linkwork::prelude::*;
+///
+/// #[mechanism]
+/// struct Rod {
+///     #[body(mass = 3, inertia = rod(3, 2, x))]
+///     rod: Body,
+///     #[joint(ground -> rod, about = z)]
+///     pose: Planar,
+///     #[contact(rod.at(x), ground.plane(y), friction = 1)]
+///     end: Contact,
+/// }
+/// # fn main() -> Result<(), ConstraintError> {
+/// // A level rod that falls on one end keeps a quarter of its momentum: Λ = m v / 4.
+/// let falling = [0.0, -2.0, 0.0].into();
+/// let after = contact::land(&Rod {}, 0.0, &Rod {}.neutral(), &falling, &[Touch::Sticks])?;
+/// assert!((after.impulses[0] - 3.0 * 2.0 / 4.0).abs() < 1e-12);
+/// assert!((after.v[1] + after.v[2]).abs() < 1e-12 && (after.v[2] - 1.5).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts forbid it.
+pub fn land<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    touches: &[Touch; NK],
+) -> Result<Solved<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    landed(mechanism, t, (q, v), touches).map(|(solved, ..)| solved)
+}
+
+/// [`land`], with the equations and what impulses do.
+#[allow(clippy::type_complexity, reason = "sizes of arrays")]
+fn landed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    touches: &[Touch; NK],
+) -> Result<(Solved<T, NV, NR>, Problem<T, NK, NR>, SMatrix<T, NV, NR>), ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let closed = touches.map(|touch| touch != Touch::Open);
+    let free = mechanism.contact_rates(t, q, v);
+    if free.iter().any(|rate| !rate.is_finite()) {
+        return Err(ConstraintError::NotFinite);
+    }
+    let mut problem =
+        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+    let responses = mechanism.contact_responses(t, q, &closed);
+    problem.weigh(&responses.rates);
+    let impulses = problem.hold(touches, &SVector::zeros()).map_err(|k| ConstraintError::Contact {
+        constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
+    })?;
+    let impulses = problem.spread(&impulses);
+    let v = v + responses.velocities * impulses;
+    Ok((Solved { v, impulses }, problem, responses.velocities))
+}
+
+/// Velocity and impulses of [`land`] with their first derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LandedDerivatives<T, const NV: usize, const NR: usize> {
+    /// The velocity.
+    pub v: SVector<T, NV>,
+    /// The impulses of the contacts, as in [`Solved`].
+    pub impulses: SVector<T, NR>,
+    /// `∂v⁺/∂q`.
+    pub by_q: SMatrix<T, NV, NV>,
+    /// `∂v⁺/∂v`.
+    pub by_v: SMatrix<T, NV, NV>,
+    /// `∂Λ/∂q`.
+    pub impulses_by_q: SMatrix<T, NR, NV>,
+    /// `∂Λ/∂v`.
+    pub impulses_by_v: SMatrix<T, NR, NV>,
+}
+
+/// [`land`] with its first derivatives by configuration and velocity, through the constraints of the mechanism. A derivative by `q` is
+/// along motions that the contacts need not allow.
+///
+/// # Errors
+///
+/// Those of [`land`].
+pub fn land_derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    touches: &[Touch; NK],
+) -> Result<LandedDerivatives<T, NV, NR>, ConstraintError>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let (Solved { v: after, impulses }, problem, velocities) = landed(mechanism, t, (q, v), touches)?;
+    let still = SVector::zeros();
+    let jacobian = mechanism.contact_jacobian(t, q);
+    let parts = mechanism.contact_derivatives(t, q, &after, &still, &impulses);
+    // The change of velocity is the acceleration from rest under the impulses, without what acts anyway.
+    let bias = mechanism.bias_forces(t, q, &still);
+    let struck = bias + jacobian.tr_mul(&impulses);
+    let (mut by_q, _, response) = mechanism.forward_dynamics_derivatives(t, q, &still, &struck);
+    by_q -= mechanism.forward_dynamics_derivatives(t, q, &still, &bias).0;
+    add_product(&mut by_q, &response, &parts.forces_by_q);
+    let answer = problem.answers(touches, &SVector::zeros());
+    let mut gaps = parts.rates_by_q;
+    add_product(&mut gaps, &jacobian, &by_q);
+    let (impulses_by_q, impulses_by_v) = (product(&answer, &gaps), product(&answer, &jacobian));
+    add_product(&mut by_q, &velocities, &impulses_by_q);
+    let mut by_v = SMatrix::identity();
+    add_product(&mut by_v, &velocities, &impulses_by_v);
+    Ok(LandedDerivatives { v: after, impulses, by_q, by_v, impulses_by_q, impulses_by_v })
+}
