@@ -138,10 +138,10 @@ impl Loop {
         self.map.at(boundary(self.period, frequency)).map_or(infinite, |m| m[(0, 0)])
     }
 
-    /// Frequencies where `f` changes its sign from one to the next.
-    fn crossings(&self, grid: &[f64], f: impl Fn(C) -> f64) -> Vec<f64> {
+    /// Frequencies where `f` changes its sign from one of the grid to the next; `response` is that on the grid.
+    fn crossings(&self, grid: &[f64], response: &[C], f: impl Fn(C) -> f64) -> Vec<f64> {
         let of = |w: f64| f(self.at(w));
-        let values: Vec<f64> = grid.iter().map(|w| of(*w)).collect();
+        let values: Vec<f64> = response.iter().map(|value| f(*value)).collect();
         let mut found = Vec::new();
         for k in 1..grid.len() {
             let (before, after) = (values[k - 1], values[k]);
@@ -182,6 +182,7 @@ impl StateSpace {
             let above = (1..=200).map(|k| last * 10f64.powf(f64::from(k) / 25.0));
             grid = below.chain(grid.iter().copied()).chain(above.filter(|_| self.period.is_none())).collect();
         }
+        let response: Vec<C> = grid.iter().map(|w| open.at(*w)).collect();
         let mut gain = Vec::new();
         let mut take = |frequency: f64, value: C| {
             if value.re < 0.0 && value.re.is_finite() {
@@ -190,7 +191,7 @@ impl StateSpace {
         };
         let at_rest = open.at(0.0);
         take(0.0, at_rest);
-        for w in open.crossings(&grid, |x| x.im) {
+        for w in open.crossings(&grid, &response, |x| x.im) {
             let value = open.at(w);
             // A pole on the border changes the sign, too.
             if value.im.abs() <= 1e-6 * value.norm() {
@@ -201,19 +202,19 @@ impl StateSpace {
             let w = std::f64::consts::PI / h;
             take(w, C::new(open.at(w).re, 0.0));
         }
-        let phase = open.crossings(&grid, |x| x.norm().ln());
+        let phase = open.crossings(&grid, &response, |x| x.norm().ln());
         let phase = phase
             .into_iter()
             .map(|w| PhaseMargin { degrees: (-open.at(w)).arg().to_degrees(), frequency: w });
         gain.dedup_by(|a, b| (a.frequency - b.frequency).abs() <= 1e-9 * b.frequency);
-        Ok(Margins { gain, phase: phase.collect(), stability: open.stability(&grid) })
+        Ok(Margins { gain, phase: phase.collect(), stability: open.stability(&grid, &response) })
     }
 }
 
 impl Loop {
-    fn stability(&self, grid: &[f64]) -> StabilityMargin {
+    fn stability(&self, grid: &[f64], response: &[C]) -> StabilityMargin {
         let distance = |w: f64| (self.at(w) + 1.0).norm();
-        let values: Vec<f64> = grid.iter().map(|w| distance(*w)).collect();
+        let values: Vec<f64> = response.iter().map(|value| (value + 1.0).norm()).collect();
         let mut best = StabilityMargin { distance: distance(0.0), frequency: 0.0 };
         if !best.distance.is_finite() {
             best.distance = f64::INFINITY;
