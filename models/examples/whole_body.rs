@@ -1,0 +1,145 @@
+//! A quadruped on its four feet moves its trunk about: whole-body control, whose torques let the feet push within their cones of
+//! friction, and no more along the ground than they have to.
+//!
+//! Trunk and contact forces depend on the torques by [`contact::forward_dynamics_derivatives`]: `v̇ = v̇₀ + A τ`, `f = f₀ + F τ`. Of
+//! all torques that give the trunk the acceleration it should have, those are taken whose forces are least along the ground. Source:
+//! Righetti, Buchli, Mistry, Kalakrishnan and Schaal, *Optimal distribution of contact forces with inverse-dynamics control*,
+//! International Journal of Robotics Research 32 (2013).
+//!
+//! ```text
+//! cargo run --release --example whole_body -p linkwork-models
+//! ```
+
+use linkwork::contact::{self, Touch};
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+
+/// Solo 12 on the ground, each foot a sphere.
+#[mechanism(urdf = "urdf/solo12.urdf", base = free, gravity = -9.81 * z, limits = ignore, derivatives)]
+struct Solo {
+    #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
+    front_left: Contact,
+    #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
+    front_right: Contact,
+    #[contact(HL_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
+    hind_left: Contact,
+    #[contact(HR_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
+    hind_right: Contact,
+}
+
+type Configuration = SVector<f64, 19>;
+type Velocity = SVector<f64, 18>;
+type Torques = SVector<f64, 12>;
+
+/// Hip, thigh and shank of each leg, rad.
+const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
+const STANDING: [Touch; 4] = [Touch::Sticks; 4];
+/// What a torque costs beside a force along the ground, (N/(N·m))²; and a normal force, so that all feet carry.
+const TORQUE: f64 = 1e-4;
+const NORMAL: f64 = 1e-2;
+/// How the trunk moves: sideways and up, m, nodding, rad, at this frequency, rad/s.
+const REACH: [f64; 3] = [0.03, 0.015, 0.12];
+const RATE: f64 = 6.0;
+
+/// Where the trunk should be, beside the start, as a displacement in its axes, with rate and acceleration.
+fn wanted(t: f64) -> [SVector<f64, 6>; 3] {
+    let [side, up, nod] = REACH;
+    let along = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
+    let (sin, cos) = (RATE * t).sin_cos();
+    let (x, rate, change) =
+        (along(sin, cos - 1.0), along(cos, -sin) * RATE, along(-sin, -cos) * (RATE * RATE));
+    // It begins at rest.
+    let late = (-4.0 * t).exp();
+    let grown = 1.0 - late * (1.0 + 4.0 * t + 8.0 * t * t);
+    let (growth, bend) = (32.0 * t * t * late, 64.0 * t * (1.0 - 2.0 * t) * late);
+    [x * grown, rate * grown + x * growth, change * grown + rate * (2.0 * growth) + x * bend]
+}
+
+/// The configuration with the trunk where it should be.
+fn led(start: &Configuration, t: f64) -> Configuration {
+    let [place, ..] = wanted(t);
+    let mut displacement = Velocity::zeros();
+    displacement.fixed_rows_mut::<6>(0).copy_from(&place);
+    Solo {}.integrate(start, &displacement)
+}
+
+/// The torques, and the contact forces that they are to have.
+fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (Torques, SVector<f64, 12>) {
+    let robot = Solo {};
+    let missing = robot.difference(q, &led(start, t));
+    let [_, velocity, acceleration] = wanted(t);
+    let off = missing.fixed_rows::<6>(0) * 900.0 + (velocity - v.fixed_rows::<6>(0)) * 60.0;
+    let target = acceleration + off;
+    // As on feet that stick: without torques, and by how much these change it.
+    let Ok(held) = contact::forward_dynamics_derivatives(&robot, 0.0, q, v, &Velocity::zeros(), &STANDING)
+    else {
+        return (Torques::zeros(), SVector::zeros());
+    };
+    let trunk = held.by_tau.fixed_view::<6, 12>(0, 6);
+    let pushes = held.forces_by_tau.fixed_view::<12, 12>(0, 6);
+    let weights = SVector::<f64, 12>::from_fn(|k, _| if k % 3 == 0 { NORMAL } else { 1.0 });
+    let weighted = SMatrix::<f64, 12, 12>::from_diagonal(&weights) * pushes;
+    // Least ½ fᵀ W f + ½ ε τᵀ τ with A τ = v̇ − v̇₀ (Lagrange multipliers).
+    let mut system = SMatrix::<f64, 18, 18>::zeros();
+    let mut right = SVector::<f64, 18>::zeros();
+    let costs = pushes.transpose() * weighted + SMatrix::<f64, 12, 12>::identity() * TORQUE;
+    system.fixed_view_mut::<12, 12>(0, 0).copy_from(&costs);
+    system.fixed_view_mut::<6, 12>(12, 0).copy_from(&trunk);
+    system.fixed_view_mut::<12, 6>(0, 12).copy_from(&trunk.transpose());
+    right.fixed_rows_mut::<12>(0).copy_from(&-(weighted.transpose() * held.forces));
+    right.fixed_rows_mut::<6>(12).copy_from(&(target - held.a.fixed_rows::<6>(0)));
+    let Some(solved) = system.lu().solve(&right) else { return (Torques::zeros(), SVector::zeros()) };
+    let torques = solved.fixed_rows::<12>(0).into_owned();
+    (torques, held.forces + pushes * torques)
+}
+
+/// The largest share of its cone of friction that a foot uses; all press.
+fn share(forces: &SVector<f64, 12>) -> f64 {
+    let of = |foot: usize| forces.fixed_rows::<2>(3 * foot + 1).norm() / (0.6 * forces[3 * foot].max(1e-9));
+    (0..4).map(of).fold(0.0, f64::max)
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let robot = Solo {};
+    let mut start = robot.neutral();
+    for leg in 0..4 {
+        start.fixed_rows_mut::<3>(7 + 3 * leg).copy_from_slice(&POSTURE);
+    }
+    start[2] -= robot.contact_gaps(&start).min();
+    let slip = |q: &Configuration, v: &Velocity| {
+        let rates = robot.contact_rates(q, v);
+        (0..4).map(|foot| rates.fixed_rows::<2>(3 * foot + 1).norm()).fold(0.0, f64::max)
+    };
+
+    let run = simulate(&robot)
+        .from(start, Velocity::zeros())
+        .control_every(1e-3, |t, q, v| control(&start, t, q, v).0)
+        .method(TimeStepping::step(1e-3))
+        .duration(3.0)
+        .sample_every(0.25);
+    println!("  t, s   side, mm    up, mm   nod, mrad   off, mm   friction   slip, µm/s");
+    for sample in run {
+        let Sample { t, q, v, .. } = sample?;
+        let moved = robot.difference(&start, &q);
+        let off = robot.difference(&q, &led(&start, t)).fixed_rows::<6>(0).amax();
+        let (_, forces) = control(&start, t, &q, &v);
+        let slip = slip(&q, &v);
+        println!(
+            "{t:6.2} {:10.2} {:9.2} {:11.1} {:9.3} {:10.2} {:11.1e}",
+            1e3 * moved[1],
+            1e3 * moved[2],
+            1e3 * moved[4],
+            1e3 * off,
+            share(&forces),
+            1e6 * slip
+        );
+        assert!(off < 1e-3, "the trunk is led to a millimetre and a milliradian");
+        assert!(share(&forces) < 0.5 && slip < 1e-6, "feet press well within their cones, and stand");
+    }
+    Ok(())
+}
+
+#[test]
+fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+    main()
+}
