@@ -22,7 +22,8 @@
 //!
 //! A mechanism that is driven in time is one at an instant, and its system is frozen there: pass `&at(&mechanism, t)`. Trees and
 //! mechanisms without constraints come by [`linear_system`]; those with constraints by [`constrained_system`] from what their
-//! `linearize` gives, in independent coordinates. Outputs come by [`measured_system`].
+//! `linearize` gives, in independent coordinates. Outputs come by [`measured_system`], and
+//! under constraints about a steady state by [`Trim::measured_system`](crate::steady::Trim::measured_system).
 
 use crate::{Error, SecondOrderForm, Signal, StateSpace};
 use linkwork::constraint::Linearization;

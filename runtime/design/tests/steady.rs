@@ -510,3 +510,63 @@ fn an_aircraft_climbs_and_turns() {
     let system = system.output("climbs", 0.0).find().unwrap_err().to_string();
     assert!(system.starts_with("no output `climbs`, perhaps `climb`; there are airspeed"), "{system}");
 }
+
+/// A pendulum of a particle that a constraint holds, and one on a pin: pushed aside, what is measured of both is the same.
+#[test]
+fn outputs_under_constraints_are_those_of_independent_coordinates() {
+    #[mechanism(gravity = -9.81 * y, derivatives)]
+    struct Held {
+        px: Coordinate,
+        py: Coordinate,
+        #[particle(mass = 2, at = px * x + py * y)]
+        bob: Particle,
+        #[constraint(norm(r(bob / ground)) = 1.5)]
+        rod: Holonomic,
+        #[acts(on = bob, along = x)]
+        push: Force,
+        #[acts(on = bob, value = -0.7 * v(bob / ground / ground))]
+        drag: Force,
+        #[output(r(bob / ground))]
+        place: Vector,
+        #[output(v(bob / ground / ground))]
+        velocity: Vector,
+        #[output(a(bob / ground / ground))]
+        acceleration: Vector,
+        #[output(push + 3 * py)]
+        mixed: Scalar,
+    }
+    #[mechanism(gravity = -9.81 * y, derivatives)]
+    struct Pinned {
+        #[body(mass = 0, inertia = 0)]
+        arm: Body,
+        #[joint(ground -> arm, about = z)]
+        hinge: Pin,
+        #[particle(mass = 2, at = arm.at(-1.5 * y))]
+        bob: Particle,
+        #[acts(on = bob, along = ground.x)]
+        push: Force,
+        #[acts(on = bob, value = -0.7 * v(bob / ground / ground))]
+        drag: Force,
+        #[output(r(bob / ground))]
+        place: Vector,
+        #[output(v(bob / ground / ground))]
+        velocity: Vector,
+        #[output(a(bob / ground / ground))]
+        acceleration: Vector,
+        #[output(push + 3 * dot(r(bob / ground), y))]
+        mixed: Scalar,
+    }
+    let push = vector![12.0];
+    let held = constrained_equilibrium(&Held {}).with_inputs(push).from(vector![0.8, -1.2]);
+    let pinned = equilibrium(&Pinned {}).with_inputs(push).from(vector![0.5]);
+    let held = held.measured_system(&held.find().unwrap()).unwrap();
+    let pinned = pinned.measured_system(&pinned.find().unwrap()).unwrap();
+    assert_eq!(held.outputs().len(), 10);
+    assert_eq!((held.a().nrows(), held.outputs()), (2, pinned.outputs()));
+    for w in [0.0, 1.0, 2.7, 40.0] {
+        let s = nalgebra::Complex::new(0.3, w);
+        let (a, b) = (held.at(s).unwrap(), pinned.at(s).unwrap());
+        assert!((&a - &b).camax() < 1e-9 * (1.0 + b.camax()), "{a} {b}");
+        assert!(b.camax() > 1e-3, "something is measured");
+    }
+}

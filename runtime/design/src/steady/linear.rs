@@ -4,8 +4,8 @@ use super::problem::{Place, Problem, dynamic};
 use super::{SteadyState, Trim};
 use crate::mechanism::{effective_mass, named, state_names};
 use crate::{Error, StateSpace};
-use linkwork::{Rheonomic, RheonomicDerivatives};
-use nalgebra::DMatrix;
+use linkwork::{OutputDerivatives, Rheonomic, RheonomicDerivatives};
+use nalgebra::{DMatrix, SVector};
 
 /// Entries of a matrix of constraints below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-9;
@@ -21,8 +21,20 @@ pub struct Linear {
     /// Changes of the accelerations by displacements.
     pub by_q: DMatrix<f64>,
     pub mass: DMatrix<f64>,
+    motion: Seen,
     /// Whether velocities alone are constrained.
     pub is_holonomic: bool,
+}
+
+/// What outputs see of the motion: how displacements, velocities and accelerations of all coordinates follow from independent
+/// coordinates, speeds and inputs.
+struct Seen {
+    /// All velocities by independent coordinates, then by speeds.
+    velocities: [DMatrix<f64>; 2],
+    /// All accelerations by independent coordinates, by speeds and by inputs.
+    accelerations: [DMatrix<f64>; 3],
+    acceleration: Vec<f64>,
+    parameters: Vec<f64>,
 }
 
 /// `J x = R y` solved for dependent entries of `x`: Gauss–Jordan elimination with complete pivoting.
@@ -97,8 +109,7 @@ where
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
     let motion = problem.motion(&place)?;
     let (mass, turning) = trim.with(&place.parameters, |m| {
-        let (turning, _) =
-            RheonomicDerivatives::tangent_rate_derivatives(m, &nalgebra::SVector::zeros(), &place.v);
+        let (turning, _) = RheonomicDerivatives::tangent_rate_derivatives(m, &SVector::zeros(), &place.v);
         // The tangent space moves along, so that the bracket counts twice.
         (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning) * 2.0)
     });
@@ -135,7 +146,13 @@ where
     });
     let b = DMatrix::from_fn(np + ns, NU, |i, j| if i < np { 0.0 } else { by_u[(row(i), j)] });
     let is_holonomic = holonomic == jacobian.nrows();
-    Ok(Linear { coordinates, shape, speeds, a, b, by_q, mass, is_holonomic })
+    let motion = Seen {
+        velocities: [carried, gamma],
+        accelerations: [by_position, by_speed, by_u],
+        acceleration: (&lock * dynamic(&motion.value)).iter().copied().collect(),
+        parameters: place.parameters,
+    };
+    Ok(Linear { coordinates, shape, speeds, a, b, by_q, mass, motion, is_holonomic })
 }
 
 /// What coordinates that are held fast leave of accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, with `P` the accelerations by forces.
@@ -167,12 +184,74 @@ where
     ///
     /// [`Error::NotFinite`] where the mass matrix is singular.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
-        let Linear { coordinates, speeds, a, b, .. } = linear(self, found)?;
+        let system = Self::system(&linear(self, found)?)?;
+        Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+    }
+
+    fn system(Linear { coordinates, speeds, a, b, .. }: &Linear) -> Result<StateSpace, Error> {
         let names = |all: &[usize]| all.iter().map(|k| M::VELOCITIES[*k]).collect::<Vec<_>>();
         let n = a.nrows();
-        let system = StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
+        let system = StateSpace::new(a.clone(), b.clone(), DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
         let first_order = speeds.iter().filter(|k| **k + M::FIRST_ORDER >= NV).count();
-        let system = system.with_states(state_names(&names(&coordinates), &names(&speeds), first_order))?;
-        Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+        system.with_states(state_names(&names(coordinates), &names(speeds), first_order))
+    }
+
+    /// [`linear_system`](Self::linear_system) with the declared outputs of the mechanism: `y = C x + D δu`, with what constraints,
+    /// and coordinates that are held, make of positions, velocities and accelerations.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    /// use linkwork_design::steady::constrained_equilibrium;
+    ///
+    /// /// A bead on a parabola, pushed, with an accelerometer.
+    /// #[mechanism(gravity = -9.81 * y, derivatives)]
+    /// struct Bead {
+    ///     #[body(mass = 2)]
+    ///     bead: Body,
+    ///     #[joint(ground -> bead, along = (x, y))]
+    ///     place: Stage,
+    ///     #[constraint(place.y == place.x * place.x)]
+    ///     wire: Holonomic,
+    ///     #[acts(on = place.x)]
+    ///     push: Force,
+    ///     #[output(dot(a(bead / ground / ground), x))]
+    ///     accelerometer: Scalar,
+    /// }
+    /// let problem = constrained_equilibrium(&Bead {});
+    /// let system = problem.measured_system(&problem.find()?)?;
+    /// // At its lowest point: ẍ = F / m − 2 g x.
+    /// assert_eq!(system.outputs()[0].name, "accelerometer");
+    /// assert!((system.d()[(0, 0)] - 0.5).abs() < 1e-12 && (system.c()[(0, 0)] + 2.0 * 9.81).abs() < 1e-9);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`linear_system`](Self::linear_system).
+    pub fn measured_system<const NY: usize>(
+        &self,
+        found: &SteadyState<NQ, NV, NU>,
+    ) -> Result<StateSpace, Error>
+    where
+        M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+    {
+        let linear = linear(self, found)?;
+        let Seen { velocities: [carried, gamma], accelerations: [by_position, by_speed, by_u], .. } =
+            &linear.motion;
+        let a = SVector::from_iterator(linear.motion.acceleration.iter().copied());
+        let seen = self.with(&linear.motion.parameters, |m| {
+            m.output_derivatives(self.t, &found.q, &found.v, &a, &found.u)
+        });
+        let [of_q, of_v, of_a] = [&seen.by_q, &seen.by_v, &seen.by_a].map(dynamic);
+        let by_positions = &of_q * &linear.shape + &of_v * carried + &of_a * by_position;
+        let by_speeds = &of_v * gamma + &of_a * by_speed;
+        let np = by_positions.ncols();
+        let c = DMatrix::from_fn(NY, np + by_speeds.ncols(), |i, j| {
+            if j < np { by_positions[(i, j)] } else { by_speeds[(i, j - np)] }
+        });
+        let d = dynamic(&seen.by_u) + of_a * by_u;
+        let names = Self::system(&linear)?;
+        let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
+        system.with_inputs(named(&M::INPUTS))?.with_outputs(named(&M::OUTPUTS))
     }
 }
