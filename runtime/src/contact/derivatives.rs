@@ -50,7 +50,7 @@ pub struct FirstOrder<T, const NV: usize, const NR: usize> {
     pub rates_by_q: SMatrix<T, NR, NV>,
 }
 
-/// The same as lists of columns, as generated code makes it.
+/// [`FirstOrder`] as lists of columns, as generated code makes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<T, const NV: usize, const NR: usize> {
     /// `∂(Gᵀ f)/∂q`.

@@ -69,7 +69,7 @@ where
 }
 
 impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
-    /// The same with gaps and rates of what is held decaying at `rate`, 1/s, critically damped (Baumgarte, *Stabilization of
+    /// The mechanism with gaps and rates of what is held decaying at `rate`, 1/s, critically damped (Baumgarte, *Stabilization of
     /// constraints and integrals of motion in dynamical systems*, 1972): a few times the fastest rate of the motion.
     #[must_use]
     pub fn stabilized(self, rate: T) -> Self {

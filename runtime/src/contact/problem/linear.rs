@@ -167,7 +167,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         system
     }
 
-    /// The same where rates that depend on each other are told apart by a little.
+    /// The matrix of [`held_system`](Self::held_system) where rates that depend on each other are told apart by a little.
     fn lifted(&self, system: &Square<T, NR>, slips: &Total<bool, NK>) -> Square<T, NR> {
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
         let mut system = *system;
