@@ -95,6 +95,22 @@ pub fn command() -> Command {
                     .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics")),
                 )
                 .subcommand(
+                    with_input(Command::new("library").about(
+                        "A crate and a header: all functions on plain arrays, as a shared and a static library",
+                    ))
+                    .arg(
+                        text("out", "FOLDER", "Where the crate goes [default: the prefix]")
+                            .short('o')
+                            .value_parser(value_parser!(PathBuf)),
+                    )
+                    .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
+                    .arg(text(
+                        "linkwork",
+                        "FOLDER",
+                        "The sources of Linkwork that it is built with [default: its release]",
+                    )),
+                )
+                .subcommand(
                     with_input(Command::new("rust").about("What the attribute generates, for reading"))
                         .arg(out_file()),
                 ),

@@ -1,17 +1,18 @@
-//! `linkwork export`: a mechanism's functions in C, and in Rust for reading.
+//! `linkwork export`: a mechanism's functions in C, behind C's calling convention, and in Rust for reading.
 
 use crate::Stop;
 use crate::commands::given;
 use crate::input::Input;
+use crate::library;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::export::c::Options;
+use linkwork_compiler::export::c::{self, Options};
 use linkwork_compiler::syntax::{Inertias, ScalarType};
 use linkwork_compiler::{expand, export_c};
 use std::path::{Path, PathBuf};
 
 /// A source file and a header.
-pub fn c(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
     let source = input.read(cx);
@@ -36,6 +37,28 @@ pub fn c(matches: &ArgMatches) -> Result<(), Stop> {
     }
     for line in &files.left_out {
         eprintln!("linkwork: not in C: {line}");
+    }
+    Ok(())
+}
+
+/// A crate of functions on plain arrays.
+pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
+    let input = Input::one(matches)?;
+    let given_prefix = given(matches, "prefix").map(ToString::to_string);
+    let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.name)));
+    let made = library::write(&input, &prefix, given(matches, "linkwork"))?;
+    let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
+    for (path, text) in &made.files {
+        let path = folder.join(path.replace("NAME", &made.prefix));
+        let parent = path.parent().unwrap_or(&folder);
+        std::fs::create_dir_all(parent).map_err(|error| {
+            Stop::Failure(format!("cannot make the folder {}: {error}", parent.display()))
+        })?;
+        write(&path, text)?;
+        println!("{}", path.display());
+    }
+    for name in &made.left_out {
+        eprintln!("linkwork: not in the library: {name}");
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ mod evaluate;
 mod export;
 mod input;
 mod integrate;
+mod library;
 mod motion;
 mod names;
 mod new;
@@ -43,7 +44,8 @@ fn main() -> ExitCode {
         Some(("new", given)) => new::run(given),
         Some(("completions", given)) => completions(given),
         Some(("export", given)) => match given.subcommand() {
-            Some(("c", given)) => export::c(given),
+            Some(("c", given)) => export::c99(given),
+            Some(("library", given)) => export::library(given),
             Some(("rust", given)) => export::rust(given),
             _ => Err(Stop::Failure("expected `c` or `rust`".to_string())),
         },

@@ -143,3 +143,22 @@ fn robots_are_read_in_their_formats() {
         "{said}"
     );
 }
+
+/// What has no form behind plain arrays is told, and so is a folder without sources.
+#[test]
+fn libraries_that_cannot_be_are_told() {
+    let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
+    for (arguments, words) in [
+        (&["export", "library", fighter, "--struct", "Fighter"][..], "tables of `Fighter`"),
+        (
+            &["export", "library", own, "--struct", "Balloon", "--linkwork", "/nowhere"][..],
+            "/nowhere has no sources of Linkwork",
+        ),
+        (&["export", "library", own, "--struct", "Balloon", "--with", "base = loose"][..], "base"),
+    ] {
+        let done = Command::new(env!("CARGO_BIN_EXE_linkwork")).args(arguments).output().unwrap();
+        let text = String::from_utf8_lossy(&done.stderr);
+        assert!(!done.status.success() && text.contains(words), "{text}");
+    }
+}

@@ -13,7 +13,7 @@ pub fn safe(text: &str) -> String {
 }
 
 /// Text without rustdoc's links.
-fn without_links(text: &str) -> String {
+pub fn without_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
     while let Some(at) = rest.find("](Self::") {

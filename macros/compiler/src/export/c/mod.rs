@@ -14,5 +14,6 @@ mod scalar;
 mod source;
 mod support;
 
-pub use names::identifier;
+pub(super) use docs::{safe, without_links, wrapped};
+pub use names::{capitals, identifier, letters, prefix};
 pub use source::{Files, Options, Unfit, write};

@@ -1,0 +1,68 @@
+//! What the library says of itself: names, shapes, units and documentation as JSON.
+
+use super::{Function, Kind, Known};
+use linkwork_compiler::export::without_links;
+use serde_json::{Value, json};
+
+/// The description.
+pub fn description(known: &Known<'_, '_>) -> String {
+    let m = known.model;
+    let named = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
+        let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
+        names.into_iter().zip(units).map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
+    };
+    fn plain(list: &[String]) -> Vec<&str> {
+        list.iter().map(String::as_str).collect()
+    }
+    let docs = super::functions::docs(&known.source.mechanism.shell.attributes);
+    let unit_of = |function: &str| {
+        let at = m.outputs.iter().position(|output| output.name == function)?;
+        m.units.outputs.get(at).cloned()
+    };
+    let functions: Vec<Value> = known.functions.iter().map(|f| of_function(f, unit_of(&f.name))).collect();
+    let all = json!({
+        "name": known.input.name,
+        "prefix": known.prefix,
+        "version": env!("CARGO_PKG_VERSION"),
+        "number": known.number(),
+        "documentation": docs.join("\n\n"),
+        "configuration": named(plain(&m.configuration), &m.units.configuration),
+        "velocities": named(m.velocities.iter().map(|(name, _)| name.as_str()).collect(), &m.units.velocities),
+        "inputs": named(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
+        "parameters": named(plain(&m.parameters), &m.units.parameters),
+        "outputs": named(m.outputs.iter().map(|output| output.name.as_str()).collect(), &m.units.outputs),
+        "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
+        "constraints": m.constraints.len(),
+        "contacts": m.contacts.len(),
+        "time": m.time,
+        "dynamics": !m.kinematic,
+        "equations": known.equations,
+        "functions": functions,
+        "left_out": known.left_out,
+    });
+    all.to_string()
+}
+
+fn of_function(f: &Function, unit: Option<String>) -> Value {
+    let docs: Vec<String> = f.docs.iter().map(|paragraph| without_links(paragraph)).collect();
+    let arguments: Vec<Value> = f
+        .arguments
+        .iter()
+        .map(|(name, kind)| match kind {
+            Kind::Number => json!({ "name": name, "kind": "number" }),
+            Kind::Frame => json!({ "name": name, "kind": "frame" }),
+            Kind::Marks => json!({ "name": name, "kind": "velocities" }),
+            Kind::Matrix(rows, 1) => json!({ "name": name, "kind": "array", "shape": [rows] }),
+            Kind::Matrix(rows, columns) => json!({ "name": name, "kind": "array", "shape": [rows, columns] }),
+        })
+        .collect();
+    let results: Vec<Value> =
+        f.results.iter().map(|(name, shape)| json!({ "name": name, "shape": shape })).collect();
+    json!({
+        "name": f.name,
+        "documentation": docs.join("\n\n"),
+        "arguments": arguments,
+        "results": results,
+        "unit": unit,
+    })
+}

@@ -1,0 +1,243 @@
+//! The functions that a mechanism has, read from its generated Rust.
+
+use quote::ToTokens;
+use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Type};
+
+/// An argument.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number by value.
+    Number,
+    /// A matrix of so many rows and columns.
+    Matrix(usize, usize),
+    /// Marks at some of the velocities.
+    Marks,
+    /// The number of a frame.
+    Frame,
+}
+
+/// A function behind plain arrays.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// Paragraphs of documentation.
+    pub docs: Vec<String>,
+    /// Names and kinds of its arguments.
+    pub arguments: Vec<(String, Kind)>,
+    /// Names and shapes of its results: none of a number, else the lengths of its sides.
+    pub results: Vec<(String, Vec<usize>)>,
+    /// How it is called: an expression of `m` with `#k` in the places of arguments.
+    pub call: String,
+    /// The same for several states.
+    pub lanes: Option<String>,
+}
+
+impl Function {
+    /// How many numbers an argument has.
+    pub fn length(kind: &Kind, nv: usize) -> usize {
+        match kind {
+            Kind::Number | Kind::Frame => 1,
+            Kind::Matrix(rows, columns) => rows * columns,
+            Kind::Marks => nv,
+        }
+    }
+}
+
+/// All functions of the struct that plain arrays can be given to; the names of the others.
+pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
+    let (mut found, mut left_out, mut names) = (Vec::new(), Vec::new(), Vec::new());
+    for item in items {
+        let Item::Impl(block) = item else { continue };
+        let is_own = matches!(&*block.self_ty, Type::Path(path) if path.path.segments.last().is_some_and(|s| s.ident == mechanism));
+        if block.trait_.is_some() || !is_own || asks(block.generics.where_clause.as_ref()) {
+            continue;
+        }
+        for inner in &block.items {
+            let ImplItem::Fn(function) = inner else { continue };
+            let name = function.sig.ident.to_string();
+            let is_public = matches!(function.vis, syn::Visibility::Public(_));
+            let of_state =
+                matches!(function.sig.inputs.first(), Some(FnArg::Receiver(own)) if own.mutability.is_none());
+            if !is_public || !of_state || name.starts_with("__") || name == "validate" {
+                continue;
+            }
+            if let Some(one) = name.strip_suffix("_lanes") {
+                names.push(one.to_string());
+            } else if let Some(function) = one(&name, function) {
+                found.push(function);
+            } else if !is_known(&name) {
+                left_out.push(name);
+            }
+        }
+    }
+    for function in found.iter_mut().filter(|f| names.contains(&f.name)) {
+        let own = format!("{}(", function.name);
+        function.lanes = Some(function.call.replacen(&own, &format!("{}_lanes(", function.name), 1));
+    }
+    (found, left_out)
+}
+
+/// A block of functions that are there to say why there are none.
+fn asks(bounds: Option<&syn::WhereClause>) -> bool {
+    bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
+}
+
+/// Functions that stand here in another form.
+fn is_known(name: &str) -> bool {
+    name.ends_with("_into") || name.starts_with("frame_")
+}
+
+fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
+    if !function.sig.generics.params.is_empty() || name.ends_with("_into") {
+        return None;
+    }
+    let mut arguments = Vec::new();
+    for input in function.sig.inputs.iter().skip(1) {
+        let FnArg::Typed(typed) = input else { return None };
+        let kind = match &*typed.ty {
+            Type::Reference(reference) if reference.mutability.is_none() => behind(&reference.elem)?,
+            plain => (is_number(plain)).then_some(Kind::Number)?,
+        };
+        arguments.push((typed.pat.to_token_stream().to_string(), kind));
+    }
+    let ReturnType::Type(_, kind) = &function.sig.output else { return None };
+    let shapes = shapes(kind)?;
+    let results = result_names(name, shapes.len()).into_iter().zip(shapes).collect();
+    let list: Vec<String> = arguments
+        .iter()
+        .enumerate()
+        .map(|(k, (_, kind))| match kind {
+            Kind::Number => format!("given(g, {k})"),
+            Kind::Marks => format!("&g.marked({k})"),
+            _ => format!("&given(g, {k})"),
+        })
+        .collect();
+    let call = format!("m.{name}({})", list.join(", "));
+    Some(Function {
+        name: name.to_string(),
+        docs: docs(&function.attrs),
+        arguments,
+        results,
+        call,
+        lanes: None,
+    })
+}
+
+/// The paragraphs of doc comments.
+pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
+    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+        syn::Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
+            syn::Expr::Lit(literal) => match &literal.lit {
+                syn::Lit::Str(text) => Some(text.value()),
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
+    });
+    let text: Vec<String> = lines.map(|line| line.trim().to_string()).collect();
+    let text = text.join("\n");
+    let paragraphs = text.split("\n\n").map(|paragraph| paragraph.trim().replace('\n', " "));
+    paragraphs.filter(|paragraph| !paragraph.is_empty()).collect()
+}
+
+/// Words for what is no number of the mechanism's scalar type.
+const OTHERS: [&str; 5] = ["Self", "bool", "str", "u64", "usize"];
+
+fn is_number(kind: &Type) -> bool {
+    matches!(kind, Type::Path(path) if path.path.get_ident().is_some_and(|name| !OTHERS.iter().any(|other| name == other)))
+}
+
+fn behind(kind: &Type) -> Option<Kind> {
+    if let Type::Slice(slice) = kind {
+        return (slice.elem.to_token_stream().to_string() == "usize").then_some(Kind::Marks);
+    }
+    match shape(kind)?.as_slice() {
+        [n] => Some(Kind::Matrix(*n, 1)),
+        [rows, columns] => Some(Kind::Matrix(*rows, *columns)),
+        _ => None,
+    }
+}
+
+/// The last word of a type's path, and its sizes.
+fn word(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
+    let Type::Path(path) = kind else { return None };
+    let last = path.path.segments.last()?;
+    let (mut types, mut sizes) = (Vec::new(), Vec::new());
+    if let PathArguments::AngleBracketed(list) = &last.arguments {
+        for argument in &list.args {
+            match argument {
+                GenericArgument::Type(kind) => types.push(kind.clone()),
+                GenericArgument::Const(syn::Expr::Lit(literal)) => match &literal.lit {
+                    syn::Lit::Int(number) => sizes.push(number.base10_parse().ok()?),
+                    _ => return None,
+                },
+                _ => return None,
+            }
+        }
+    }
+    Some((last.ident.to_string(), types, sizes))
+}
+
+/// The sides of a number, vector or matrix.
+fn shape(kind: &Type) -> Option<Vec<usize>> {
+    if is_number(kind) {
+        return Some(Vec::new());
+    }
+    let (name, _, sizes) = word(kind)?;
+    match (name.as_str(), sizes.as_slice()) {
+        ("SVector", [n]) => Some(vec![*n]),
+        ("SMatrix", [rows, columns]) => Some(vec![*rows, *columns]),
+        _ => None,
+    }
+}
+
+/// The shapes of all that is returned.
+fn shapes(kind: &Type) -> Option<Vec<Vec<usize>>> {
+    if let Type::Tuple(tuple) = kind {
+        if tuple.elems.is_empty() || tuple.elems.len() > 6 {
+            return None;
+        }
+        return tuple.elems.iter().map(shape).collect();
+    }
+    if let Type::Array(array) = kind {
+        let (name, ..) = word(&array.elem)?;
+        let length = array.len.to_token_stream().to_string().parse().ok()?;
+        return (name == "IsometryMatrix3").then_some(vec![vec![length, 4, 4]]);
+    }
+    if let Some(shape) = shape(kind) {
+        return Some(vec![shape]);
+    }
+    let (name, types, sizes) = word(kind)?;
+    match (name.as_str(), sizes.as_slice()) {
+        ("Result", []) => shapes(types.first()?),
+        ("OutputJacobians", [rows, n, m]) => {
+            Some(vec![vec![*rows, *n], vec![*rows, *n], vec![*rows, *n], vec![*rows, *m]])
+        }
+        ("Linearization", [nx, nu, np, ns]) => {
+            Some(vec![vec![*nx, *nx], vec![*nx, *nu], vec![*np], vec![*ns]])
+        }
+        _ => None,
+    }
+}
+
+/// What results are called: those of derivatives by what they are derivatives by.
+fn result_names(function: &str, count: usize) -> Vec<String> {
+    let names: &[&str] = match (function, count) {
+        (_, 1) => &["result"],
+        ("linearize", 2) => &["a", "b"],
+        ("linearize", _) => &["a", "b", "coordinates", "speeds"],
+        ("constrained_dynamics" | "try_constrained_dynamics", _) => &["acceleration", "multipliers"],
+        ("inverse_dynamics_second_derivatives", _) => &["by_qq", "by_qv", "by_vv", "by_qa"],
+        ("forward_dynamics_second_derivatives", _) => &["by_qq", "by_qv", "by_vv", "by_qtau"],
+        (_, 6) => &["by_qq", "by_qv", "by_vv", "by_qu", "by_vu", "by_uu"],
+        ("generalized_forces_derivatives", 3) => &["by_q", "by_v", "by_u"],
+        ("integrate_derivatives", _) => &["by_q", "by_dv"],
+        ("tangent_rate_derivatives", _) => &["by_dv", "by_v"],
+        (_, 2) => &["by_q", "by_v"],
+        (_, 3) => &["by_q", "by_v", "by_tau"],
+        _ => &["by_q", "by_v", "by_a", "by_u"],
+    };
+    names.iter().map(ToString::to_string).collect()
+}

@@ -1,0 +1,163 @@
+//! The header of the library.
+
+use super::{Function, Kind, Known};
+use linkwork_compiler::export::{in_comment, without_links};
+use std::fmt::Write;
+
+/// The text of the header.
+pub fn header(known: &Known<'_, '_>) -> String {
+    let m = known.model;
+    let (prefix, number) = (known.prefix, if known.single() { "float" } else { "double" });
+    let upper = prefix.to_ascii_uppercase();
+    let mut text = format!(
+        "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load the shared library.\n *\n * SI units, angles in radians. Vectors are plain arrays, matrices stand column by column. Quaternions are stored\n * x y z w. Functions keep nothing between calls, and any number of threads may call them. They return 0, or 1\n * where there is no result: then results are not numbers, and {prefix}_message() says why.\n",
+        known.input.name
+    );
+    let velocities: Vec<String> = m.velocities.iter().map(|(name, _)| name.clone()).collect();
+    let inputs: Vec<String> = m.inputs.iter().map(|(name, _)| name.clone()).collect();
+    for (title, names, units) in [
+        ("Parameters `own`, which every function takes first", &m.parameters, &m.units.parameters),
+        ("Configuration q", &m.configuration, &m.units.configuration),
+        (
+            "Velocity v; accelerations a and generalized forces tau in the same order",
+            &velocities,
+            &m.units.velocities,
+        ),
+        ("Inputs u", &inputs, &m.units.inputs),
+    ] {
+        if names.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, " *\n * {title}:");
+        for (k, name) in names.iter().enumerate() {
+            let unit = units.get(k).map_or("", String::as_str);
+            let line = format!(" *   {k:3}  {:30} {}", in_comment(name), in_comment(unit));
+            let _ = writeln!(text, "{}", line.trim_end());
+        }
+    }
+    let _ = write!(
+        text,
+        " */\n#ifndef {upper}_LIBRARY_H\n#define {upper}_LIBRARY_H\n\n#include <stddef.h>\n\n#define {upper}_NQ {}\n#define {upper}_NV {}\n#define {upper}_NU {}\n#define {upper}_PARAMETERS {}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
+        m.nq(),
+        m.nv(),
+        m.nu(),
+        m.parameters.len()
+    );
+    write_frames(&mut text, known, &upper);
+    for f in &known.functions {
+        write_function(&mut text, f, known, number);
+    }
+    write_common(&mut text, prefix, number, !m.parameters.is_empty());
+    text.push_str("#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
+    text
+}
+
+fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
+    if known.model.frames.is_empty() {
+        return;
+    }
+    let spoken: Vec<String> = known.model.frames.iter().map(|frame| frame.name.clone()).collect();
+    let names = linkwork_compiler::export::capitals(&spoken);
+    text.push_str("/* Frames by number. */\nenum {\n");
+    for (k, (name, says)) in names.iter().zip(&spoken).enumerate() {
+        let comma = if k + 1 < names.len() { "," } else { "" };
+        let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", in_comment(says));
+    }
+    text.push_str("};\n\n");
+}
+
+fn write_function(text: &mut String, f: &Function, known: &Known<'_, '_>, number: &str) {
+    let nv = known.model.nv();
+    for (k, paragraph) in f.docs.iter().enumerate() {
+        let _ =
+            writeln!(text, "{}{}", if k == 0 { "/* " } else { " * " }, in_comment(&without_links(paragraph)));
+    }
+    text.push_str(if f.docs.is_empty() { "/*\n" } else { " *\n" });
+    for (name, kind) in &f.arguments {
+        let about = match kind {
+            Kind::Number => continue,
+            Kind::Frame => format!("one of {}_FRAME_…", known.prefix.to_ascii_uppercase()),
+            Kind::Marks => format!("{nv} numbers, not zero for each velocity that is meant"),
+            Kind::Matrix(..) => format!("{} numbers", Function::length(kind, nv)),
+        };
+        let _ = writeln!(text, " * {name:12} {about}");
+    }
+    for (name, shape) in &f.results {
+        let about = match shape.as_slice() {
+            [] => "a number".to_string(),
+            [n] => format!("{n} numbers"),
+            [rows, columns] => format!("{rows} by {columns}, column by column"),
+            [count, rows, columns] => format!("{count} of {rows} by {columns}, column by column"),
+            _ => continue,
+        };
+        let _ = writeln!(text, " * to_{name:9} out: {about}");
+    }
+    let own = (!known.model.parameters.is_empty()).then(|| format!("const {number} *own"));
+    let given = f.arguments.iter().map(|(name, kind)| match kind {
+        Kind::Number => format!("{number} {name}"),
+        Kind::Frame => format!("int {name}"),
+        _ => format!("const {number} *{name}"),
+    });
+    let wanted = f.results.iter().map(|(name, _)| format!("{number} *to_{name}"));
+    let list: Vec<String> = own.into_iter().chain(given).chain(wanted).collect();
+    let _ = writeln!(text, " */\nint {}_{}({});\n", known.prefix, f.name, list.join(", "));
+}
+
+fn write_common(text: &mut String, prefix: &str, number: &str, has_parameters: bool) {
+    if has_parameters {
+        let _ = write!(
+            text,
+            "/* Whether a mechanism can have these parameters. */\nint {prefix}_validate(const {number} *own);\n\n\
+             /* The parameters that a robot file has; others are not numbers. */\nvoid {prefix}_defaults({number} *to_own);\n\n"
+        );
+    }
+    let _ = write!(
+        text,
+        "/* Why the last call of this thread returned 1; the text stays until the next call. */
+const char *{prefix}_message(void);
+
+/* Names, shapes, units and documentation of everything, as JSON; functions in the order of their numbers. */
+const char *{prefix}_description(void);
+
+/* A function by its number for many states: every argument and result holds that of the first state, then that of the second,
+ * and so on. Several threads share them out, as many as there are processors for 0. The parameters are those of all states. */
+int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments, {number} *const *results,
+                  size_t states, size_t threads);
+
+/* A controller: it writes the inputs u at the time t, s, and returns 0, or anything else to end the run. */
+typedef int (*{prefix}_control)(void *user, {number} t, const {number} *q, const {number} *v, {number} *u);
+
+typedef struct {prefix}_settings {{
+    {number} start;    /* time at the start, s */
+    {number} duration; /* s */
+    {number} interval; /* time between samples, s */
+    /* \"dormand_prince\", \"dormand_prince8\", \"rodas\" (stiff), with contacts \"event_driven\": by a tolerance;
+     * \"rk4\", \"implicit_midpoint\", with contacts \"time_stepping\": by a step, s */
+    const char *method;
+    {number} setting;  /* the tolerance or the step */
+    {number} period;   /* the controller is called every so many seconds; 0 for whenever the dynamics are evaluated */
+    {prefix}_control control; /* NULL for inputs that are zero */
+    void *user;        /* what the controller is given first */
+}} {prefix}_settings;
+
+/* Simulates, and writes rows of t, q, v, u: not more than `rows`, and how many in to_count. */
+int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v, const {prefix}_settings *settings,
+                      {number} *to_samples, size_t rows, size_t *to_count);
+
+typedef struct {prefix}_rollout {{
+    {number} start;  /* time at the start, s */
+    {number} step;   /* length of a step of the classical method of Runge and Kutta, s */
+    size_t steps;
+    size_t states;
+    size_t threads;  /* as many as there are processors for 0 */
+    int inputs_of;   /* the inputs are: 0 zero, 1 those of each step, the same for all states, 2 those of each state and step */
+}} {prefix}_rollout;
+
+/* Many motions under inputs that are held during each step. to_q and to_v hold, for every state, steps + 1 configurations and
+ * velocities: the first ones are where it starts, all others are written. Inputs stand step by step, state after state. */
+int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs, {number} *to_q,
+                      {number} *to_v);
+
+"
+    );
+}

@@ -1,0 +1,336 @@
+//! A mechanism → a crate whose functions take plain arrays, with C's calling convention, and a header: what C, Python and others
+//! load. The functions are those of the generated Rust, read from there, so that none is forgotten.
+
+mod describe;
+mod functions;
+mod header;
+mod write;
+
+use crate::Stop;
+use crate::input::Input;
+use functions::{Function, Kind};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::Model;
+use linkwork_compiler::syntax::ScalarType;
+use linkwork_compiler::{Source, compile, expand};
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
+use std::collections::BTreeMap;
+
+/// The crate.
+pub struct Crate {
+    /// What names begin with.
+    pub prefix: String,
+    /// By path within the crate: the text.
+    pub files: Vec<(&'static str, String)>,
+    /// Functions in Rust that are not there.
+    pub left_out: Vec<String>,
+}
+
+/// All that is known of the mechanism.
+struct Known<'a, 'g> {
+    input: &'a Input,
+    source: &'a Source,
+    model: &'a Model<'g>,
+    prefix: &'a str,
+    /// Its functions, in the order of their numbers.
+    functions: Vec<Function>,
+    left_out: Vec<String>,
+    equations: String,
+}
+
+impl Known<'_, '_> {
+    fn single(&self) -> bool {
+        self.source.mechanism.description.scalar == ScalarType::F32
+    }
+
+    fn number(&self) -> &'static str {
+        if self.single() { "f32" } else { "f64" }
+    }
+
+    /// The struct's name with its arguments.
+    fn kind(&self) -> String {
+        match self.source.mechanism.shell.generics.type_params().count() {
+            0 => self.input.name.clone(),
+            _ => format!("{}<{}>", self.input.name, self.number()),
+        }
+    }
+
+    /// It has contacts that open and close.
+    fn contacting(&self) -> bool {
+        !self.model.contacts.is_empty()
+    }
+}
+
+/// Writes the crate of a mechanism. `linkwork` is the folder of the sources of Linkwork, if not crates of a registry.
+pub fn write(input: &Input, prefix: &str, linkwork: Option<&str>) -> Result<Crate, Stop> {
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let source = input.checked(source, cx)?;
+    let graph = Graph::new();
+    let made = compile(&source, &graph, cx);
+    let (model, output) = input.checked(made, cx)?;
+    let shell = &source.mechanism.shell;
+    if !shell.tables.is_empty() {
+        return Err(Stop::Failure(format!(
+            "{}: the tables of `{}` cannot be handed over as plain numbers: give them as expressions",
+            input.file.display(),
+            input.name
+        )));
+    }
+    if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
+        return Err(Stop::Failure(format!(
+            "{}: `{}` has generic parameters beside that of its numbers",
+            input.file.display(),
+            input.name
+        )));
+    }
+    let tokens = expand(input.arguments.clone(), input.item.clone(), &input.folder).into_tokens()?;
+    let file: syn::File = syn::parse2(tokens)?;
+    let (mut functions, left_out) = functions::read(&file.items, &input.name);
+    functions.extend(frames(&model));
+    functions.extend(limits(&model));
+    let requests = source.mechanism.requests;
+    let kinematic = model.kinematic;
+    if !kinematic && model.contacts.is_empty() {
+        functions.extend(steps(&model, requests.derivatives && !model_slips(&functions)));
+    }
+    let known = Known {
+        input,
+        source: &source,
+        model: &model,
+        prefix,
+        functions,
+        left_out,
+        equations: output.equations.plain.clone(),
+    };
+    let description = describe::description(&known);
+    let linkwork = linkwork.map(home).transpose()?;
+    let manifest = manifest(prefix, linkwork.as_deref());
+    let text = write::library(&known, &description, &at_home(input)?)?;
+    Ok(Crate {
+        prefix: prefix.to_string(),
+        files: vec![
+            ("Cargo.toml", manifest),
+            ("src/lib.rs", text),
+            ("include/NAME.h", header::header(&known)),
+            ("description.json", description),
+        ],
+        left_out: known.left_out,
+    })
+}
+
+/// The folder of Linkwork's sources as a whole path.
+fn home(folder: &str) -> Result<String, Stop> {
+    let whole = std::path::Path::new(folder).canonicalize().ok();
+    let whole = whole.filter(|whole| whole.join("runtime/library/Cargo.toml").is_file());
+    let whole =
+        whole.ok_or_else(|| Stop::Failure(format!("`--linkwork`: {folder} has no sources of Linkwork")))?;
+    Ok(whole.to_string_lossy().into_owned())
+}
+
+/// Contacts that slip have forces of their own, which steps with Jacobians do not have.
+fn model_slips(functions: &[Function]) -> bool {
+    functions.iter().any(|f| f.name == "constraint_residuals")
+        && functions.iter().all(|f| f.name != "forward_dynamics_derivatives")
+}
+
+/// The mechanism's declaration, with files where they are.
+fn at_home(input: &Input) -> Result<(TokenStream, TokenStream), Stop> {
+    let mut arguments = TokenStream::new();
+    let mut named = false;
+    for token in input.arguments.clone() {
+        let is_path = matches!(&token, TokenTree::Literal(_)) && named;
+        if let TokenTree::Ident(word) = &token {
+            named = ["urdf", "mjcf", "sdf"].iter().any(|format| word == format);
+        } else if !matches!(&token, TokenTree::Punct(sign) if sign.as_char() == '=') {
+            named = false;
+        }
+        if !is_path {
+            arguments.extend([token]);
+            continue;
+        }
+        let text: syn::LitStr = syn::parse2(token.to_token_stream())?;
+        let whole = input.folder.join(text.value());
+        let whole = whole.canonicalize().unwrap_or(whole);
+        arguments.extend(whole.to_string_lossy().to_token_stream());
+    }
+    Ok((arguments, input.item.clone()))
+}
+
+/// Frames by their numbers.
+fn frames(model: &Model<'_>) -> Vec<Function> {
+    if model.frames.is_empty() {
+        return Vec::new();
+    }
+    let (nq, nv) = (model.nq(), model.nv());
+    let q = || ("q".to_string(), Kind::Matrix(nq, 1));
+    let v = || ("v".to_string(), Kind::Matrix(nv, 1));
+    let a = || ("a".to_string(), Kind::Matrix(nv, 1));
+    let time = model.time.then(|| ("t".to_string(), Kind::Number));
+    let one = |name: &str, function: &str, rest: Vec<(String, Kind)>, shape: Vec<usize>, about: &str| {
+        let arguments: Vec<(String, Kind)> =
+            [("frame".to_string(), Kind::Frame)].into_iter().chain(time.clone()).chain(rest).collect();
+        let at = if model.time { "given(g, 1)" } else { "0.0" };
+        let first = if model.time { 2 } else { 1 };
+        let states: Vec<String> = (first..arguments.len()).map(|k| format!("&given(g, {k})")).collect();
+        Function {
+            name: name.to_string(),
+            docs: vec![about.to_string()],
+            call: format!("linkwork::Frames::{function}(m, frame(g)?, {at}, {})", states.join(", ")),
+            arguments,
+            results: vec![("result".to_string(), shape)],
+            lanes: None,
+        }
+    };
+    vec![
+        one(
+            "frame_placement",
+            "placement_of",
+            vec![q()],
+            vec![4, 4],
+            "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, m.",
+        ),
+        one(
+            "frame_velocity",
+            "velocity_of",
+            vec![q(), v()],
+            vec![6],
+            "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground axes.",
+        ),
+        one(
+            "frame_acceleration",
+            "acceleration_of",
+            vec![q(), v(), a()],
+            vec![6],
+            "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in ground axes; without gravity.",
+        ),
+        one(
+            "frame_jacobian",
+            "jacobian_of",
+            vec![q()],
+            vec![6, nv],
+            "Jacobian of a frame: `frame_velocity` is this times `v`.",
+        ),
+    ]
+}
+
+/// Bounds of coordinates, rates and forces, if there are any.
+fn limits(model: &Model<'_>) -> Vec<Function> {
+    if model.limits.is_empty() {
+        return Vec::new();
+    }
+    let (nq, nv) = (model.nq(), model.nv());
+    let one = |name: &str, about: &str, takes: Option<(&str, usize)>| Function {
+        name: name.to_string(),
+        docs: vec![about.to_string()],
+        call: match takes {
+            None => format!("linkwork::Limits::{name}(m)"),
+            Some(_) => format!("linkwork::Limits::{name}(m, &given(g, 0))"),
+        },
+        arguments: takes.iter().map(|(name, n)| ((*name).to_string(), Kind::Matrix(*n, 1))).collect(),
+        results: vec![("result".to_string(), vec![takes.map_or(nv, |(_, n)| n)])],
+        lanes: None,
+    };
+    vec![
+        one(
+            "lower_limits",
+            "Lower bounds of the coordinates, in the order of `v`; infinite where there are none.",
+            None,
+        ),
+        one(
+            "upper_limits",
+            "Upper bounds of the coordinates, in the order of `v`; infinite where there are none.",
+            None,
+        ),
+        one("velocity_limits", "Largest rates, in both directions; infinite where there are none.", None),
+        one(
+            "effort_limits",
+            "Largest forces and torques, in both directions; infinite where there are none.",
+            None,
+        ),
+        one("clamp_configuration", "The configuration within its bounds.", Some(("q", nq))),
+        one("clamp_velocity", "The velocity within its bounds.", Some(("v", nv))),
+        one("clamp_effort", "Forces and torques within their bounds.", Some(("tau", nv))),
+    ]
+}
+
+/// Steps of the classical method of Runge and Kutta.
+fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
+    let [nq, nv, nu] = [model.nq(), model.nv(), model.nu()];
+    let vector = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
+    let time = model.time.then(|| ("t".to_string(), Kind::Number));
+    let state = [vector("q", nq), vector("v", nv), vector("u", nu), ("h".to_string(), Kind::Number)];
+    let arguments: Vec<(String, Kind)> = time.into_iter().chain(state).collect();
+    let first = usize::from(model.time);
+    let at = if model.time { "given(g, 0)" } else { "0.0" };
+    let call = |function: &str| {
+        format!(
+            "linkwork::discrete::{function}(m, &linkwork::integrate::Rk4::step(given(g, {})), {at}, &given(g, {first}), &given(g, {}), &given(g, {}))",
+            first + 3,
+            first + 1,
+            first + 2
+        )
+    };
+    let step = Function {
+        name: "step".to_string(),
+        docs: vec!["One step of the classical method of Runge and Kutta, `h` seconds long, under inputs `u` that are held: the state after it.".to_string()],
+        arguments: arguments.clone(),
+        results: vec![("q".to_string(), vec![nq]), ("v".to_string(), vec![nv])],
+        call: call("step"),
+        lanes: None,
+    };
+    let part = |name: &str, columns| (name.to_string(), vec![nv, columns]);
+    let transition = Function {
+        name: "transition".to_string(),
+        docs: vec!["The same step with its Jacobians, exact to rounding: how configuration and velocity after it change with those before and with the inputs. Changes of configurations are displacements, as `integrate` takes them.".to_string()],
+        arguments,
+        results: vec![
+            ("q".to_string(), vec![nq]),
+            ("v".to_string(), vec![nv]),
+            part("q_by_q", nv),
+            part("q_by_v", nv),
+            part("q_by_u", nu),
+            part("v_by_q", nv),
+            part("v_by_v", nv),
+            part("v_by_u", nu),
+        ],
+        call: call("transition"),
+        lanes: None,
+    };
+    std::iter::once(step).chain(with_jacobians.then_some(transition)).collect()
+}
+
+fn manifest(prefix: &str, linkwork: Option<&str>) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let one = |name: &str, folder: &str| match linkwork {
+        None => format!("{name} = \"{version}\""),
+        Some(home) => {
+            let path = toml_text(&format!("{home}/{folder}"));
+            format!("{name} = {{ path = {path} }}")
+        }
+    };
+    format!(
+        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
+         [dependencies]\n{}\n{}\n\n[workspace]\n",
+        prefix.replace('_', "-"),
+        one("linkwork", "runtime"),
+        one("linkwork-library", "runtime/library"),
+    )
+}
+
+/// A text as TOML writes it.
+fn toml_text(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// Values of all names: where the parameters of a struct are, by field.
+fn by_field(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
+    let mut fields: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (k, member) in members.iter().enumerate() {
+        let field = member.split(['.', '[']).next().unwrap_or(member);
+        fields.entry(field).or_default().push(k);
+    }
+    fields
+}

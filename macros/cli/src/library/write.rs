@@ -1,0 +1,287 @@
+//! The Rust of the crate: the declaration, the table of functions, and those that other languages call.
+
+use super::{Function, Kind, Known, by_field};
+use crate::Stop;
+use proc_macro2::TokenStream;
+use std::fmt::Write;
+
+/// The text of `lib.rs`.
+pub fn library(
+    known: &Known<'_, '_>,
+    description: &str,
+    (arguments, item): &(TokenStream, TokenStream),
+) -> Result<String, Stop> {
+    let m = known.model;
+    let (kind, number, prefix) = (known.kind(), known.number(), known.prefix);
+    let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
+    let mut text = format!(
+        "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, Library, Motion, Results, Rollout, given, raw}};\n\
+         use std::ffi::{{CStr, c_char, c_int}};\n\n#[mechanism({arguments})]\n{item}\n\n"
+    );
+    let _ = write!(
+        text,
+        "impl Library for {kind} {{
+            type Number = {number};
+            const PARAMETERS: usize = {};
+            const DESCRIPTION: &'static CStr = match CStr::from_bytes_with_nul({:?}.as_bytes()) {{
+                Ok(text) => text,
+                Err(_) => c\"{{}}\",
+            }};
+            const FUNCTIONS: &'static [Function<Self>] = &[{}];
+            fn with(parameters: &[{number}]) -> Self {{
+                let of = |k: usize| parameters.get(k).copied().unwrap_or({number}::NAN);
+                {}
+            }}
+            fn check(&self) -> Result<(), Failure> {{
+                {}
+            }}
+            fn simulate(&self, motion: &mut Motion<'_, {number}>) -> Result<(), Failure> {{
+                {}
+            }}
+            fn roll_out(&self, rollout: Rollout<'_, {number}>) -> Result<(), Failure> {{
+                {}
+            }}
+        }}\n\n",
+        m.parameters.len(),
+        format!("{description}\0"),
+        known.functions.iter().map(|f| row(f, nv)).collect::<String>(),
+        made(known),
+        checked(known),
+        match (m.kinematic, known.contacting()) {
+            (true, _) =>
+                "let _ = motion;\nErr(Failure::of(\"the mechanism has no dynamics\"))".to_string(),
+            (_, true) => format!("library::simulate_with_contacts::<Self, {number}, {nq}, {nv}, {nu}>(self, motion)"),
+            (_, false) => format!("library::simulate::<Self, {number}, {nq}, {nv}, {nu}>(self, motion)"),
+        },
+        match (m.kinematic || known.contacting(), known.source.mechanism.requests.batch) {
+            (true, _) =>
+                "let _ = rollout;\nErr(Failure::of(\"rollouts go through smooth motions: this mechanism has none\"))".to_string(),
+            (_, true) => format!("library::roll_out_in_lanes::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
+            (_, false) => format!("library::roll_out::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
+        },
+    );
+    if known.functions.iter().any(|f| f.arguments.iter().any(|(_, kind)| *kind == Kind::Frame)) {
+        let _ = write!(
+            text,
+            "/// The number of a frame.\nfn frame(g: Given<'_, {number}>) -> Result<usize, Failure> {{
+                let number: {number} = given(g, 0);
+                if number >= 0.0 {{ Ok(number as usize) }} else {{ Err(Failure::of(\"there is no frame with this number\")) }}
+            }}\n\n"
+        );
+    }
+    write_exports(&mut text, known);
+    for (k, f) in known.functions.iter().enumerate() {
+        write_named(&mut text, k, f, prefix, number, !m.parameters.is_empty());
+    }
+    Ok(prettyplease::unparse(&syn::parse_str(&text)?))
+}
+
+/// A row of the table.
+fn row(f: &Function, nv: usize) -> String {
+    let arguments: Vec<String> =
+        f.arguments.iter().map(|(_, kind)| Function::length(kind, nv).to_string()).collect();
+    let results: Vec<String> =
+        f.results.iter().map(|(_, shape)| shape.iter().product::<usize>().to_string()).collect();
+    let body = |call: &str| {
+        let g = if f.arguments.is_empty() { "_" } else { "g" };
+        format!("|m, {g}, to| Results::give({call}, to)")
+    };
+    let eight = f.lanes.as_ref().map_or("None".to_string(), |call| {
+        let call = call.replacen("_lanes(", "_lanes::<8>(", 1);
+        format!("Some({})", body(&call))
+    });
+    format!(
+        "Function {{ arguments: &[{}], results: &[{}], one: {}, eight: {eight} }},\n",
+        arguments.join(", "),
+        results.join(", "),
+        body(&f.call)
+    )
+}
+
+/// The mechanism made of numbers.
+fn made(known: &Known<'_, '_>) -> String {
+    let shell = &known.source.mechanism.shell;
+    let name = &known.input.name;
+    if known.model.parameters.is_empty() {
+        return match shell.parameters.is_empty() && shell.file_fields.is_empty() {
+            true => format!("let _ = of;\n{name} {{}}"),
+            false => format!("{name}::FILE"),
+        };
+    }
+    let fields = by_field(&known.model.parameters);
+    let own: Vec<String> =
+        shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
+    let index = |field: &str| {
+        fields.get(field.trim_start_matches("r#")).and_then(|all| all.first()).copied().unwrap_or(usize::MAX)
+    };
+    if shell.file_fields.is_empty() {
+        let values: Vec<String> = own.iter().map(|field| format!("{field}: of({})", index(field))).collect();
+        return format!("{name} {{ {} }}", values.join(", "));
+    }
+    let values: Vec<String> = own.iter().map(|field| format!("of({})", index(field))).collect();
+    let mut text = format!("let mut m = {name}::from_file({});\n", values.join(", "));
+    for (k, member) in known.model.parameters.iter().enumerate().filter(|(_, member)| !own.contains(member)) {
+        let _ = writeln!(text, "m.{member} = of({k});");
+    }
+    text + "m"
+}
+
+fn checked(known: &Known<'_, '_>) -> &'static str {
+    match known.model.parameters.is_empty() {
+        true => "Ok(())",
+        false => "self.validate().map_err(Failure::of)",
+    }
+}
+
+/// What every library has.
+fn write_exports(text: &mut String, known: &Known<'_, '_>) {
+    let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
+    let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
+    let _ = write!(
+        text,
+        "/// Names, shapes, units and documentation, as JSON.
+        #[unsafe(no_mangle)]
+        pub extern \"C\" fn {prefix}_description() -> *const c_char {{
+            <{kind} as Library>::DESCRIPTION.as_ptr()
+        }}
+
+        /// Why the last call of this thread failed.
+        #[unsafe(no_mangle)]
+        pub extern \"C\" fn {prefix}_message() -> *const c_char {{
+            raw::message()
+        }}
+
+        /// Whether a mechanism can have these parameters.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_validate(parameters: *const {number}) -> c_int {{
+            unsafe {{ raw::check::<{kind}>(parameters) }}
+        }}
+
+        /// A function by its number, for many states.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_call(
+            function: usize,
+            parameters: *const {number},
+            arguments: *const *const {number},
+            results: *const *mut {number},
+            states: usize,
+            threads: usize,
+        ) -> c_int {{
+            unsafe {{ raw::call::<{kind}>(function, parameters, arguments, results, states, threads) }}
+        }}
+
+        /// A motion.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_simulate(
+            parameters: *const {number},
+            q: *const {number},
+            v: *const {number},
+            settings: *const raw::Settings<{number}>,
+            samples: *mut {number},
+            rows: usize,
+            count: *mut usize,
+        ) -> c_int {{
+            unsafe {{ raw::simulate::<{kind}>([{nq}, {nv}, {nu}], parameters, q, v, settings, samples, rows, count) }}
+        }}
+
+        /// Many motions.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_roll_out(
+            parameters: *const {number},
+            settings: *const raw::RolloutSettings<{number}>,
+            inputs: *const {number},
+            q: *mut {number},
+            v: *mut {number},
+        ) -> c_int {{
+            unsafe {{ raw::roll_out::<{kind}>([{nq}, {nv}, {nu}], parameters, settings, inputs, q, v) }}
+        }}\n"
+    );
+    if m.parameters.is_empty() {
+        return;
+    }
+    let of_file = known.source.mechanism.shell.file_fields.is_empty();
+    let values: String = match of_file {
+        true => format!("[{number}::NAN; {}]", m.parameters.len()),
+        false => {
+            let shell = &known.source.mechanism.shell;
+            let own: Vec<String> =
+                shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
+            let given = vec![format!("{number}::NAN"); own.len()].join(", ");
+            let list = m.parameters.iter().map(|member| format!("m.{member}")).collect::<Vec<_>>().join(", ");
+            format!("{{ let m = {}::from_file({given}); [{list}] }}", known.input.name)
+        }
+    };
+    let _ = write!(
+        text,
+        "/// The parameters that a file has; others are not numbers.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_defaults(parameters: *mut {number}) {{
+            let values: [{number}; {}] = {values};
+            unsafe {{ raw::copy(&values, parameters) }}
+        }}\n",
+        m.parameters.len()
+    );
+}
+
+/// A function by its name, for one state.
+fn write_named(text: &mut String, k: usize, f: &Function, prefix: &str, number: &str, has_parameters: bool) {
+    let own = has_parameters.then(|| format!("own: *const {number}"));
+    let given = f.arguments.iter().map(|(name, kind)| match kind {
+        Kind::Number => format!("{name}: {number}"),
+        Kind::Frame => format!("{name}: c_int"),
+        _ => format!("{name}: *const {number}"),
+    });
+    // A result may be called as an argument is.
+    let wanted = f.results.iter().map(|(name, _)| format!("to_{name}: *mut {number}"));
+    let list: Vec<String> = own.into_iter().chain(given).chain(wanted).collect();
+    let own = if has_parameters { "own" } else { "std::ptr::null()" };
+    let given: Vec<String> = f
+        .arguments
+        .iter()
+        .map(|(name, kind)| match kind {
+            Kind::Number => format!("&{name}"),
+            Kind::Frame => format!("&({name} as {number})"),
+            _ => name.clone(),
+        })
+        .collect();
+    let wanted: Vec<String> = f.results.iter().map(|(name, _)| format!("to_{name}")).collect();
+    let _ = write!(
+        text,
+        "\n/// `{name}`, for one state.
+        ///
+        /// # Safety
+        ///
+        /// Arrays are as the header says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern \"C\" fn {prefix}_{name}({}) -> c_int {{
+            let (given, to): ([*const {number}; {}], [*mut {number}; {}]) = ([{}], [{}]);
+            unsafe {{ {prefix}_call({k}, {own}, given.as_ptr(), to.as_ptr(), 1, 1) }}
+        }}\n",
+        list.join(", "),
+        given.len(),
+        wanted.len(),
+        given.join(", "),
+        wanted.join(", "),
+        name = f.name,
+    );
+}

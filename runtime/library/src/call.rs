@@ -1,0 +1,180 @@
+//! One function of a mechanism, for one state or many.
+
+use crate::{Given, Library, Number, Sink};
+use std::any::Any;
+use std::fmt::Display;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// How many states are side by side in the registers.
+pub const LANES: usize = 8;
+
+/// Why there is no result, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure(pub String);
+
+impl Failure {
+    /// What an error says.
+    pub fn of(error: impl Display) -> Failure {
+        Failure(error.to_string())
+    }
+
+    /// What a panic says.
+    pub(crate) fn of_panic(panic: &(dyn Any + Send)) -> Failure {
+        let text = panic.downcast_ref::<&str>().copied();
+        let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+        Failure(format!("Linkwork made a mistake: {}", text.unwrap_or("a panic")))
+    }
+}
+
+/// A function on the arrays of its arguments and results.
+pub type Body<M> = fn(
+    &M,
+    Given<'_, <M as Library>::Number>,
+    &mut Sink<'_, '_, <M as Library>::Number>,
+) -> Result<(), Failure>;
+
+/// A generated function behind plain arrays.
+#[derive(Clone, Copy)]
+pub struct Function<M: Library> {
+    /// How many numbers each argument has.
+    pub arguments: &'static [usize],
+    /// How many numbers each result has.
+    pub results: &'static [usize],
+    /// The function of one state.
+    pub one: Body<M>,
+    /// The function of eight states.
+    pub eight: Option<Body<M>>,
+}
+
+/// Arrays for many states: those of the first state, then those of the second, and so on.
+pub struct Batch<'a, N> {
+    /// The arguments.
+    pub arguments: Vec<&'a [N]>,
+    /// The results.
+    pub results: Vec<&'a mut [N]>,
+    /// How many states there are.
+    pub states: usize,
+    /// How many threads share them out; zero for as many as there are processors.
+    pub threads: usize,
+}
+
+/// Calls a function for every state. Results of a state that has none are not numbers.
+///
+/// # Errors
+///
+/// Arrays of other lengths, before anything is written. Else the first failure, with the number of its state if there are several,
+/// when all are done.
+pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> Result<(), Failure> {
+    let Batch { arguments, results, states, threads } = batch;
+    let lengths = f.arguments.iter().zip(arguments.iter().map(|array| array.len()));
+    let lengths = lengths.chain(f.results.iter().zip(results.iter().map(|array| array.len())));
+    let fit = arguments.len() == f.arguments.len() && results.len() == f.results.len();
+    if !fit || lengths.into_iter().any(|(one, all)| one.checked_mul(states) != Some(all)) {
+        return Err(Failure::of("the arrays do not have the lengths that the function needs"));
+    }
+    if states == 1 {
+        let (arguments, mut results) = (arguments, results);
+        return guarded(m, f.one, &arguments, &mut results);
+    }
+    let share = shares(states, threads, LANES);
+    let parts = shared_out(f, &arguments, results, states, share);
+    let first = match parts.len() {
+        0 => None,
+        1 => parts.into_iter().find_map(|part| work(m, f, part)),
+        _ => std::thread::scope(|scope| {
+            let all: Vec<_> = parts.into_iter().map(|part| scope.spawn(move || work(m, f, part))).collect();
+            let ends = all.into_iter().map(|thread| {
+                thread.join().unwrap_or_else(|panic| Some((0, Failure::of_panic(panic.as_ref()))))
+            });
+            ends.flatten().min_by_key(|(state, _)| *state)
+        }),
+    };
+    match first {
+        None => Ok(()),
+        Some((state, Failure(why))) => Err(Failure(format!("state {state}: {why}"))),
+    }
+}
+
+/// How many states each thread takes, a multiple of the lanes.
+pub(crate) fn shares(states: usize, threads: usize, lanes: usize) -> usize {
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if threads == 0 { processors() } else { threads };
+    let groups = states.div_ceil(lanes);
+    groups.div_ceil(threads.clamp(1, groups.max(1))).max(1) * lanes
+}
+
+/// The states of one thread.
+struct Part<'a, N> {
+    first: usize,
+    states: usize,
+    arguments: Vec<&'a [N]>,
+    results: Vec<&'a mut [N]>,
+}
+
+fn shared_out<'a, M: Library>(
+    f: &Function<M>,
+    arguments: &[&'a [M::Number]],
+    mut rest: Vec<&'a mut [M::Number]>,
+    states: usize,
+    share: usize,
+) -> Vec<Part<'a, M::Number>> {
+    let mut parts = Vec::new();
+    let mut first = 0;
+    while first < states {
+        let count = share.min(states - first);
+        let taken = f.arguments.iter().zip(arguments);
+        let arguments = taken.map(|(one, all)| &all[first * one..(first + count) * one]).collect();
+        let (mut results, mut behind) = (Vec::new(), Vec::new());
+        for (one, all) in f.results.iter().zip(rest) {
+            let (front, back) = all.split_at_mut(count * one);
+            results.push(front);
+            behind.push(back);
+        }
+        rest = behind;
+        parts.push(Part { first, states: count, arguments, results });
+        first += count;
+    }
+    parts
+}
+
+/// Goes through the states; the first one that fails, and why.
+fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option<(usize, Failure)> {
+    let Part { first, states, arguments, results } = part;
+    let mut failed = None;
+    let mut at = 0;
+    let mut results = results;
+    while at < states {
+        let (body, count) = match f.eight {
+            Some(eight) if states - at >= LANES => (eight, LANES),
+            _ => (f.one, 1),
+        };
+        let given: Vec<&[M::Number]> =
+            f.arguments.iter().zip(&arguments).map(|(one, all)| &all[at * one..(at + count) * one]).collect();
+        let mut places: Vec<&mut [M::Number]> = f
+            .results
+            .iter()
+            .zip(&mut results)
+            .map(|(one, all)| &mut all[at * one..(at + count) * one])
+            .collect();
+        if let Err(failure) = guarded(m, body, &given, &mut places) {
+            failed.get_or_insert((first + at, failure));
+        }
+        at += count;
+    }
+    failed
+}
+
+/// Calls a body; where it fails, results are not numbers.
+fn guarded<M: Library>(
+    m: &M,
+    body: Body<M>,
+    arguments: &[&[M::Number]],
+    results: &mut [&mut [M::Number]],
+) -> Result<(), Failure> {
+    let done = catch_unwind(AssertUnwindSafe(|| body(m, Given(arguments), &mut Sink::new(results))));
+    let done = done.unwrap_or_else(|panic| Err(Failure::of_panic(panic.as_ref())));
+    if done.is_err() {
+        results.iter_mut().for_each(|array| array.fill(M::Number::NAN));
+    }
+    done
+}

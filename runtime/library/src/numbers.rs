@@ -1,0 +1,295 @@
+//! Plain arrays → arguments of generated functions, and their results → plain arrays.
+
+use crate::Failure;
+use linkwork::constraint::Linearization;
+use linkwork::discrete::Transition;
+use linkwork::nalgebra::{IsometryMatrix3, SMatrix};
+use linkwork::{Lanes, OutputJacobians, Real};
+use std::fmt::Display;
+
+/// A number of an array.
+pub trait Number: Real + Send + Sync + Display + Default {
+    /// Not a number.
+    const NAN: Self;
+}
+
+impl Number for f64 {
+    const NAN: f64 = f64::NAN;
+}
+
+impl Number for f32 {
+    const NAN: f32 = f32::NAN;
+}
+
+/// A number of a matrix: of one state, or the same of several side by side. Arrays hold one state after another.
+pub trait Entry<N>: Copy {
+    /// Number `at` of every state, when a state has `length` numbers. What is not there is zero.
+    fn read(numbers: &[N], at: usize, length: usize) -> Self;
+    /// Puts it there.
+    fn write(self, numbers: &mut [N], at: usize, length: usize);
+}
+
+macro_rules! entry {
+    ($($number:ty),*) => {$(
+        impl Entry<$number> for $number {
+            #[inline(always)]
+            fn read(numbers: &[$number], at: usize, _length: usize) -> Self {
+                numbers.get(at).copied().unwrap_or_default()
+            }
+
+            #[inline(always)]
+            fn write(self, numbers: &mut [$number], at: usize, _length: usize) {
+                if let Some(place) = numbers.get_mut(at) {
+                    *place = self;
+                }
+            }
+        }
+
+        impl<const L: usize> Entry<$number> for Lanes<$number, L> {
+            #[inline(always)]
+            fn read(numbers: &[$number], at: usize, length: usize) -> Self {
+                Lanes::from_fn(|k| numbers.get(k * length + at).copied().unwrap_or_default())
+            }
+
+            #[inline(always)]
+            fn write(self, numbers: &mut [$number], at: usize, length: usize) {
+                for (k, number) in self.0.into_iter().enumerate() {
+                    if let Some(place) = numbers.get_mut(k * length + at) {
+                        *place = number;
+                    }
+                }
+            }
+        }
+    )*};
+}
+
+entry!(f64, f32);
+
+/// What a function is given, made of an array.
+pub trait Argument<N> {
+    /// It.
+    fn take(numbers: &[N]) -> Self;
+}
+
+macro_rules! scalars {
+    ($($number:ty),*) => {$(
+        impl Argument<$number> for $number {
+            fn take(numbers: &[$number]) -> Self {
+                Entry::read(numbers, 0, 1)
+            }
+        }
+
+        impl<const L: usize> Argument<$number> for Lanes<$number, L> {
+            fn take(numbers: &[$number]) -> Self {
+                Entry::read(numbers, 0, 1)
+            }
+        }
+
+        impl Results<$number> for $number {
+            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+                self.write(to.next(), 0, 1);
+                Ok(())
+            }
+        }
+
+        impl<const L: usize> Results<$number> for Lanes<$number, L> {
+            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+                self.write(to.next(), 0, 1);
+                Ok(())
+            }
+        }
+    )*};
+}
+
+scalars!(f64, f32);
+
+impl<N, E: Entry<N>, const R: usize, const C: usize> Argument<N> for SMatrix<E, R, C> {
+    #[inline(always)]
+    fn take(numbers: &[N]) -> Self {
+        SMatrix::from_array_storage(linkwork::nalgebra::ArrayStorage(std::array::from_fn(|column| {
+            std::array::from_fn(|row| E::read(numbers, column * R + row, R * C))
+        })))
+    }
+}
+
+/// Which of several are marked, by numbers that are not zero.
+#[derive(Clone, Debug)]
+pub struct Marked(Vec<usize>);
+
+impl std::ops::Deref for Marked {
+    type Target = [usize];
+
+    fn deref(&self) -> &[usize] {
+        &self.0
+    }
+}
+
+impl<N: Number> Argument<N> for Marked {
+    fn take(numbers: &[N]) -> Self {
+        Marked((0..numbers.len()).filter(|k| numbers[*k] != N::zero()).collect())
+    }
+}
+
+/// The arguments of a function.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a, N>(pub &'a [&'a [N]]);
+
+/// The argument with an index.
+#[inline(always)]
+pub fn given<N, A: Argument<N>>(all: Given<'_, N>, k: usize) -> A {
+    A::take(all.0.get(k).copied().unwrap_or_default())
+}
+
+impl<N: Number> Given<'_, N> {
+    /// Indices for an argument that marks some of several.
+    pub fn marked(self, k: usize) -> Marked {
+        given(self, k)
+    }
+}
+
+/// Where results go, one array after another.
+#[derive(Debug)]
+pub struct Sink<'a, 'b, N> {
+    arrays: &'a mut [&'b mut [N]],
+    next: usize,
+}
+
+impl<'a, 'b, N> Sink<'a, 'b, N> {
+    /// At the first array.
+    pub fn new(arrays: &'a mut [&'b mut [N]]) -> Self {
+        Sink { arrays, next: 0 }
+    }
+
+    fn next(&mut self) -> &mut [N] {
+        let k = self.next;
+        self.next += 1;
+        self.arrays.get_mut(k).map_or(&mut [], |array| &mut **array)
+    }
+}
+
+/// What a function gives, put into arrays: matrices column by column, placements as matrices of four rows and columns.
+pub trait Results<N> {
+    /// Puts it there.
+    ///
+    /// # Errors
+    ///
+    /// That of the function.
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure>;
+}
+
+impl<N, E: Entry<N>, const R: usize, const C: usize> Results<N> for SMatrix<E, R, C> {
+    #[inline(always)]
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        let array = to.next();
+        for (column, entries) in self.data.0.into_iter().enumerate() {
+            for (row, entry) in entries.into_iter().enumerate() {
+                entry.write(array, column * R + row, R * C);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<N: Number> Results<N> for IsometryMatrix3<N> {
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.to_homogeneous().give_entries(to.next(), 0);
+        Ok(())
+    }
+}
+
+impl<N: Number, const F: usize> Results<N> for [IsometryMatrix3<N>; F] {
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        let array = to.next();
+        for (k, placement) in self.into_iter().enumerate() {
+            placement.to_homogeneous().give_entries(array, 16 * k);
+        }
+        Ok(())
+    }
+}
+
+trait Entries<N> {
+    fn give_entries(&self, array: &mut [N], first: usize);
+}
+
+impl<N: Number> Entries<N> for SMatrix<N, 4, 4> {
+    fn give_entries(&self, array: &mut [N], first: usize) {
+        for (place, entry) in array.iter_mut().skip(first).zip(self.iter()) {
+            *place = *entry;
+        }
+    }
+}
+
+macro_rules! tuples {
+    ($(($($part:ident $k:tt),*))*) => {$(
+        impl<N, $($part: Results<N>),*> Results<N> for ($($part),*) {
+            #[inline(always)]
+            fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+                $(self.$k.give(to)?;)*
+                Ok(())
+            }
+        }
+    )*};
+}
+
+tuples! {
+    (A 0, B 1)
+    (A 0, B 1, C 2)
+    (A 0, B 1, C 2, D 3)
+    (A 0, B 1, C 2, D 3, E 4)
+    (A 0, B 1, C 2, D 3, E 4, F 5)
+}
+
+impl<N, A: Results<N>, E: Display> Results<N> for Result<A, E> {
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.map_err(Failure::of)?.give(to)
+    }
+}
+
+impl<N, A: Results<N>> Results<N> for Option<A> {
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.ok_or_else(|| Failure::of("there is no frame with this number"))?.give(to)
+    }
+}
+
+impl<N, E: Entry<N>, const R: usize, const V: usize, const U: usize> Results<N>
+    for OutputJacobians<E, R, V, U>
+{
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.by_q.give(to)?;
+        self.by_v.give(to)?;
+        self.by_a.give(to)?;
+        self.by_u.give(to)
+    }
+}
+
+impl<N: Number, const X: usize, const U: usize, const P: usize, const S: usize> Results<N>
+    for Linearization<N, X, U, P, S>
+where
+    N: Entry<N>,
+{
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.a.give(to)?;
+        self.b.give(to)?;
+        for indices in [&self.coordinates[..], &self.speeds[..]] {
+            for (place, index) in to.next().iter_mut().zip(indices) {
+                *place = linkwork::nalgebra::convert(*index as f64);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<N: Number + Entry<N>, const NQ: usize, const NV: usize, const NU: usize> Results<N>
+    for Transition<N, NQ, NV, NU>
+{
+    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.q.give(to)?;
+        self.v.give(to)?;
+        self.q_by_q.give(to)?;
+        self.q_by_v.give(to)?;
+        self.q_by_u.give(to)?;
+        self.v_by_q.give(to)?;
+        self.v_by_v.give(to)?;
+        self.v_by_u.give(to)
+    }
+}

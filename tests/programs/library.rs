@@ -1,0 +1,53 @@
+//! A library of a mechanism under constraints, written by the command `linkwork`, in a program in C: `library/main.c`.
+#![cfg(unix)]
+
+use linkwork_programs::cargo;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn is_done(what: &str, output: &Output) {
+    let (said, complained) =
+        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{what}: {}\n{said}\n{complained}", output.status);
+}
+
+#[test]
+fn a_program_in_c_moves_a_bead_on_a_wire() {
+    let (target, own) = (Path::new(env!("CARGO_TARGET_TMPDIR")), Path::new(env!("CARGO_MANIFEST_DIR")));
+    is_done("the command is built", &cargo(&["build"], "../macros/cli", env!("CARGO_TARGET_TMPDIR")));
+    let folder = target.join("bead");
+    let arguments = ["export", "library", "bead.rs", "--linkwork", "../../..", "--out"];
+    let command = target.join("packages/release/linkwork");
+    let home = own.join("library");
+    let mut export = Command::new(command);
+    is_done(
+        "the library is written",
+        &export.args(arguments).arg(&folder).current_dir(&home).output().unwrap(),
+    );
+    let crate_of_it = folder.to_str().expect("a path of this machine");
+    is_done("the library is built", &cargo(&["build"], crate_of_it, env!("CARGO_TARGET_TMPDIR")));
+
+    for (library, name) in [("libbead.a", "static"), ("libbead.so", "shared")] {
+        let (library, program) = (target.join("packages/release").join(library), target.join(name));
+        if !library.exists() {
+            continue;
+        }
+        let warnings = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"];
+        let compiled = Command::new("cc")
+            .args(warnings)
+            .arg(folder.join("include"))
+            .arg(home.join("main.c"))
+            .arg(&library)
+            .args(["-lm", "-lpthread", "-ldl", "-o"])
+            .arg(&program)
+            .output();
+        let Ok(compiled) = compiled else {
+            println!("skipped: there is no C compiler `cc`");
+            return;
+        };
+        is_done("the program is compiled", &compiled);
+        let mut run = Command::new(program);
+        run.env("LD_LIBRARY_PATH", target.join("packages/release"));
+        is_done("the bead is where it should be", &run.output().expect("the program starts"));
+    }
+}
