@@ -13,6 +13,7 @@
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
 //! | [`batches`] | many states at once |
 //! | [`without_std`] | microcontrollers |
+//! | [`python`] | classes of Python from robot files and declarations |
 //! | [`speed`] | what makes generated code fast, in release and in debug builds; accuracy |
 //! | [`from_other_tools`] | the names of SymPy, Pinocchio, MuJoCo and Drake |
 //!
@@ -50,6 +51,9 @@ pub mod batches {}
 
 #[doc = include_str!("../guide/without_std.md")]
 pub mod without_std {}
+
+#[doc = include_str!("../guide/python.md")]
+pub mod python {}
 
 #[doc = include_str!("../guide/speed.md")]
 pub mod speed {}

@@ -44,7 +44,7 @@
 //! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
 //! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
 //! [simulating](guide/simulating/index.html), [control](guide/control/index.html), [batches](guide/batches/index.html) of states,
-//! targets [without std](guide/without_std/index.html), [speed](guide/speed/index.html), and the names of things
+//! targets [without std](guide/without_std/index.html), [Python](guide/python/index.html), [speed](guide/speed/index.html), and the names of things
 //! [in other tools](guide/from_other_tools/index.html).
 //!
 //! - [`prelude`]: everything that a program with a mechanism needs, in one import.

@@ -1,0 +1,40 @@
+"""Linkwork for Python: mechanisms compiled to native functions on NumPy arrays.
+
+A robot file (URDF, MJCF, SDF) or the declaration of a mechanism becomes a class; its functions are the generated ones of
+Rust, under the same names:
+
+>>> import linkwork
+>>> Pendulum = linkwork.compile('''
+...     #[mechanism(gravity = -9.81 * y, derivatives)]
+...     pub struct Pendulum {
+...         pub mass: f64,
+...         pub length: f64,
+...         #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+...         rod: Body,
+...         #[joint(ground -> rod, about = z)]
+...         hinge: Pin,
+...     }
+... ''')
+>>> pendulum = Pendulum(mass=2.0, length=1.5)
+>>> round(float(pendulum.mass_matrix([0.0])[0, 0]), 12)
+1.5
+
+All quantities are in SI units, angles in radians.
+"""
+
+from ._build import ToolchainError, command, compile, gallery, toolchain
+from ._mechanism import Error, LinearSystem, Mechanism, Page, Run
+
+__all__ = [
+    "Error",
+    "LinearSystem",
+    "Mechanism",
+    "Page",
+    "Run",
+    "ToolchainError",
+    "command",
+    "compile",
+    "gallery",
+    "toolchain",
+]
+__version__ = "0.1.0"

@@ -1,0 +1,300 @@
+"""Declarations and robot files to compiled libraries, which are kept."""
+
+import difflib
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from ._mechanism import Error, Mechanism, load
+
+_HERE = Path(__file__).resolve().parent
+
+
+class ToolchainError(Error):
+    """There is no toolchain of Rust, or it cannot build."""
+
+
+def toolchain() -> str:
+    """The version of the Rust compiler that is used, as it prints it.
+
+    Raises:
+        ToolchainError: there is none; the message says how to install one.
+    """
+    cargo = _cargo()
+    rustc = os.environ.get("RUSTC") or shutil.which("rustc") or str(cargo.with_name("rustc"))
+    return _run([rustc, "-vV"], "cannot run rustc").strip()
+
+
+def compile(
+    source: str | os.PathLike,
+    *,
+    options: str = "",
+    name: str | None = None,
+    native: bool = True,
+    batch: bool = True,
+    derivatives: bool = True,
+    quiet: bool = False,
+) -> type[Mechanism]:
+    """Compiles a mechanism to a class.
+
+    The first call builds Linkwork's command, which takes a minute; every mechanism takes some seconds to half a minute, and is
+    found at once when it is asked for again.
+
+    Args:
+        source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has ``#[mechanism]``; or such a
+            declaration as text.
+        options: further arguments of the attribute, as in ``"base = free, inertia = trust"``.
+        name: the struct, of a Rust file that has several.
+        native: for the processor at hand rather than for all of its kind.
+        batch: also functions of eight states at once, for arrays of states. Takes longer to compile.
+        derivatives: also derivatives of the dynamics, linear systems, and steps with Jacobians. Takes longer to compile.
+        quiet: says nothing while it builds.
+
+    Returns:
+        A subclass of :class:`Mechanism`; its instances are mechanisms with values of the parameters.
+
+    Raises:
+        ToolchainError: there is no toolchain of Rust, or it cannot build.
+        Error: the mechanism has mistakes; the message has all of them with their places.
+        FileNotFoundError: there is no such file.
+    """
+    text, path = _source(source)
+    command = _command(quiet)
+    with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
+        if path is None:
+            path = Path(folder) / "mechanism.rs"
+            path.write_text(text, encoding="utf-8")
+        words = _words(path, text, options, batch, derivatives)
+        arguments = [command, "export", "library", path, "--out", Path(folder) / "crate"]
+        arguments += ["--prefix", "mechanism", "--linkwork", _sources()]
+        if words:
+            arguments += ["--with", words]
+        if name is not None:
+            arguments += ["--struct", name]
+        _run(arguments, None)
+        origin = {"text": text, "path": None if text else str(path), "options": words, "name": name}
+        return _built(Path(folder) / "crate", origin, native, quiet)
+
+
+def gallery(name: str | None = None, **settings):
+    """The mechanisms of Linkwork's gallery: their names; or the class of one of them, compiled as :func:`compile` does.
+
+    >>> "CartPole" in linkwork.gallery()
+    True
+    """
+    found = {}
+    for path in sorted((_sources() / "models" / "src").rglob("*.rs")):
+        text = path.read_text(encoding="utf-8")
+        for one in re.finditer(r"^#\[mechanism\b.*?^pub struct (\w+)", text, flags=re.DOTALL | re.MULTILINE):
+            found[one[1]] = path
+    if name is None:
+        return sorted(found)
+    if name not in found:
+        near = difflib.get_close_matches(name, found, n=3)
+        hint = f": did you mean {', '.join(near)}?" if near else ""
+        raise KeyError(f"the gallery has no mechanism {name!r}{hint}")
+    return compile(found[name], name=name, **settings)
+
+
+def view(origin, run, path):
+    """Writes a page of a motion."""
+    with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
+        file = origin["path"]
+        if file is None:
+            file = Path(folder) / "mechanism.rs"
+            file.write_text(origin["text"], encoding="utf-8")
+        motion = Path(folder) / "motion.csv"
+        run.csv(motion)
+        arguments = [_command(quiet=True), "view", file, "--motion", motion, "--out", path]
+        if origin["options"]:
+            arguments += ["--with", origin["options"]]
+        if origin["name"]:
+            arguments += ["--struct", origin["name"]]
+        for name, value in run.mechanism.parameters.items():
+            arguments += ["--set", f"{name}={value!r}"]
+        _run(arguments, None)
+
+
+def command(arguments: list[str]) -> int:
+    """Runs Linkwork's command, as `python -m linkwork` does; its exit status."""
+    return subprocess.run([str(_command(quiet=False)), *arguments], check=False).returncode
+
+
+def _source(source):
+    """The text of a declaration, or the path of a file."""
+    if isinstance(source, os.PathLike):
+        path = Path(source)
+    elif not isinstance(source, str):
+        raise TypeError(f"expected a path or a declaration, found {type(source).__name__}")
+    elif "#[" in source or "\n" in source:
+        if "struct" not in source or "mechanism" not in source:
+            raise Error("expected a path, or a declaration: a struct with the attribute `#[mechanism(…)]`")
+        return source, None
+    else:
+        path = Path(source).expanduser()
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file {path}")
+    return None, path.resolve()
+
+
+def _words(path, text, options, batch, derivatives):
+    """Arguments of the attribute that are not there yet."""
+    if path.suffix == ".rs":
+        text = text if text is not None else path.read_text(encoding="utf-8")
+        written = " ".join(re.findall(r"#\[(?:\w+::)*mechanism\((.*?)\)\]", text, flags=re.DOTALL))
+    else:
+        written = ""
+    given = options.strip().strip(",")
+    has = lambda word: re.search(rf"\b{word}\b", f"{written} {given}") is not None
+    bare = has("inertia\\s*=\\s*none")
+    words = [given] if given else []
+    words += ["derivatives"] if derivatives and not bare and not has("derivatives") else []
+    words += ["batch"] if batch and not bare and not has("batch") else []
+    return ", ".join(words)
+
+
+def _built(crate, origin, native, quiet):
+    """The class of a crate, which is compiled unless that has been done before."""
+    key = hashlib.sha256()
+    for file in ("Cargo.toml", "src/lib.rs"):
+        key.update((crate / file).read_bytes())
+    key.update(_files_named(crate / "src" / "lib.rs"))
+    key.update(toolchain().encode())
+    key.update(_fingerprint())
+    flags = os.environ.get("RUSTFLAGS", "")
+    if native:
+        flags = f"{flags} -C target-cpu=native".strip()
+        key.update(_processor())
+    key.update(flags.encode())
+    kept = _cache() / "libraries" / (key.hexdigest()[:32] + _suffix())
+    if not kept.is_file():
+        described = json.loads((crate / "description.json").read_text(encoding="utf-8"))
+        if not quiet:
+            print(f"linkwork: compiling {described['name']} …", file=sys.stderr, flush=True)
+        target = _cache() / "target"
+        environment = {**os.environ, "CARGO_TARGET_DIR": str(target), "RUSTFLAGS": flags}
+        lock = _sources() / "Cargo.lock"
+        if lock.is_file():
+            shutil.copy(lock, crate / "Cargo.lock")
+        arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", crate / "Cargo.toml"]
+        _run(arguments, "the library cannot be built", environment)
+        built = target / "release" / (_stem() + "mechanism" + _suffix())
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = kept.with_suffix(f".{os.getpid()}")
+        shutil.copy(built, unfinished)
+        os.replace(unfinished, kept)
+    kept.with_suffix(".json").write_text(json.dumps(origin), encoding="utf-8")
+    return load(kept)
+
+
+def _files_named(source):
+    """The contents of files that a crate names: when one of them changes, it is another library."""
+    named = re.findall(r'"((?:/|[A-Za-z]:)[^"\n]*)"', source.read_text(encoding="utf-8")[:20000])
+    found = [Path(path) for path in named]
+    return b"".join(path.read_bytes() for path in found if path.is_file())
+
+
+def _command(quiet):
+    """Linkwork's command, which is compiled once."""
+    target = _cache() / "target"
+    suffix = ".exe" if os.name == "nt" else ""
+    key = hashlib.sha256(_fingerprint() + toolchain().encode()).hexdigest()[:16]
+    kept = _cache() / f"linkwork-{key}{suffix}"
+    if kept.is_file():
+        return kept
+    if not quiet:
+        print("linkwork: compiling the compiler, once …", file=sys.stderr, flush=True)
+    manifest = _sources() / "macros" / "cli" / "Cargo.toml"
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(target)}
+    arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
+    _run(arguments, "Linkwork's command cannot be built", environment)
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = kept.with_suffix(f".{os.getpid()}")
+    shutil.copy(target / "release" / f"linkwork{suffix}", unfinished)
+    os.replace(unfinished, kept)
+    return kept
+
+
+def _sources():
+    """The folder of Linkwork's sources: those of the package, or of the repository that it is in."""
+    own = os.environ.get("LINKWORK_SOURCE")
+    candidates = [Path(own)] if own else [_HERE / "_source", *_HERE.parents]
+    for folder in candidates:
+        if (folder / "runtime" / "library" / "Cargo.toml").is_file():
+            return folder
+    raise ToolchainError("the sources of Linkwork are missing: install the package again")
+
+
+def _fingerprint():
+    """What tells these sources from others."""
+    folder = _sources()
+    key = hashlib.sha256()
+    files = [f for part in ("macros", "runtime") for f in sorted((folder / part).rglob("*.rs"))]
+    for file in files:
+        about = file.stat()
+        key.update(f"{file.relative_to(folder)} {about.st_size} {about.st_mtime_ns}\n".encode())
+    return key.digest()
+
+
+def _cache():
+    """Where libraries are kept: `LINKWORK_CACHE`, or a folder of the user's."""
+    own = os.environ.get("LINKWORK_CACHE")
+    if own:
+        return Path(own)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "linkwork"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "linkwork"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "linkwork"
+
+
+def _cargo():
+    found = os.environ.get("CARGO") or shutil.which("cargo")
+    own = Path.home() / ".cargo" / "bin" / ("cargo.exe" if os.name == "nt" else "cargo")
+    if found:
+        return Path(found)
+    if own.is_file():
+        return own
+    raise ToolchainError(
+        "compiling a mechanism needs Rust, and there is no `cargo`: install it as https://rustup.rs says, then try again"
+    )
+
+
+def _processor():
+    """What native code is compiled for."""
+    try:
+        return b"".join(l for l in Path("/proc/cpuinfo").read_bytes().splitlines() if l.startswith(b"flags"))[:4096]
+    except OSError:
+        import platform
+
+        return platform.processor().encode()
+
+
+def _suffix():
+    return {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+
+
+def _stem():
+    return "" if sys.platform == "win32" else "lib"
+
+
+def _run(arguments, failure, environment=None):
+    """What a command prints. Its complaints are the error."""
+    try:
+        done = subprocess.run(
+            [str(a) for a in arguments], capture_output=True, text=True, encoding="utf-8", env=environment, check=False
+        )
+    except OSError as error:
+        raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
+    if done.returncode == 0:
+        return done.stdout
+    complaints = done.stderr.strip() or f"exit status {done.returncode}"
+    if failure is None:
+        raise Error(complaints)
+    raise ToolchainError(f"{failure}:\n{complaints}")

@@ -1,0 +1,390 @@
+"""Physics, shapes and mistakes, as a user meets them. Run with `python -m unittest discover -s runtime/python/tests`."""
+
+import contextlib
+import importlib.util
+import io
+import os
+import pickle
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+import linkwork
+from linkwork import _build
+
+PENDULUM = """
+/// A rod on a hinge, with a motor.
+#[mechanism(gravity = -9.81 * y)]
+pub struct Pendulum {
+    pub mass: f64,
+    pub length: f64,
+    #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge)]
+    motor: Torque,
+}
+"""
+# A point on a circle of radius 1 in the plane: a pendulum by a constraint.
+BEAD = """
+#[mechanism(gravity = -9.81 * y)]
+pub struct Bead {
+    pub mass: f64,
+    #[particle(mass = mass)]
+    bead: Particle,
+    #[joint(ground -> bead, along = (x, y))]
+    plane: Stage,
+    #[constraint(plane.x * plane.x + plane.y * plane.y = 1)]
+    wire: Holonomic,
+}
+"""
+BALL = """
+#[mechanism(gravity = -9.81 * z)]
+pub struct Bouncing {
+    #[particle(mass = 1)]
+    ball: Particle,
+    #[joint(ground -> ball, along = z)]
+    height: Sleeve,
+    #[contact(ball, ground.plane(z), restitution = 0.5)]
+    floor: Contact,
+}
+"""
+
+
+def compiled(declaration, **settings):
+    return linkwork.compile(declaration, quiet=True, **settings)
+
+
+class OfAPendulum(unittest.TestCase):
+    """A rod on a hinge against its closed forms."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.kind = compiled(PENDULUM)
+        cls.m = cls.kind(mass=2.0, length=1.5)
+
+    def test_inertia_and_weight(self):
+        np.testing.assert_allclose(self.m.mass_matrix([0.3]), [[2.0 * 1.5**2 / 3]], rtol=1e-14)
+        torque = self.m.inverse_dynamics([np.pi / 2], [0.0], [0.0])
+        np.testing.assert_allclose(torque, [2.0 * 9.81 * 0.75], rtol=1e-14)
+
+    def test_names_and_units(self):
+        self.assertEqual(self.kind.configuration, ["hinge"])
+        self.assertEqual(self.kind.inputs, ["motor"])
+        self.assertEqual(self.kind.units.parameters, ["kg", "m"])
+        self.assertEqual(self.kind.__doc__, "A rod on a hinge, with a motor.")
+        self.assertIn("hinge''", self.kind.equations)
+        self.assertIn("shape (1,)", self.kind.forward_dynamics.__doc__)
+        self.assertEqual(self.m.index_q("hinge"), 0)
+
+    def test_energy_stays(self):
+        run = self.m.simulate([2.0], duration=10.0, every=0.1, tolerance=1e-12)
+        energy = self.m.kinetic_energy(run.q, run.v) + self.m.potential_energy(run.q)
+        self.assertEqual(len(run), 101)
+        np.testing.assert_allclose(run.t, np.arange(101) * 0.1, rtol=1e-14, atol=1e-14)
+        self.assertLess(np.ptp(energy), 1e-9)
+
+    def test_batches_are_single_states_side_by_side(self):
+        rng = np.random.default_rng(1)
+        q, v, tau = rng.normal(size=(3, 1003, 1))
+        for name in ("inverse_dynamics", "forward_dynamics", "forward_dynamics_derivatives"):
+            function = getattr(self.m, name)
+            single = [np.atleast_1d(np.asarray(function(*x))) for x in zip(q, v, tau)]
+            for threads in (1, 3, 0):
+                many = np.asarray(function(q, v, tau, threads=threads))
+                many = np.moveaxis(many, 1, 0) if many.ndim > 3 else many
+                np.testing.assert_allclose(many, single, rtol=1e-13, atol=1e-13)
+        # One argument for all states.
+        np.testing.assert_array_equal(self.m.kinetic_energy(q, [1.0]), self.m.kinetic_energy(q, np.ones((1003, 1))))
+        self.assertEqual(self.m.mass_matrix(np.empty((0, 1))).shape, (0, 1, 1))
+
+    def test_derivatives_are_those_of_complex_steps_of_the_closed_form(self):
+        # θ̈ = (τ − m g l/2 sin θ) / (m l²/3)
+        by_q, by_v, by_tau = self.m.forward_dynamics_derivatives([0.4], [2.0], [1.0])
+        inertia = 2.0 * 1.5**2 / 3
+        acceleration = lambda q: (1.0 - 2.0 * 9.81 * 0.75 * np.sin(q)) / inertia
+        np.testing.assert_allclose(by_q, [[acceleration(0.4 + 1e-30j).imag / 1e-30]], rtol=1e-14)
+        np.testing.assert_allclose(by_v, [[0.0]], atol=1e-14)
+        np.testing.assert_allclose(by_tau, [[1 / inertia]], rtol=1e-14)
+
+    def test_equilibria_and_linear_systems(self):
+        q = self.m.equilibrium({"hinge": 0.2}, {"motor": 5.0})
+        np.testing.assert_allclose(np.sin(q), [5.0 / (2.0 * 9.81 * 0.75)], rtol=1e-12)
+        with self.assertRaisesRegex(linkwork.Error, "no equilibrium"):
+            self.m.equilibrium(inputs=[50.0])
+        system = self.m.linear_system([np.pi])
+        poles = np.sort(np.linalg.eigvals(system.a).real)
+        np.testing.assert_allclose(poles, np.sqrt(1.5 * 9.81 / 1.5) * np.array([-1, 1]), rtol=1e-12)
+        self.assertEqual(system.states, ["hinge", "hinge.rate"])
+        if importlib.util.find_spec("control"):
+            self.assertEqual(system.control().nstates, 2)
+
+    def test_rollouts_are_steps_one_after_another(self):
+        rng = np.random.default_rng(2)
+        q, v = rng.normal(size=(2, 21, 1))
+        u = rng.normal(size=(21, 30, 1))
+        all_q, all_v = self.m.roll_out(q, v, u, h=0.01)
+        self.assertEqual(all_q.shape, (21, 31, 1))
+        one_q, one_v = q, v
+        for k in range(30):
+            one_q, one_v = self.m.step(one_q, one_v, u[:, k], 0.01)
+            np.testing.assert_allclose(all_q[:, k + 1], one_q, rtol=1e-12, atol=1e-12)
+            np.testing.assert_allclose(all_v[:, k + 1], one_v, rtol=1e-12, atol=1e-12)
+        again = self.m.roll_out(q, v, u, h=0.01, threads=1)
+        np.testing.assert_array_equal(again[0], all_q)
+        same = self.m.roll_out(q, v, u[0], h=0.01)
+        np.testing.assert_array_equal(same[0][0], all_q[0])
+
+    def test_transitions_are_differences_of_steps(self):
+        q, v, u, h, e = np.array([0.7]), np.array([-1.2]), np.array([0.4]), 0.05, 1e-6
+        found = self.m.transition(q, v, u, h)
+        moved = lambda dq, dv, du: np.array(self.m.step(q + dq, v + dv, u + du, h)).ravel()
+        for k, change in enumerate(np.eye(3) * e):
+            slope = (moved(*change) - moved(*-change)) / (2 * e)
+            np.testing.assert_allclose([found[2 + k][0, 0], found[5 + k][0, 0]], slope, rtol=1e-8, atol=1e-9)
+
+    def test_controllers_act(self):
+        hold = lambda t, q, v: [2.0 * 9.81 * 0.75 * np.sin(q[0]) - 40 * (q[0] - 1.0) - 10 * v[0]]
+        run = self.m.simulate([0.2], duration=5.0, control=hold, period=0.005)
+        self.assertAlmostEqual(run.q[-1, 0], 1.0, places=3)
+        self.assertAlmostEqual(run.u[-1, 0], 2.0 * 9.81 * 0.75 * np.sin(1.0), places=1)
+        with self.assertRaises(ZeroDivisionError):
+            self.m.simulate([0.2], duration=1.0, control=lambda t, q, v: [1 / 0])
+        with self.assertRaisesRegex(ValueError, "u has 1 entries"):
+            self.m.simulate([0.2], duration=1.0, control=lambda t, q, v: [1.0, 2.0])
+
+    def test_threads_of_python_go_on(self):
+        q = np.linspace(-1, 1, 5000)[:, None]
+        with ThreadPoolExecutor(4) as pool:
+            found = list(pool.map(lambda _: self.m.mass_matrix(q).sum(), range(20)))
+        self.assertEqual(len(set(found)), 1)
+
+    def test_parameters(self):
+        heavy = self.m.replace(mass=4.0)
+        self.assertEqual(heavy.parameters, {"mass": 4.0, "length": 1.5})
+        np.testing.assert_allclose(heavy.mass_matrix([0.0]), 2 * self.m.mass_matrix([0.0]))
+        with self.assertRaisesRegex(TypeError, "needs the parameters length"):
+            self.kind(mass=1.0)
+        with self.assertRaisesRegex(KeyError, "did you mean 'length'"):
+            self.kind(mass=1.0, lenght=2.0)
+        with self.assertRaisesRegex(linkwork.Error, "mass of `rod` cannot be negative"):
+            self.kind(mass=-1.0, length=2.0)
+        copy = pickle.loads(pickle.dumps(self.m))
+        np.testing.assert_array_equal(copy.mass_matrix([0.1]), self.m.mass_matrix([0.1]))
+
+    def test_arrays_of_other_shapes_and_types(self):
+        expected = self.m.inverse_dynamics([1.0], [2.0], [3.0])
+        np.testing.assert_array_equal(self.m.inverse_dynamics(np.float32([1]), (2,), np.array([3])), expected)
+        wide = np.arange(12.0).reshape(6, 2)
+        np.testing.assert_array_equal(self.m.mass_matrix(wide[::2, :1]).shape, (3, 1, 1))
+        frozen = np.array([1.0])
+        frozen.flags.writeable = False
+        np.testing.assert_array_equal(self.m.inverse_dynamics(frozen, [2.0], [3.0]), expected)
+        for wrong in ([1.0, 2.0], 1.0, np.zeros((2, 3, 1)), np.zeros((1, 2))):
+            with self.assertRaisesRegex(ValueError, "has the shape"):
+                self.m.mass_matrix(wrong)
+        with self.assertRaises((ValueError, TypeError)):
+            self.m.mass_matrix(["a"])
+        with self.assertRaisesRegex(ValueError, "arrays of 2 and of 3 states"):
+            self.m.kinetic_energy(np.zeros((2, 1)), np.zeros((3, 1)))
+        with self.assertRaisesRegex(TypeError, "takes 1 arguments"):
+            self.m.mass_matrix([0.0], [0.0])
+
+    def test_bad_simulations(self):
+        for settings, kind, words in [
+            ({"duration": -1.0}, ValueError, "duration"),
+            ({"duration": 1.0, "every": 0.0}, ValueError, "every"),
+            ({"duration": 1.0, "method": "rk4"}, TypeError, "needs a step"),
+            ({"duration": 1.0, "method": "euler"}, linkwork.Error, "no method `euler`"),
+            ({"duration": 1.0, "method": "time_stepping", "step": 0.1}, linkwork.Error, "no contacts"),
+            ({"duration": 1.0, "step": -0.1}, linkwork.Error, "step"),
+        ]:
+            with self.subTest(settings), self.assertRaisesRegex(kind, words):
+                self.m.simulate([0.1], **settings)
+        with self.assertRaisesRegex(ValueError, "q has 1 entries"):
+            self.m.simulate([0.1, 0.2], duration=1.0)
+
+    def test_a_page_and_a_table_of_the_motion(self):
+        run = self.m.simulate([1.0], duration=1.0, every=0.05)
+        with tempfile.TemporaryDirectory() as folder:
+            page = run.view(Path(folder) / "swing.html")
+            self.assertIn("<html", page.path.read_text(encoding="utf-8")[:200].lower())
+            self.assertIn("<iframe", page._repr_html_()[:20])
+            run.csv(Path(folder) / "swing.csv")
+            head = (Path(folder) / "swing.csv").read_text().splitlines()[0]
+            self.assertEqual(head, "t,q.hinge,v.hinge,u.motor")
+
+    def test_stubs_are_python(self):
+        text = self.kind.stub()
+        compile(text, "pendulum.pyi", "exec")
+        self.assertIn("def mass_matrix(self, q: ArrayLike, /", text)
+
+
+class UnderConstraints(unittest.TestCase):
+    """A bead on a wire: forces of constraints, assembling, and where it cannot go."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.m = compiled(BEAD)(mass=3.0)
+
+    def test_it_hangs_and_is_held(self):
+        acceleration, multipliers = self.m.constrained_dynamics([0.0, -1.0], [0.0, 0.0], [0.0, 0.0])
+        np.testing.assert_allclose(acceleration, [0.0, 0.0], atol=1e-12)
+        jacobian = self.m.constraint_jacobian([0.0, -1.0])
+        np.testing.assert_allclose(jacobian.T @ multipliers, [0.0, 3.0 * 9.81], rtol=1e-12, atol=1e-12)
+
+    def test_assembling(self):
+        q = self.m.assemble([0.6, -0.7], ["plane.x"])
+        np.testing.assert_allclose(q, [0.6, -0.8], rtol=1e-12)
+        with self.assertRaises(linkwork.Error):
+            self.m.assemble([1.5, 0.0], ["plane.x"])
+
+    def test_a_failure_in_a_batch_names_its_state(self):
+        q = np.array([[0.6, -0.7], [1.5, 0.0], [0.0, -0.9]])
+        with self.assertRaisesRegex(linkwork.Error, "state 1"):
+            self.m.assemble(q, [0])
+
+    def test_it_swings_on_the_wire(self):
+        run = self.m.simulate([1.0, 0.0], duration=5.0, every=0.05, tolerance=1e-11)
+        np.testing.assert_allclose(np.hypot(*run.q.T), 1.0, rtol=1e-12)
+        energy = self.m.kinetic_energy(run.q, run.v) + self.m.potential_energy(run.q)
+        self.assertLess(np.ptp(energy), 1e-7)
+
+    def test_its_linear_system(self):
+        system = self.m.linear_system([0.0, -1.0])
+        np.testing.assert_allclose(np.linalg.eigvals(system.a).imag, [np.sqrt(9.81), -np.sqrt(9.81)], rtol=1e-10)
+        self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
+
+
+class WithContacts(unittest.TestCase):
+    """A ball that bounces."""
+
+    def test_it_comes_to_rest_and_rises_half_as_fast(self):
+        m = compiled(BALL)()
+        run = m.simulate([1.0], duration=1.2, every=0.001)
+        landing = np.sqrt(2 / 9.81)
+        self.assertGreaterEqual(run.q.min(), -1e-12)
+        top = run.q[run.t > landing].max()
+        self.assertAlmostEqual(top, 0.25, places=5)
+        rest = m.simulate([1.0], duration=4.0)
+        np.testing.assert_allclose([rest.q[-1, 0], rest.v[-1, 0]], [0.0, 0.0], atol=1e-9)
+        stepped = m.simulate([1.0], duration=4.0, method="time_stepping", step=1e-3)
+        self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
+        with self.assertRaisesRegex(linkwork.Error, "has contacts"):
+            m.simulate([1.0], duration=1.0, method="rk4", step=1e-3)
+
+
+class OfRobots(unittest.TestCase):
+    """A file."""
+
+    ROBOT = """<robot name="two links">
+      <link name="base"/>
+      <link name="upper"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+        <inertia ixx="0.1" iyy="0.1" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <link name="tool"/>
+      <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+        <limit lower="-2" upper="2" effort="50" velocity="3"/></joint>
+      <joint name="flange" type="fixed"><parent link="upper"/><child link="tool"/><origin xyz="0 0 -1"/></joint>
+    </robot>"""
+
+    def test_a_file_and_its_frames(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "two-links.urdf"
+            path.write_text(self.ROBOT)
+            arm = linkwork.compile(path, quiet=True)()
+            heavy = linkwork.compile(str(path), options="parameters = inertial(\"upper\")", quiet=True)
+            broken = Path(folder) / "broken.urdf"
+            broken.write_text(self.ROBOT.replace('link="upper"/><axis', 'link="uper"/><axis'))
+            with self.assertRaisesRegex(linkwork.Error, r"broken\.urdf:6.*uper"):
+                linkwork.compile(broken, quiet=True)
+        self.assertEqual(arm.frames, ["base", "upper", "tool"])
+        placement = arm.frame_placement("tool", [np.pi / 2])
+        np.testing.assert_allclose(placement @ [0, 0, 0, 1], [-1, 0, 0, 1], atol=1e-15)
+        np.testing.assert_allclose(arm.frame_jacobian("tool", [0.0])[:, 0], [-1, 0, 0, 0, 1, 0], atol=1e-15)
+        np.testing.assert_allclose(arm.mass_matrix([0.0]), [[0.1 + 2 * 0.25]])
+        with self.assertRaisesRegex(KeyError, "did you mean 'tool'"):
+            arm.frame_jacobian("tol", [0.0])
+        np.testing.assert_array_equal(arm.lower_limits(), [-2.0])
+        np.testing.assert_array_equal(arm.clamp_effort([[60.0], [-70.0], [3.0]]), [[50.0], [-50.0], [3.0]])
+        m = heavy()
+        self.assertEqual(m.parameters["upper.mass"], 2.0)
+        np.testing.assert_allclose(m.replace({"upper.mass": 4.0}).mass_matrix([0.0]), [[0.1 + 4 * 0.25]])
+
+    def test_mistakes_have_their_places(self):
+        with self.assertRaisesRegex(linkwork.Error, r"mechanism\.rs:\d+:\d+: error: .*massa"):
+            compiled(PENDULUM.replace("mass = mass, com", "massa = mass, com"))
+        with self.assertRaisesRegex(linkwork.Error, "expected a path, or a declaration"):
+            linkwork.compile("#[nothing]")
+        with self.assertRaises(FileNotFoundError):
+            linkwork.compile("nowhere.urdf")
+        with self.assertRaises(TypeError):
+            linkwork.compile(3)
+
+
+class InSinglePrecision(unittest.TestCase):
+    """Numbers of the mechanism's own type."""
+
+    def test_f32(self):
+        m = compiled(PENDULUM.replace("#[mechanism(", "#[mechanism(scalar = f32, ").replace("f64", "f32"))(
+            mass=2.0, length=1.5
+        )
+        found = m.mass_matrix([0.3])
+        self.assertEqual(found.dtype, np.float32)
+        np.testing.assert_allclose(found, [[1.5]], rtol=1e-6)
+        run = m.simulate([1.0], duration=1.0, tolerance=1e-5)
+        self.assertEqual(run.q.dtype, np.float32)
+
+
+class OfTheGuide(unittest.TestCase):
+    """The chapter of the guide: its examples assert what they say."""
+
+    def test_examples(self):
+        home = _build._sources()
+        text = (home / "runtime" / "guide" / "python.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"^```python\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+        self.assertGreater(len(blocks), 3)
+        with tempfile.TemporaryDirectory() as folder:
+            os.symlink(home / "models", Path(folder) / "models")
+            before, names = os.getcwd(), {}
+            os.chdir(folder)
+            try:
+                with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+                    for block in blocks:
+                        exec(compile(block, "python.md", "exec"), names)
+                self.assertTrue(Path("motion.html").is_file())
+            finally:
+                os.chdir(before)
+
+
+class OfThePackage(unittest.TestCase):
+    """The gallery, and the command."""
+
+    def test_the_gallery_has_names(self):
+        self.assertIn("CartPole", linkwork.gallery())
+        with self.assertRaisesRegex(KeyError, "did you mean CartPole"):
+            linkwork.gallery("CartPol")
+
+    def test_the_command(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(OfRobots.ROBOT)
+            file.flush()
+            done = subprocess.run([sys.executable, "-m", "linkwork", "show", file.name], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("shoulder", done.stdout)
+
+    def test_a_missing_toolchain_is_told(self):
+        code = "import linkwork; linkwork.compile('#[mechanism] struct A {}')"
+        environment = {"PATH": "/nonexistent", "HOME": "/nonexistent", "PYTHONPATH": str(Path(linkwork.__file__).parents[1])}
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+        self.assertIn("ToolchainError: compiling a mechanism needs Rust", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
