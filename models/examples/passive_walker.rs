@@ -1,0 +1,108 @@
+//! Two legs walk down a gentle slope without motors: the simplest walking model, whose gait is published.
+//!
+//! A heavy hip, light feet, and between two touchdowns a double pendulum that stands on one foot ([`contact::hold`]). The other foot
+//! strikes the ground, the first one lifts off ([`contact::land`]), and legs change their parts. What a step dissipates is what the
+//! slope gives; a gait is a fixed point of the map from one step to the next, and this one is stable. As in the source the swinging foot
+//! passes through the ground on its way forward, for want of knees.
+//!
+//! Source: Garcia, Chatterjee, Ruina and Coleman, *The simplest walking model: stability, complexity, and scaling*, Journal of
+//! Biomechanical Engineering 120 (1998). Lengths are in legs, times in √(l/g).
+//!
+//! ```text
+//! cargo run --release --example passive_walker -p linkwork-models
+//! ```
+
+use linkwork::contact::{self, Touch};
+use linkwork::prelude::*;
+
+/// A hip on two legs; `x` leads down the slope, `y` away from it.
+#[mechanism(gravity = sin(slope) * x - cos(slope) * y)]
+struct Walker {
+    /// Angle of the slope, rad.
+    #[unit(rad)]
+    slope: f64,
+    /// Mass of a foot, in masses of the hip.
+    #[unit(kg)]
+    foot: f64,
+    #[body(mass = 1)]
+    hip: Body,
+    #[body(mass = foot, com = -y)]
+    left: Body,
+    #[body(mass = foot, com = -y)]
+    right: Body,
+    #[joint(ground -> hip, along = (x, y))]
+    place: Stage,
+    #[joint(hip -> left, about = z)]
+    left_leg: Pin,
+    #[joint(hip -> right, about = z)]
+    right_leg: Pin,
+    #[contact(left.at(-y), ground.plane(y), friction = 1)]
+    left_foot: Contact,
+    #[contact(right.at(-y), ground.plane(y), friction = 1)]
+    right_foot: Contact,
+}
+
+/// The state of a gait just after a touchdown, when both feet are on the ground: the angle of the standing leg from the slope's
+/// normal, and its rate.
+type Gait = [f64; 2];
+
+/// The published fixed point for the slope 0.009.
+const PUBLISHED: Gait = [0.200310900544287, -0.199832473004977];
+
+/// The state with that gait, when the left leg stands at the origin.
+fn state([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
+    let (sin, cos) = angle.sin_cos();
+    let q = [-sin, cos, angle, -angle].into();
+    (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
+}
+
+/// One step on the left leg: the gait after the touchdown of the right one, how long it takes, how far the hip gets, and what the
+/// touchdown dissipates.
+fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn std::error::Error>> {
+    let (q, v) = state(gait);
+    let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
+    // Both feet are on the ground on the way forward, too, when the sum of the angles rises through zero: that is passed over.
+    let run = simulate(&stance).from(q, v).method(DormandPrince8::new().tolerance(1e-13, 1e-13));
+    let strikes = run.until_crossing(Crossing::Falling, |_t, q, _v| q[2] + q[3]).duration(20.0);
+    let end = strikes.finish()?;
+    if end.q[2] >= 0.0 || end.t >= 20.0 {
+        return Err("it falls".into());
+    }
+    let after = contact::land(walker, 0.0, &end.q, &end.v, &[Touch::Open, Touch::Sticks])?;
+    let lost = walker.kinetic_energy(&end.q, &end.v) - walker.kinetic_energy(&end.q, &after.v);
+    Ok(([end.q[3], after.v[3]], end.t, end.q[0] - q[0], lost))
+}
+
+/// Prints the gait, and how a disturbance of it goes away.
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let walker = Walker { slope: 0.009, foot: 1e-7 };
+    let (next, time, way, lost) = step(&walker, PUBLISHED)?;
+    println!("a step: {time:.4} √(l/g), {way:.4} l");
+    // The published gait, of feet without mass, comes back.
+    for (found, published) in next.iter().zip(PUBLISHED) {
+        assert!((found - published).abs() < 1e-6, "{found}");
+    }
+    // The slope gives what the touchdown takes.
+    let given = way * walker.slope.sin();
+    assert!((lost - given).abs() < 1e-6, "{lost} {given}");
+
+    // Disturbed, it comes back.
+    let mut gait = [PUBLISHED[0] * 1.003, PUBLISHED[1] * 0.998];
+    for count in 1..=60 {
+        gait = step(&walker, gait)?.0;
+        if count % 15 == 0 {
+            println!("after {count} steps off by {:.1e}", (gait[0] - PUBLISHED[0]).abs());
+        }
+    }
+    assert!((gait[0] - PUBLISHED[0]).abs() < 1e-6 && (gait[1] - PUBLISHED[1]).abs() < 1e-6);
+
+    // On the level it falls before the other foot is down.
+    let level = Walker { slope: 0.0, ..walker };
+    assert!(step(&level, PUBLISHED).is_err());
+    Ok(())
+}
+
+#[test]
+fn it_walks_as_published() -> Result<(), Box<dyn std::error::Error>> {
+    main()
+}
