@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 from ._mechanism import Error, Mechanism, load
@@ -182,13 +183,20 @@ def _built(crate, origin, native, quiet):
         lock = _sources() / "Cargo.lock"
         if lock.is_file():
             shutil.copy(lock, crate / "Cargo.lock")
-        arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", crate / "Cargo.toml"]
+        # A name of its own: others may be built in this folder at the same time.
+        own = "mechanism_" + kept.stem
+        manifest = crate / "Cargo.toml"
+        text = manifest.read_text(encoding="utf-8")
+        manifest.write_text(text.replace('name = "mechanism"', f'name = "{own}"'), encoding="utf-8")
+        arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
         _run(arguments, "the library cannot be built", environment)
-        built = target / "release" / (_stem() + "mechanism" + _suffix())
         kept.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = kept.with_suffix(f".{os.getpid()}")
-        shutil.copy(built, unfinished)
+        unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
+        shutil.copy(target / "release" / (_stem() + own + _suffix()), unfinished)
         os.replace(unfinished, kept)
+        for folder in (target / "release", target / "release" / "deps"):
+            for left in folder.glob(f"*{own}*"):
+                left.unlink(missing_ok=True)
     kept.with_suffix(".json").write_text(json.dumps(origin), encoding="utf-8")
     return load(kept)
 
@@ -215,7 +223,7 @@ def _command(quiet):
     arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
     _run(arguments, "Linkwork's command cannot be built", environment)
     kept.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = kept.with_suffix(f".{os.getpid()}")
+    unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
     shutil.copy(target / "release" / f"linkwork{suffix}", unfinished)
     os.replace(unfinished, kept)
     return kept
@@ -296,5 +304,5 @@ def _run(arguments, failure, environment=None):
         return done.stdout
     complaints = done.stderr.strip() or f"exit status {done.returncode}"
     if failure is None:
-        raise Error(complaints)
+        raise Error(complaints.replace("`--struct NAME`", "`name=`"))
     raise ToolchainError(f"{failure}:\n{complaints}")

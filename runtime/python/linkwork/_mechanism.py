@@ -309,7 +309,7 @@ class Mechanism:
             for name, entry in value.items():
                 vector[_index(names, name, kind)] = entry
             return vector
-        vector = np.ascontiguousarray(value, self._library.dtype)
+        vector = np.ascontiguousarray(_numbers(value, self._library.dtype, what))
         if vector.shape != (length,):
             raise ValueError(f"{what} has {length} entries, found an array of shape {vector.shape}")
         return vector
@@ -372,11 +372,11 @@ class Mechanism:
         if constant is not None:
             control, period = (lambda t, q, v: constant), period or every
         raised = []
-        own_q, own_v = np.empty(self.nq, library.dtype), np.empty(self.nv, library.dtype)
         size = library.dtype.itemsize
 
         def asked(_user, t, q, v, u):
             try:
+                own_q, own_v = np.empty(self.nq, library.dtype), np.empty(self.nv, library.dtype)
                 ctypes.memmove(_address(own_q), q, self.nq * size)
                 ctypes.memmove(_address(own_v), v, self.nv * size)
                 found = control(t, own_q, own_v)
@@ -453,6 +453,8 @@ class Mechanism:
                 raise ValueError(f"inputs have the shape (steps, {self.nu}) or ({n}, steps, {self.nu}), not {inputs.shape}")
         if steps is None:
             raise TypeError("how many steps?")
+        if threads < 0:
+            raise ValueError(f"a number of threads is not {threads!r}")
         if steps < 0 or int(steps) != steps:
             raise ValueError(f"a number of steps is not {steps!r}")
         steps = int(steps)
@@ -496,6 +498,10 @@ class Mechanism:
         time = [0.0] if self._description["time"] else []
         forces = lambda q: self.inverse_dynamics(*time, q, zero, zero) - self._forces(time, q, zero, u)
         lacking = forces(q)
+        if not np.all(np.isfinite(lacking)):
+            raise Error("no equilibrium was found: forces are not finite where the search begins")
+        if not free.any():
+            return q
         for _ in range(iterations):
             slope = self.inverse_dynamics_derivatives(*time, q, zero, zero)[0]
             if self.nu and hasattr(self, "generalized_forces_derivatives"):
@@ -557,6 +563,15 @@ class Mechanism:
             raise Error(f"this needs the function `{function}`: compile with `{word}=True`")
 
 
+def _numbers(value, dtype, what):
+    """An array of numbers, which nothing is lost of that cannot be seen."""
+    if np.iscomplexobj(value):
+        raise TypeError(f"{what} has complex numbers")
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise TypeError(f"{what} has masked entries")
+    return np.asarray(value, dtype)
+
+
 def _safe(name):
     """A name that is no keyword."""
     return f"{name}_" if keyword.iskeyword(name) else name
@@ -601,7 +616,7 @@ def _function(library, k, about, cls):
             for one in value:
                 marks[_index(velocities, one, "velocity") if isinstance(one, str) else one] = 1
             return marks
-        array = np.asarray(value, dtype)
+        array = _numbers(value, dtype, names[i])
         if len(shapes[i]) == 2:
             array = np.swapaxes(array, -1, -2)
             expected = shapes[i][::-1]
@@ -659,6 +674,8 @@ def _function(library, k, about, cls):
             wanted = Results(*[_address(array) for array in found])
             if threads is None:
                 threads = 0 if n >= 256 else 1
+            elif threads < 0:
+                raise ValueError(f"a number of threads is not {threads!r}")
             if call(k, self._own, own, wanted, n, threads) != 0:
                 raise Error(f"{about['name']}: {library.why()}")
         found = [array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)]

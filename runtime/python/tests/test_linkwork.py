@@ -119,6 +119,9 @@ class OfAPendulum(unittest.TestCase):
         np.testing.assert_allclose(np.sin(q), [5.0 / (2.0 * 9.81 * 0.75)], rtol=1e-12)
         with self.assertRaisesRegex(linkwork.Error, "no equilibrium"):
             self.m.equilibrium(inputs=[50.0])
+        with self.assertRaisesRegex(linkwork.Error, "not finite"):
+            self.m.equilibrium([np.nan])
+        np.testing.assert_array_equal(self.m.equilibrium([0.3], held=["hinge"]), [0.3])
         system = self.m.linear_system([np.pi])
         poles = np.sort(np.linalg.eigvals(system.a).real)
         np.testing.assert_allclose(poles, np.sqrt(1.5 * 9.81 / 1.5) * np.array([-1, 1]), rtol=1e-12)
@@ -155,6 +158,9 @@ class OfAPendulum(unittest.TestCase):
         run = self.m.simulate([0.2], duration=5.0, control=hold, period=0.005)
         self.assertAlmostEqual(run.q[-1, 0], 1.0, places=3)
         self.assertAlmostEqual(run.u[-1, 0], 2.0 * 9.81 * 0.75 * np.sin(1.0), places=1)
+        kept = []
+        self.m.simulate([0.2], duration=1.0, control=lambda t, q, v: kept.append(q) or [0.0], period=0.1)
+        self.assertEqual(len({float(q[0]) for q in kept}), len(kept))
         with self.assertRaises(ZeroDivisionError):
             self.m.simulate([0.2], duration=1.0, control=lambda t, q, v: [1 / 0])
         with self.assertRaisesRegex(ValueError, "u has 1 entries"):
@@ -192,6 +198,12 @@ class OfAPendulum(unittest.TestCase):
                 self.m.mass_matrix(wrong)
         with self.assertRaises((ValueError, TypeError)):
             self.m.mass_matrix(["a"])
+        with self.assertRaisesRegex(TypeError, "complex"):
+            self.m.mass_matrix([1j])
+        with self.assertRaisesRegex(TypeError, "masked"):
+            self.m.mass_matrix(np.ma.array([1.0], mask=[True]))
+        with self.assertRaisesRegex(ValueError, "threads"):
+            self.m.mass_matrix(np.zeros((3, 1)), threads=-1)
         with self.assertRaisesRegex(ValueError, "arrays of 2 and of 3 states"):
             self.m.kinetic_energy(np.zeros((2, 1)), np.zeros((3, 1)))
         with self.assertRaisesRegex(TypeError, "takes 1 arguments"):
@@ -220,6 +232,19 @@ class OfAPendulum(unittest.TestCase):
             run.csv(Path(folder) / "swing.csv")
             head = (Path(folder) / "swing.csv").read_text().splitlines()[0]
             self.assertEqual(head, "t,q.hinge,v.hinge,u.motor")
+
+    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "matplotlib is not installed")
+    def test_plots(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        run = self.m.simulate([1.0], duration=1.0, every=0.05, inputs={"motor": 1.0})
+        axes = run.plot("hinge", "v.hinge", "u.motor")
+        labels = [line.get_label() for line in axes.get_lines()]
+        self.assertEqual(labels, ["hinge [rad]", "v.hinge [rad/s]", "u.motor [N·m]"])
+        np.testing.assert_array_equal(axes.get_lines()[2].get_ydata(), np.ones(21))
+        with self.assertRaisesRegex(KeyError, "did you mean 'hinge'"):
+            run.plot("hing")
 
     def test_stubs_are_python(self):
         text = self.kind.stub()
@@ -320,6 +345,8 @@ class OfRobots(unittest.TestCase):
     def test_mistakes_have_their_places(self):
         with self.assertRaisesRegex(linkwork.Error, r"mechanism\.rs:\d+:\d+: error: .*massa"):
             compiled(PENDULUM.replace("mass = mass, com", "massa = mass, com"))
+        with self.assertRaisesRegex(linkwork.Error, "choose one with `name=`: Pendulum, Bead"):
+            compiled(PENDULUM + BEAD)
         with self.assertRaisesRegex(linkwork.Error, "expected a path, or a declaration"):
             linkwork.compile("#[nothing]")
         with self.assertRaises(FileNotFoundError):
@@ -340,6 +367,24 @@ class InSinglePrecision(unittest.TestCase):
         np.testing.assert_allclose(found, [[1.5]], rtol=1e-6)
         run = m.simulate([1.0], duration=1.0, tolerance=1e-5)
         self.assertEqual(run.q.dtype, np.float32)
+
+
+class AtTheSameTime(unittest.TestCase):
+    """Several are compiled at once: none is taken for another."""
+
+    def test_threads_compile(self):
+        # A size of their own makes declarations that no other run has compiled.
+        size = 1 + np.random.default_rng().uniform()
+        kinds = [PENDULUM.replace("inertia = rod(mass, length, y)", f"inertia = sphere(mass, {k * size})") for k in (1, 2, 3)]
+        with ThreadPoolExecutor(3) as pool:
+            found = list(pool.map(lambda text: compiled(text, batch=False, derivatives=False), kinds))
+        for k, kind in enumerate(found, 1):
+            m = kind(mass=2.0, length=1.5)
+            inertia = 0.4 * 2.0 * (k * size) ** 2 + 2.0 * 0.75**2
+            np.testing.assert_allclose(m.mass_matrix([0.0]), [[inertia]], rtol=1e-14)
+            self.assertFalse(hasattr(m, "linearize"))
+            with self.assertRaisesRegex(linkwork.Error, "derivatives=True"):
+                m.linear_system([0.0])
 
 
 class OfTheGuide(unittest.TestCase):
