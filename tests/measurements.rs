@@ -76,6 +76,39 @@ struct Bodies {
     own: Vector,
     #[output(omega(table / ground), resolved_in = table)]
     turning: Vector,
+    #[output(moment_of_inertia(hull / ground, ground.x) + moment_of_inertia(table / ground, ground.x)
+        + moment_of_inertia(bead / ground, ground.x))]
+    about_x: Scalar,
+    #[output(moment_of_inertia(hull / ground, ground.x, ground.y) + moment_of_inertia(table / ground, ground.x, ground.y)
+        + moment_of_inertia(bead / ground, ground.x, ground.y))]
+    of_x_and_y: Scalar,
+    #[output(moment_of_inertia(table / table.at(0.3 * x - 0.1 * y), table.z))]
+    beside: Scalar,
+}
+
+/// Turned as one rigid body about a line through the ground's origin, all have the kinetic energy `½ ω² J`; two turns at once tell
+/// the products of inertia. The line through another point has the moment of the parallel-axis theorem.
+#[test]
+fn moments_of_inertia_are_those_of_energies() {
+    let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
+    let same = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}")
+    };
+    for _ in 0..5 {
+        let q: SVector<f64, 9> = random.configuration(&m);
+        let place = m.frame_placement(frame!(Bodies, "hull"), &q);
+        let turned = |w: [f64; 3]| {
+            let w = linkwork::nalgebra::Vector3::from(w);
+            let (own, v) =
+                (place.rotation.inverse() * w, place.rotation.inverse() * w.cross(&place.translation.vector));
+            let v = SVector::from([v.x, v.y, v.z, own.x, own.y, own.z, 0.0, 0.0]);
+            m.kinetic_energy(&q, &v)
+        };
+        let (x, y, both) = (turned([1.0, 0.0, 0.0]), turned([0.0, 1.0, 0.0]), turned([1.0, 1.0, 0.0]));
+        same(m.about_x(&q), 2.0 * x);
+        same(m.of_x_and_y(&q), both - x - y);
+        same(m.beside(&q), 0.15 * m.mass + m.mass * (0.3 * 0.3 + 0.1 * 0.1));
+    }
 }
 
 /// Of all bodies together they are those of the whole; about its own centre of mass a body has `I ω`.

@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 34] = [
+pub const FUNCTIONS: [&str; 35] = [
     "atan2",
     "degrees",
     "pow",
@@ -24,6 +24,7 @@ pub const FUNCTIONS: [&str; 34] = [
     "momentum",
     "angular_momentum",
     "kinetic_energy",
+    "moment_of_inertia",
     "reaction_force",
     "reaction_torque",
     "contact_force",

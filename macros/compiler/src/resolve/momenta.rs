@@ -1,5 +1,5 @@
-//! Momentum and kinetic energy of single bodies and particles: `momentum(body)`, `angular_momentum(body / point)`,
-//! `kinetic_energy(body)`; of several they are sums.
+//! Momentum, kinetic energy and inertia of single bodies and particles: `momentum(body)`, `angular_momentum(body / point)`,
+//! `kinetic_energy(body)`, `moment_of_inertia(body / point, direction)`; of several they are sums.
 
 use super::quantities::{flatten, vector};
 use super::scope::{Allowed, MassProperties, Placed, Scope, Value};
@@ -50,6 +50,46 @@ impl<'g> Scope<'_, 'g> {
         let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about?);
         let r = kinematics.resolve(&between, link, zero);
         Some(vector(vec![(link, spin + r.cross(v * mass))]))
+    }
+
+    /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical inertia matrix
+    /// `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the parallel-axis theorem).
+    pub fn moment_of_inertia(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let text = function.text.as_str();
+        let (parts, directions) = match arguments {
+            [of, directions @ ..] => (flatten(of), directions),
+            [] => (Vec::new(), arguments),
+        };
+        let ([body, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
+            cx.error(function.place.clone(), format!("`{text}` takes a body, a point and a direction"))
+                .help("write `moment_of_inertia(body / point, direction)`, with a second direction for a product of inertia");
+            return None;
+        };
+        if others.len() > 1 {
+            cx.error(others[1].place.clone(), format!("`{text}` takes one direction or two"))
+                .help("with two it is a product of inertia");
+            return None;
+        }
+        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), &function.place, cx) {
+            return None;
+        }
+        let (placed, (mass, com, central)) = self.heavy(body, cx)?;
+        let about = self.place(about, cx)?;
+        let a = self.terms(a, cx)?;
+        let b = others.first().map_or_else(|| Some(a.clone()), |b| self.terms(b, cx))?;
+        let kinematics = self.kinematics.borrow();
+        let (link, zero) = (placed.link, Vec3::zero(self.graph));
+        let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
+        let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about);
+        let [a, b, r] = [&a, &b, &between].map(|parts| kinematics.resolve(parts, link, zero));
+        let central = placed.pose.rotation.sym_to_parent(central);
+        let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * mass;
+        Some(Value::Scalar(a.dot(central * b) + moved))
     }
 
     /// A body or particle with its mass, centre of mass and central inertia.

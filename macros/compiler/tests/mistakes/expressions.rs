@@ -100,6 +100,23 @@ const SCALARS: &[Row] = &[
     ("kinetic_energy(ground)", "unknown body `ground`", "expected `arm`"),
     ("kinetic_energy(arms)", "unknown body `arms`", "did you mean `arm`?"),
     ("kinetic_energy(2)", "expected a body", "name a body or a particle"),
+    (
+        "moment_of_inertia(arm, z)",
+        "`moment_of_inertia` takes a body, a point and a direction",
+        "`moment_of_inertia(body / point, direction)`",
+    ),
+    (
+        "moment_of_inertia(arm / ground)",
+        "`moment_of_inertia` takes a body, a point and a direction",
+        "with a second direction",
+    ),
+    (
+        "moment_of_inertia(arm / ground, x, y, z)",
+        "`moment_of_inertia` takes one direction or two",
+        "a product of inertia",
+    ),
+    ("moment_of_inertia(arms / ground, z)", "unknown body `arms`", "did you mean `arm`?"),
+    ("moment_of_inertia(arm / ground, 2)", "expected a vector, found a scalar", "multiply it by a direction"),
     ("rate(l)", "`rate` takes a coordinate", "expected `hinge`"),
     ("rate(r(arm / ground))", "expected a scalar, found a vector", "`norm(v)`"),
     (

@@ -3,7 +3,7 @@
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::ratio::Ratio;
 use super::si::{
-    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, LENGTH, MOMENTUM, PLAIN, PRESSURE, RATE,
+    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN, PRESSURE, RATE,
     RATE_OF_RATE, SPEED, TIME,
 };
 use super::unify::{Dimension, Variable};
@@ -204,6 +204,15 @@ impl<'a> Inference<'a> {
                     "angular_momentum" => ANGULAR_MOMENTUM,
                     _ => ENERGY,
                 })
+            }
+            ("moment_of_inertia", [of, directions @ ..]) => {
+                self.slash("r", of);
+                let directions: Vec<Value> = directions.iter().map(|a| self.value(a)).collect();
+                match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
+                    true => Value::quantity(INERTIA),
+                    // Vectors that have a unit count with it.
+                    false => Value::Unknown,
+                }
             }
             ("reaction_force" | "contact_force", _) => Value::quantity(FORCE),
             ("reaction_torque", _) => Value::quantity(ENERGY),
