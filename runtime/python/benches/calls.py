@@ -30,7 +30,7 @@ def main():
     rng = np.random.default_rng(1)
     one = rng.normal(size=(3, 6))
     many = rng.normal(size=(3, 4096, 6))
-    print("function                       one state, us   of a batch, ns")
+    print("function                       one state, us   of a batch, ns   with out, ns")
     for name, count in [
         ("mass_matrix", 1),
         ("inverse_dynamics", 3),
@@ -41,7 +41,9 @@ def main():
         function = getattr(arm, name)
         single = least(lambda: function(*one[:count]), 2000)
         batch = least(lambda: function(*many[:count], threads=1), 5) / many.shape[1]
-        print(f"{name:30} {single * 1e6:13.2f} {batch * 1e9:17.1f}")
+        out = function(*many[:count])
+        again = least(lambda: function(*many[:count], threads=1, out=out), 5) / many.shape[1]
+        print(f"{name:30} {single * 1e6:13.2f} {batch * 1e9:17.1f} {again * 1e9:12.1f}")
 
 
 if __name__ == "__main__":

@@ -279,7 +279,7 @@ class Mechanism:
             position = f"{arguments}, /" if arguments else ""
             count = len(about["results"])
             result = "NDArray[Any]" if count == 1 else f"tuple[{', '.join(['NDArray[Any]'] * count)}]"
-            lines.append(f"    def {name}(self{position}, *, threads: int | None = None) -> {result}:")
+            lines.append(f"    def {name}(self{position}, *, threads: int | None = None, out: Any = None) -> {result}:")
             lines.append(f"        {_quoted(getattr(cls, name).__doc__, 8)}")
         return "\n".join(lines) + "\n"
 
@@ -631,9 +631,9 @@ def _function(library, k, about, cls):
     plain = all(kind == "array" and len(shape) == 1 for kind, shape in zip(kinds, shapes))
     ndarray, empty = np.ndarray, np.empty
 
-    def method(self, *given, threads=None):
+    def method(self, *given, threads=None, out=None):
         # One state in arrays that need no conversion: the way of control loops.
-        if plain and len(given) == count:
+        if plain and out is None and len(given) == count:
             for array, shape in zip(given, shapes):
                 if type(array) is not ndarray or array.shape != shape or array.dtype != dtype:
                     break
@@ -650,9 +650,25 @@ def _function(library, k, about, cls):
                 return tuple(
                     array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)
                 )
-        return general(self, given, threads)
+        return general(self, given, threads, out)
 
-    def general(self, given, threads):
+    def placed(out, lead):
+        """Arrays that results go into, as they are stored."""
+        given = out if isinstance(out, tuple) else (out,)
+        if len(given) != len(stored):
+            raise ValueError(f"{about['name']}: `out` has {len(given)} arrays for {len(stored)} results")
+        arrays = []
+        for array, shape, turn, result in zip(given, stored, turned, results):
+            kept = array.swapaxes(-1, -2) if turn and isinstance(array, ndarray) and array.ndim > 1 else array
+            fits = isinstance(kept, ndarray) and kept.shape == lead + shape and kept.dtype == dtype
+            if not fits or not kept.flags.c_contiguous or not kept.flags.writeable:
+                raise ValueError(
+                    f"{about['name']}: `out` is what an earlier call with as many states returned; of {result['name']} it is not"
+                )
+            arrays.append(kept)
+        return arrays
+
+    def general(self, given, threads, out):
         if len(given) != count:
             raise TypeError(f"{about['name']}({', '.join(names)}) takes {count} arguments, found {len(given)}")
         arrays = [prepared(i, value) for i, value in enumerate(given)]
@@ -668,7 +684,7 @@ def _function(library, k, about, cls):
                 array if array.ndim > len(shape) else np.ascontiguousarray(np.broadcast_to(array, (n, *array.shape)))
                 for array, shape in zip(arrays, shapes)
             ]
-        found = [empty(lead + shape, dtype) for shape in stored]
+        found = [empty(lead + shape, dtype) for shape in stored] if out is None else placed(out, lead)
         if n > 0:
             own = Arguments(*[_address(array) for array in arrays])
             wanted = Results(*[_address(array) for array in found])
@@ -687,7 +703,7 @@ def _function(library, k, about, cls):
     kind = inspect.Parameter
     parameters = [kind("self", kind.POSITIONAL_ONLY)]
     parameters += [kind(name, kind.POSITIONAL_ONLY) for name in names]
-    parameters.append(kind("threads", kind.KEYWORD_ONLY, default=None))
+    parameters += [kind(name, kind.KEYWORD_ONLY, default=None) for name in ("threads", "out")]
     method.__signature__ = inspect.Signature(parameters)
     return method
 
@@ -710,7 +726,8 @@ def _documentation(about, shapes):
         shape = f"shape {tuple(r['shape'])}" if r["shape"] else "a number"
         lines.append(f"    {r['name']}: {shape}{unit}")
     lines.append("")
-    lines.append("Arrays of N states, with N before these shapes, give arrays of N results; `threads` says how many share them.")
+    lines.append("Arrays of N states, with N before these shapes, give arrays of N results. `threads` says how many share them;")
+    lines.append("`out` is what an earlier call with as many states returned, and is written over.")
     return "\n".join(lines)
 
 

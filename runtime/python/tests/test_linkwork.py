@@ -101,6 +101,17 @@ class OfAPendulum(unittest.TestCase):
                 many = np.asarray(function(q, v, tau, threads=threads))
                 many = np.moveaxis(many, 1, 0) if many.ndim > 3 else many
                 np.testing.assert_allclose(many, single, rtol=1e-13, atol=1e-13)
+        # Results may go where earlier ones are.
+        kept = self.m.forward_dynamics_derivatives(q, v, tau)
+        expected = [array.copy() for array in kept]
+        kept[0][:] = 7.0
+        again = self.m.forward_dynamics_derivatives(q, v, tau, out=kept)
+        for array, right, before in zip(again, expected, kept):
+            np.testing.assert_array_equal(array, right)
+            self.assertTrue(np.shares_memory(array, before))
+        for wrong in (kept[0], kept[:2], tuple(array[:5] for array in kept), (1, 2, 3)):
+            with self.assertRaisesRegex(ValueError, "`out`"):
+                self.m.forward_dynamics_derivatives(q, v, tau, out=wrong)
         # One argument for all states.
         np.testing.assert_array_equal(self.m.kinetic_energy(q, [1.0]), self.m.kinetic_energy(q, np.ones((1003, 1))))
         self.assertEqual(self.m.mass_matrix(np.empty((0, 1))).shape, (0, 1, 1))
