@@ -134,25 +134,49 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         u: &SVector<Self::Scalar, NU>,
     ) -> LinearMotion<Self::Scalar, NV, NU> {
         let tau = Mechanism::generalized_forces(self, q, v, u);
-        let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
-        let (force_by_q, force_by_v, force_by_u) = Derivatives::generalized_forces_derivatives(self, q, v, u);
+        let by_force = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
+        let of_force = Derivatives::generalized_forces_derivatives(self, q, v, u);
+        let (by_q, by_v, by_u) = under_inputs(by_force, &of_force);
         let (turning, _) = Derivatives::tangent_rate_derivatives(self, &SVector::zeros(), v);
-        let mut motion = LinearMotion {
+        LinearMotion {
             acceleration: Mechanism::forward_dynamics(self, q, v, &tau),
             by_q,
             by_v,
-            by_u: product(&by_force, &force_by_u),
+            by_u,
             // The tangent space moves along, so that the bracket counts twice.
             turning: turning * constant::<Self::Scalar>(2.0),
-        };
-        // Most inputs push along joints.
-        for (by_state, of_force) in [(&mut motion.by_q, &force_by_q), (&mut motion.by_v, &force_by_v)] {
-            if !is_zero(of_force) {
-                add_product(by_state, &by_force, of_force);
-            }
         }
-        motion
     }
+}
+
+/// Derivatives of the accelerations by state and inputs, of those by state and forces and of the forces'.
+fn under_inputs<T: Real, const NV: usize, const NU: usize>(
+    (mut by_q, mut by_v, by_force): ByMotion<T, NV, NV>,
+    (force_by_q, force_by_v, force_by_u): &ByMotion<T, NV, NU>,
+) -> ByMotion<T, NV, NU> {
+    // Most inputs push along joints.
+    for (by_state, of_force) in [(&mut by_q, force_by_q), (&mut by_v, force_by_v)] {
+        if !is_zero(of_force) {
+            add_product(by_state, &by_force, of_force);
+        }
+    }
+    (by_q, by_v, product(&by_force, force_by_u))
+}
+
+/// [`Mechanism::acceleration_derivatives`] of mechanisms with derivatives.
+pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: M::Scalar,
+    q: &SVector<M::Scalar, NQ>,
+    v: &SVector<M::Scalar, NV>,
+    u: &SVector<M::Scalar, NU>,
+) -> Option<ByMotion<M::Scalar, NV, NU>>
+where
+    M: RheonomicDerivatives<NQ, NV, NU>,
+{
+    let tau = m.generalized_forces(t, q, v, u);
+    let by_force = m.forward_dynamics_derivatives(t, q, v, &tau);
+    Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
 
 /// What [`Derivatives`] are for a mechanism whose functions depend on time `t`, s. Every mechanism with [`Derivatives`] has

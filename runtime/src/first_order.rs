@@ -42,6 +42,18 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NX>;
 
+    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism with its states as the
+    /// last of its velocities, whatever the states of the struct are; `None` without [`FirstOrderDerivatives`].
+    fn extended_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NE>,
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> Option<ByMotion<Self::Scalar, NE, NU>> {
+        None
+    }
+
     /// The mechanism with its states as the last of its velocities, for methods of integration, controllers and linear systems:
     /// `v` is `[v, x]`, and `v̇` has the rates of the states behind the accelerations.
     ///
@@ -408,6 +420,16 @@ where
         dv: &SVector<M::Scalar, NE>,
     ) -> bool {
         self.mechanism.is_nearly_singular(t, q, &apart::<_, NV, NX, NE>(dv).0)
+    }
+
+    fn acceleration_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        u: &SVector<M::Scalar, NU>,
+    ) -> Option<ByMotion<M::Scalar, NE, NU>> {
+        self.mechanism.extended_derivatives(t, q, v, u)
     }
 
     fn carry(

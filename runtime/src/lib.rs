@@ -174,6 +174,7 @@ pub mod __private {
         nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
     };
     pub use crate::contact::Columns as ContactDerivatives;
+    pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;
     pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};

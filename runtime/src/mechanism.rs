@@ -94,6 +94,17 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         false
     }
 
+    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u`, constraints included, as in [`LinearMotion`](crate::LinearMotion): what
+    /// implicit methods solve with. `None` without `#[mechanism(…, derivatives)]`; methods take differences there.
+    fn acceleration_derivatives(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> Option<crate::ByMotion<Self::Scalar, NV, NU>> {
+        None
+    }
+
     /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`: its components change, and bodies
     /// move as before. Only of mechanisms with contacts, others leave it as it is.
     fn carry(

@@ -85,6 +85,17 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         false
     }
 
+    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u` where they are generated ([`Mechanism::acceleration_derivatives`]).
+    fn acceleration_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> Option<crate::ByMotion<Self::Scalar, NV, NU>> {
+        None
+    }
+
     /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`: its components change, and bodies
     /// move as before. Only of mechanisms with contacts, others leave it as it is.
     fn carry(

@@ -91,6 +91,17 @@ where
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
 
+    /// None: methods take differences.
+    fn acceleration_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> Option<crate::ByMotion<Self::Scalar, NV, NU>> {
+        None
+    }
+
     /// Lane by lane.
     fn carry(
         &self,

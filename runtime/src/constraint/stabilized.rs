@@ -136,6 +136,17 @@ where
         self.mechanism.is_nearly_singular(t, q, dv)
     }
 
+    /// None: methods take differences.
+    fn acceleration_derivatives(
+        &self,
+        _t: M::Scalar,
+        _q: &SVector<M::Scalar, NQ>,
+        _v: &SVector<M::Scalar, NV>,
+        _u: &SVector<M::Scalar, NU>,
+    ) -> Option<crate::ByMotion<M::Scalar, NV, NU>> {
+        None
+    }
+
     fn carry(
         &self,
         t: M::Scalar,

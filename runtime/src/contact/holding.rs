@@ -149,6 +149,17 @@ where
         self.mechanism.is_nearly_singular(t, q, dv)
     }
 
+    /// None: methods take differences.
+    fn acceleration_derivatives(
+        &self,
+        _t: T,
+        _q: &SVector<T, NQ>,
+        _v: &SVector<T, NV>,
+        _u: &SVector<T, NU>,
+    ) -> Option<crate::ByMotion<T, NV, NU>> {
+        None
+    }
+
     fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.carry(t, dv, v)
     }

@@ -5,7 +5,7 @@ use super::{Dynamics, Error, State, Step};
 use crate::Real;
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// A system `t` seconds after an origin of time: what single precision can tell apart within a step it can tell apart
 /// wherever the step is.
@@ -104,6 +104,15 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
         self.system.is_nearly_singular(self.origin + t, q, dv)
+    }
+
+    fn acceleration_derivatives(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Option<(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)> {
+        self.system.acceleration_derivatives(self.origin + t, q, v)
     }
 }
 

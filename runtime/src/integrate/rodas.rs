@@ -61,8 +61,9 @@ const TERMS: [[f64; 5]; 2] = [
 /// The Rosenbrock method RODAS of order 4 with an error estimate of order 3, for stiff mechanisms: steps of the size that the
 /// tolerance asks for, however stiff springs and dashpots are, and interpolation of order 3.
 ///
-/// A step solves six linear systems with one matrix of size `NV`. Derivatives of the accelerations are differences, `2 NV + 3`
-/// evaluations of the dynamics; steps take five more. L-stable: what is fast and stiff is damped away. Errors are measured as
+/// A step solves six linear systems with one matrix of size `NV`, and evaluates the dynamics eight times and their derivatives once:
+/// those that the word `derivatives` generates, or else differences, which are `2 NV` evaluations more. A trial that is repeated
+/// with a shorter step evaluates the dynamics five times. L-stable: what is fast and stiff is damped away. Errors are measured as
 /// [`DormandPrince`](super::DormandPrince) says, and constraints are kept as by [`Rosenbrock`](super::Rosenbrock). For
 /// tolerances of about 1e-3 to 1e-8; where nothing is stiff the explicit methods are faster.
 ///

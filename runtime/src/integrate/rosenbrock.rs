@@ -9,7 +9,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// `(1 − γ h J) k₁ = f(y₀)`, `(1 − γ h J) k₂ = f(y₀ + h k₁) − 2 k₁`, `y₁ = y₀ + (3 k₁ + k₂) h / 2` with
 /// `γ = 1 + 1/√2`: L-stable, and of order 2 for any matrix `J`, so that differences of the accelerations serve as
-/// derivatives. A step costs `2 NV + 3` evaluations of the dynamics and one factorisation of a matrix of size `NV`;
+/// derivatives where the word `derivatives` has generated none. A step costs three evaluations of the dynamics, their derivatives (or
+/// `2 NV` evaluations more) and one factorisation of a matrix of size `NV`;
 /// what is fast and stiff is damped away, and so is energy that is not. Constraints are kept as by the other methods; where
 /// they nearly lose rank the derivatives are those of the last step before, or zero. Derivatives are taken along what the
 /// constraints let through.
@@ -43,38 +44,46 @@ impl<T: Real, const NV: usize> Slopes<T, NV> {
     }
 }
 
-/// Slopes at the start of a step; `None` in singular positions and so near to them that branches of the motion part there.
+/// Slopes at the start of a step, those in time left zero; `None` in singular positions and so near to them that branches of the
+/// motion part there.
 pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
     h: T,
 ) -> Option<Slopes<T, NV>> {
-    if system.is_nearly_singular(start.t, &start.q, &(start.v * h)) {
+    let State { t, q, v } = start;
+    if system.is_nearly_singular(*t, q, &(v * h)) {
         return None;
     }
     let mut out = Slopes::<T, NV>::zero();
+    let known = system.acceleration_derivatives(*t, q, v);
+    if let Some((by_q, by_v)) = known
+        && !system.is_constrained()
+    {
+        return Some(Slopes { by_q, by_v, ..out });
+    }
     let root = epsilon::<T>().sqrt();
-    let momentum = system.momentum(start.t, &start.q, &start.v);
+    let momentum = system.momentum(*t, q, v);
     for k in 0..NV {
         let mut direction = SVector::<T, NV>::zeros();
         direction[k] = T::one();
         if system.is_constrained() {
             // What constraints let through of it: elsewhere branches that the motion is not on part from its own.
-            let State { t, q, v } = start;
             let p = system.momentum(*t, q, &(v + direction)) - momentum;
             direction = system.impulse(*t, q, v, T::zero(), &p);
         }
-        let q = system.integrate(&start.q, &(direction * root));
-        let moved = system.acceleration(start.t, &q, &start.v);
-        out.by_q.set_column(k, &((moved - acceleration) / root));
-        let size = root * start.v[k].abs().max(T::one());
-        let moved = system.acceleration(start.t, &start.q, &(start.v + direction * size));
-        out.by_v.set_column(k, &((moved - acceleration) / size));
+        let (by_q, by_v) = if let Some((by_q, by_v)) = known {
+            (by_q * direction, by_v * direction)
+        } else {
+            let moved = system.acceleration(*t, &system.integrate(q, &(direction * root)), v);
+            let size = root * v[k].abs().max(T::one());
+            let faster = system.acceleration(*t, q, &(v + direction * size));
+            ((moved - acceleration) / root, (faster - acceleration) / size)
+        };
+        out.by_q.set_column(k, &by_q);
+        out.by_v.set_column(k, &by_v);
     }
-    let later = h * constant(1e-3);
-    let moved = system.acceleration(start.t + later, &start.q, &start.v);
-    out.by_t = (moved - acceleration) / later;
     Some(out)
 }
 
@@ -138,7 +147,9 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let slopes = slopes(system, start, &before, h).or(*memory).unwrap_or(Slopes::zero());
+        let mut slopes = slopes(system, start, &before, h).or(*memory).unwrap_or(Slopes::zero());
+        let later = h * constant(1e-3);
+        slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / later;
         let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);
         let part = gamma * h;
         // Of (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv]: kφ = a + γh kv, and one system for kv.

@@ -5,9 +5,9 @@ use super::local::Local;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
-use crate::private::{constant, to_f64};
+use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// The inputs `u` of a mechanism over time. Implemented for what `simulate` accepts.
 pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
@@ -178,6 +178,17 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
         false
+    }
+
+    /// `(∂v̇/∂q, ∂v̇/∂v)` under the inputs at time `t`, where the mechanism has generated derivatives; methods take differences
+    /// elsewhere. A derivative by `q` is along motions of the configuration ([`Derivatives`](crate::Derivatives)).
+    fn acceleration_derivatives(
+        &mut self,
+        _t: T,
+        _q: &SVector<T, NQ>,
+        _v: &SVector<T, NV>,
+    ) -> Option<(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)> {
+        None
     }
 }
 
@@ -376,5 +387,29 @@ where
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
         M::CONSTRAINED && self.mechanism.is_nearly_singular(t, q, dv)
+    }
+
+    /// The chain rule: inputs may depend on the state, and are all that differences are taken of.
+    fn acceleration_derivatives(
+        &mut self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> Option<(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)> {
+        let u = if NU == 0 { SVector::zeros() } else { self.inputs.at(t, q, v) };
+        let (mut by_q, mut by_v, by_u) = self.mechanism.acceleration_derivatives(t, q, v, &u)?;
+        if NU == 0 || self.inputs.period().is_some() {
+            return Some((by_q, by_v));
+        }
+        let root = epsilon::<T>().sqrt();
+        for k in 0..NV {
+            let size = root * v[k].abs().max(T::one());
+            let along = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
+            let moved = self.inputs.at(t, &self.mechanism.integrate(q, &along(root)), v);
+            let faster = self.inputs.at(t, q, &(v + along(size)));
+            by_q.column_mut(k).gemv(T::one() / root, &by_u, &(moved - u), T::one());
+            by_v.column_mut(k).gemv(T::one() / size, &by_u, &(faster - u), T::one());
+        }
+        Some((by_q, by_v))
     }
 }

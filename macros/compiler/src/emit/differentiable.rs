@@ -170,3 +170,19 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         );
     }
 }
+
+/// How accelerations change under inputs, for methods of integration.
+pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
+    use Argument::{Q, U, V};
+    let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
+    let t = if s.time { Argument::T.name() } else { &zero };
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn acceleration_derivatives({}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+            ::linkwork::__private::acceleration_derivatives(self, {t}, q, v, u)
+        }}",
+        s.parameters(&s.timed(&[Q, V, U])),
+        square = s.shape(Shape::Square(s.nv)),
+        inputs = s.shape(Shape::Matrix(s.nv, s.nu)),
+    );
+}

@@ -120,5 +120,8 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         out.push_str("const FEEDBACK: bool = true;\n");
     }
     constraints::write_projection(out, &i.constraints, s);
+    if i.facts.requests.derivatives && i.constraints.slipping.is_empty() {
+        differentiable::write_accelerations(out, s);
+    }
     contacts::write_steps(out, i, s);
 }

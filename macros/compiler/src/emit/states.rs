@@ -28,9 +28,13 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
     };
     begin(out, "FirstOrder");
     write_values(out, &rates, i, s);
-    out.push_str("}\n");
     // Of accelerations under constraints there are no derivatives by parameters.
-    if i.facts.requests.derivatives && i.facts.constraints.is_none() {
+    let differentiable = i.facts.requests.derivatives && i.facts.constraints.is_none();
+    if differentiable {
+        write_extended(out, n, s);
+    }
+    out.push_str("}\n");
+    if differentiable {
         begin(out, "FirstOrderDerivatives");
         write_derivatives(out, &rates, i, s);
         out.push_str("}\n");
@@ -72,6 +76,23 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
         own.join(", "),
         fields.join(", "),
         values.join(", "),
+    );
+}
+
+/// How velocities and states change, for methods of integration.
+fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
+    let all = s.nv + n;
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn extended_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, u: &{u}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+            ::linkwork::__private::acceleration_derivatives(&::linkwork::FirstOrder::extended(self), t, q, v, u)
+        }}",
+        scalar = s.scalar.name(),
+        q = s.vector(s.nq),
+        v = s.vector(all),
+        u = s.vector(s.nu),
+        square = s.shape(Shape::Square(all)),
+        inputs = s.shape(Shape::Matrix(all, s.nu)),
     );
 }
 

@@ -1,0 +1,276 @@
+//! Implicit methods on generated derivatives: the motion is that by differences, for fewer evaluations of the dynamics.
+
+use linkwork::integrate::{Method, Rodas, Rosenbrock};
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+use linkwork::{ByMotion, ConstraintError, Rheonomic, at, constraint::stabilized};
+use std::cell::Cell;
+
+/// A mechanism whose forward dynamics are counted, and whose derivatives are hidden unless `KNOWN`.
+struct Counted<'m, M, const KNOWN: bool> {
+    mechanism: &'m M,
+    count: Cell<usize>,
+}
+
+impl<'m, M, const KNOWN: bool> Counted<'m, M, KNOWN> {
+    fn new(mechanism: &'m M) -> Self {
+        Self { mechanism, count: Cell::new(0) }
+    }
+}
+
+macro_rules! pass {
+    ($($name:ident($($argument:ident: $n:ident),*) -> $result:ty;)*) => {$(
+        fn $name(&self, t: f64, $($argument: &SVector<f64, $n>),*) -> $result {
+            self.mechanism.$name(t, $($argument),*)
+        }
+    )*};
+}
+
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Rheonomic<NQ, NV, NU>
+    for Counted<'_, M, KNOWN>
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    type Scalar = f64;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+
+    fn neutral(&self) -> SVector<f64, NQ> {
+        self.mechanism.neutral()
+    }
+    fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
+        self.mechanism.integrate(q, dv)
+    }
+    fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
+        self.mechanism.difference(from, to)
+    }
+    fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        self.mechanism.tangent_rate(dv, v)
+    }
+    fn forward_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        self.count.set(self.count.get() + 1);
+        self.mechanism.forward_dynamics(t, q, v, tau)
+    }
+    fn impulse(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        h: f64,
+        p: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        self.mechanism.impulse(t, q, v, h, p)
+    }
+    fn acceleration_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        u: &SVector<f64, NU>,
+    ) -> Option<ByMotion<f64, NV, NU>> {
+        if KNOWN { self.mechanism.acceleration_derivatives(t, q, v, u) } else { None }
+    }
+    pass! {
+        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
+        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
+        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
+        generalized_forces(q: NQ, v: NV, u: NU) -> SVector<f64, NV>;
+        kinetic_energy(q: NQ, v: NV) -> f64;
+        potential_energy(q: NQ) -> f64;
+        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
+        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
+        project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
+        is_nearly_singular(q: NQ, dv: NV) -> bool;
+    }
+}
+
+/// A pendulum on a cart on a stiff spring and dashpot.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Cart {
+    #[body(mass = 1)]
+    cart: Body,
+    #[body(mass = 0.3, com = -0.5 * y)]
+    bob: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> bob, about = z)]
+    hinge: Pin,
+    #[acts(on = rail, stiffness = 1e5)]
+    buffer: Spring,
+    #[acts(on = rail, damping = 2e3)]
+    oil: Dashpot,
+    #[acts(on = hinge)]
+    motor: Torque,
+}
+
+/// The same with a motor that is late.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Late {
+    lag: f64,
+    command: Input,
+    #[state(rate = (command - torque) / lag)]
+    torque: State,
+    #[body(mass = 0.3, com = -0.5 * y)]
+    bob: Body,
+    #[joint(ground -> bob, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, value = torque)]
+    motor: Torque,
+}
+
+/// A four-bar linkage with a stiff spring and dashpot at its crank.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct FourBar {
+    #[body(mass = 1, com = x / 2)]
+    crank: Body,
+    #[body(mass = 2, com = x, inertia = rod(2, 2, x))]
+    coupler: Body,
+    #[body(mass = 1, com = 0.75 * x)]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[joint(crank.at(x) -> coupler, about = z)]
+    left: Pin,
+    #[joint(ground.at(2 * x) -> rocker, about = z)]
+    pivot: Pin,
+    #[joint(coupler.at(2 * x) -> rocker.at(1.5 * x), about = z)]
+    right: Pin,
+    #[acts(on = main, stiffness = 1e4)]
+    buffer: Spring,
+    #[acts(on = main, damping = 1e3)]
+    oil: Dashpot,
+    #[acts(on = pivot)]
+    motor: Torque,
+}
+
+/// How many evaluations of the dynamics a single step of RODAS takes.
+fn evaluations<M, const NQ: usize, const NV: usize>(
+    m: &M,
+    q: SVector<f64, NQ>,
+    v: SVector<f64, NV>,
+) -> [usize; 2]
+where
+    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+{
+    fn count<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
+        m: &Counted<'_, M, KNOWN>,
+        q: SVector<f64, NQ>,
+        v: SVector<f64, NV>,
+    ) -> usize
+    where
+        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+    {
+        let method = Rodas::new().tolerance(1e-2, 1e-2).initial_step(1e-6).max_step(1e-6);
+        simulate(m).from(q, v).method(method).duration(1e-6).finish().unwrap();
+        m.count.get()
+    }
+    [count(&Counted::<_, true>::new(m), q, v), count(&Counted::<_, false>::new(m), q, v)]
+}
+
+/// The end of a run under feedback, with derivatives and by differences.
+fn ends<M, S, const NQ: usize, const NV: usize>(
+    m: &M,
+    (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
+    method: S,
+) -> [(SVector<f64, NQ>, SVector<f64, NV>); 2]
+where
+    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+    S: Method<f64> + Clone,
+{
+    fn end<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
+        m: &Counted<'_, M, KNOWN>,
+        (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
+        method: S,
+    ) -> (SVector<f64, NQ>, SVector<f64, NV>)
+    where
+        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+        S: Method<f64>,
+    {
+        let last = NV - 1;
+        let run = simulate(m).from(q, v).method(method).duration(0.1);
+        let run = run.inputs(move |t, q, v| [(3.0 * t).sin() - 2.0 * q[NQ - 1] - 0.5 * v[last]].into());
+        let end = run.finish().unwrap();
+        (end.q, end.v)
+    }
+    let known = end(&Counted::<_, true>::new(m), (q, v), method.clone());
+    [known, end(&Counted::<_, false>::new(m), (q, v), method)]
+}
+
+#[track_caller]
+fn agree<M, const NQ: usize, const NV: usize>(m: &M, start: (SVector<f64, NQ>, SVector<f64, NV>))
+where
+    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+{
+    let [known, differences] = ends(m, start, Rodas::new().tolerance(1e-8, 1e-10));
+    let gap = |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
+        (a.0 - b.0).amax().max((a.1 - b.1).amax())
+    };
+    assert!(gap(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
+    let [fixed, other] = ends(m, start, Rosenbrock::step(4e-5));
+    assert!(gap(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
+    // Order 2 against order 4.
+    assert!(gap(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
+}
+
+fn closed(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let q = m.assemble(&[1.2, -0.8, 1.5].into(), &[0]).unwrap();
+    (q, m.project_velocity(&q, &[0.5, 0.0, 0.0].into()).unwrap())
+}
+
+#[test]
+fn the_motion_is_that_by_differences() {
+    agree(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
+    agree(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
+    let bar = FourBar {};
+    agree(&bar, closed(&bar));
+}
+
+#[test]
+fn the_order_is_four() {
+    let late = Late { lag: 0.4, torque: 0.0 };
+    let whole = late.extended();
+    let end = |method: Rodas<f64>| ends(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
+    let equal = |h: f64| end(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
+    let exact = end(Rodas::new().tolerance(1e-13, 1e-14));
+    let error = |h: f64| (equal(h).1 - exact.1).norm();
+    let order = (error(0.05) / error(0.025)).log2();
+    assert!((order - 4.0).abs() < 0.4, "{order}: {:e}", error(0.05));
+}
+
+#[test]
+fn derivatives_spare_two_evaluations_for_each_velocity() {
+    let [known, differences] = evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
+    assert_eq!((known, differences - known), (8, 4));
+    let late = Late { lag: 1e-3, torque: 0.0 };
+    let [known, differences] = evaluations(&late.extended(), [0.4].into(), [1.0, 0.2].into());
+    assert_eq!((known, differences - known), (8, 4));
+    let bar = FourBar {};
+    let (q, v) = closed(&bar);
+    let [known, differences] = evaluations(&bar, q, v);
+    assert_eq!((known, differences - known), (8, 6));
+}
+
+#[test]
+fn wrappers_pass_derivatives_on_that_they_do_not_change() {
+    let (cart, q, v, u) = (Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into(), [0.3].into());
+    let known = Mechanism::acceleration_derivatives(&cart, &q, &v, &u);
+    assert!(known.is_some());
+    assert_eq!(known, Mechanism::acceleration_derivatives(&&cart, &q, &v, &u));
+    assert_eq!(known, Mechanism::acceleration_derivatives(&at(&cart, 0.0), &q, &v, &u));
+    let linear = cart.linear_motion(&q, &v, &u);
+    assert_eq!(known, Some((linear.by_q, linear.by_v, linear.by_u)));
+    // Feedback is no part of them.
+    let bar = FourBar {};
+    let (q, v) = closed(&bar);
+    assert_eq!(None, stabilized(&bar, 10.0).acceleration_derivatives(0.0, &q, &v, &u));
+}
