@@ -15,5 +15,5 @@ mod source;
 mod support;
 
 pub(super) use docs::{safe, without_links, wrapped};
-pub use names::{capitals, identifier, letters, prefix};
+pub use names::{capitals, identifier, prefix};
 pub use source::{Files, Options, Unfit, write};
