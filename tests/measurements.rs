@@ -225,3 +225,99 @@ fn all_outputs_stand_in_one_vector() {
     assert_eq!(all[6], m.altitude(&q));
     assert_eq!(all[7], m.current(&q, &u));
 }
+
+/// Two rods on a cart with force elements of every kind.
+#[mechanism(gravity = -9.81 * y)]
+struct Loaded {
+    #[body(mass = 2)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[body(mass = 1, com = 0.4 * x, inertia = diagonal(0.01, 0.05, 0.06))]
+    first: Body,
+    #[joint(cart -> first)]
+    ball: Ball,
+    #[body(mass = 0.5, com = 0.3 * y, inertia = diagonal(0.02, 0.01, 0.03))]
+    second: Body,
+    #[joint(first.at(0.8 * x) -> second, about = z)]
+    hinge: Pin,
+    #[acts(on = rail, stiffness = 30, free_length = 0.2)]
+    coil: Spring,
+    #[acts(between = (ground.at(2 * y), second.at(0.6 * y)), stiffness = 12, free_length = 0.5)]
+    rope: Spring,
+    #[acts(on = hinge, damping = 0.7)]
+    grease: Dashpot,
+    #[acts(between = (cart, second), damping = 0.4)]
+    damper: Dashpot,
+    #[acts(on = hinge, coulomb = 0.3, speed = 0.1)]
+    rubbing: Friction,
+    #[acts(on = second.at(0.6 * y), value = (2 + sin(hinge)) * ground.x)]
+    wind: Force,
+    #[acts(on = first, value = -0.2 * omega(first / ground))]
+    drag: Torque,
+    #[acts(between = (ground.at(3 * z), first.at(0.8 * x)), strength = 1.5)]
+    pull: Attraction,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = first.at(0.5 * x), along = y)]
+    jet: Force,
+    #[acts(on = second, about = z)]
+    wheel: Torque,
+    #[acts(between = (ground, second.at(0.6 * y)))]
+    cylinder: Force,
+    #[output(power(coil) + power(rope) + power(pull))]
+    stored: Scalar,
+    #[output(power(grease) + power(damper) + power(rubbing))]
+    lost: Scalar,
+    #[output(power(wind) + power(drag))]
+    applied: Scalar,
+    #[output(power(motor) + power(jet) + power(wheel) + power(cylinder))]
+    controlled: Scalar,
+    #[output(power(grease))]
+    of_grease: Scalar,
+}
+
+/// The same bodies without force elements.
+#[mechanism(gravity = -9.81 * y)]
+struct Bare {
+    #[body(mass = 2)]
+    cart: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[body(mass = 1, com = 0.4 * x, inertia = diagonal(0.01, 0.05, 0.06))]
+    first: Body,
+    #[joint(cart -> first)]
+    ball: Ball,
+    #[body(mass = 0.5, com = 0.3 * y, inertia = diagonal(0.02, 0.01, 0.03))]
+    second: Body,
+    #[joint(first.at(0.8 * x) -> second, about = z)]
+    hinge: Pin,
+}
+
+/// What elements deliver is what they add to the rate of the kinetic energy: bias forces with and without them tell, by the velocities
+/// that they act on. Group by group it is the power balance of the whole.
+#[test]
+fn elements_deliver_what_energies_gain() {
+    let mut random = Random::new(25);
+    for _ in 0..20 {
+        let (q, v): (SVector<f64, 6>, SVector<f64, 5>) =
+            (random.configuration(&Loaded {}), random.vector(2.0));
+        let u = random.vector(3.0);
+        let m = Loaded {};
+        let same = |found: f64, expected: f64| {
+            assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{found} {expected}");
+        };
+        let passive = v.dot(&(Bare {}.bias_forces(&q, &v) - m.bias_forces(&q, &v)));
+        same(m.stored(&q, &v) + m.lost(&q, &v) + m.applied(&q, &v), passive);
+        same(m.controlled(&q, &v, &u), v.dot(&m.generalized_forces(&q, &u)));
+        same(m.lost(&q, &v), -m.dissipated_power(&q, &v));
+        same(m.applied(&q, &v), m.disturbance_power(&q, &v));
+        same(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
+        // Energies are lost along the motion.
+        let moved = |h: f64| m.integrate(&q, &(v * h));
+        let energy = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
+        let h = 1e-5;
+        let slope = (energy(&moved(h)) - energy(&moved(-h))) / (2.0 * h);
+        assert!((m.stored(&q, &v) + slope).abs() < 1e-6 * (1.0 + slope.abs()));
+    }
+}

@@ -2,6 +2,7 @@
 
 use super::builder::Builder;
 use super::motion::{Moving, needs_motion};
+use super::power::{Counts, is_asked};
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::expr::Vec3;
@@ -41,7 +42,12 @@ impl<'g> Builder<'_, 'g> {
             self.model.inputs.push((input.text.clone(), Input::Named));
         }
         for action in &self.description.actions {
+            let before = Counts::of(&self.model);
             self.add_action(action, cx);
+            if is_asked(self.description, &action.name) {
+                let power = self.power_since(&before, &action.name.text);
+                self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
+            }
         }
     }
 

@@ -264,6 +264,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             "contact_force" => self.contact_force(function, arguments, cx),
             "momentum" | "angular_momentum" | "kinetic_energy" => self.momentum(function, arguments, cx),
             "moment_of_inertia" => self.moment_of_inertia(function, arguments, cx),
+            "power" => self.power(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
             _ if OF_HEIGHT.contains(&text) => self.air(function, arguments, cx),
             _ if ANGLES.contains(&text) => self.flight_angle(function, arguments, cx),

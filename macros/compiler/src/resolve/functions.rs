@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 35] = [
+pub const FUNCTIONS: [&str; 36] = [
     "atan2",
     "degrees",
     "pow",
@@ -25,6 +25,7 @@ pub const FUNCTIONS: [&str; 35] = [
     "angular_momentum",
     "kinetic_energy",
     "moment_of_inertia",
+    "power",
     "reaction_force",
     "reaction_torque",
     "contact_force",

@@ -30,6 +30,7 @@ mod names;
 mod numbering;
 mod outline;
 mod place;
+mod power;
 mod quantities;
 mod reaction;
 mod requirements;

@@ -142,7 +142,7 @@ fn uses(d: &Description, e: &Expr) -> Uses {
                 "rate" if arguments.iter().any(|argument| names_motion(d, argument)) => {
                     (uses.velocities, uses.accelerations) = (true, true)
                 }
-                "v" | "omega" | "rate" | "momentum" | "angular_momentum" | "kinetic_energy" => {
+                "v" | "omega" | "rate" | "momentum" | "angular_momentum" | "kinetic_energy" | "power" => {
                     uses.velocities = true
                 }
                 "a" | "alpha" => uses.accelerations = true,

@@ -171,11 +171,16 @@ pub struct Kinematics<'g> {
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
     /// By contact: what its surfaces exert on each other, the second one on the first, by axes of links.
     pub touches: BTreeMap<String, Vec<(Option<LinkId>, Vec3<'g>)>>,
+    /// By force element that an output asks for: what it delivers.
+    pub powers: BTreeMap<String, Delivered<'g>>,
     /// Accelerations of the links, once all are there.
     pub accelerations: Vec<Spatial<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
     pub masses: BTreeMap<String, MassProperties<'g>>,
 }
+
+/// What a force element delivers, or why that is not known.
+pub type Delivered<'g> = Result<Expr<'g>, &'static str>;
 
 /// A vector as a sum over the axes of links.
 pub type Terms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;

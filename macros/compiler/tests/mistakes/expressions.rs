@@ -100,6 +100,9 @@ const SCALARS: &[Row] = &[
     ("kinetic_energy(ground)", "unknown body `ground`", "expected `arm`"),
     ("kinetic_energy(arms)", "unknown body `arms`", "did you mean `arm`?"),
     ("kinetic_energy(2)", "expected a body", "name a body or a particle"),
+    ("power(hinge)", "unknown force element `hinge`", ""),
+    ("power(arm, hinge)", "`power` takes one force element", "`power(spring)`"),
+    ("power(2)", "expected a force element", ""),
     (
         "moment_of_inertia(arm, z)",
         "`moment_of_inertia` takes a body, a point and a direction",

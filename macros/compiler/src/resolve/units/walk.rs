@@ -3,8 +3,8 @@
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::ratio::Ratio;
 use super::si::{
-    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN, PRESSURE, RATE,
-    RATE_OF_RATE, SPEED, TIME,
+    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN, POWER,
+    PRESSURE, RATE, RATE_OF_RATE, SPEED, TIME,
 };
 use super::unify::{Dimension, Variable};
 use super::value::{Value, product};
@@ -205,6 +205,7 @@ impl<'a> Inference<'a> {
                     _ => ENERGY,
                 })
             }
+            ("power", _) => Value::quantity(POWER),
             ("moment_of_inertia", [of, directions @ ..]) => {
                 self.slash("r", of);
                 let directions: Vec<Value> = directions.iter().map(|a| self.value(a)).collect();

@@ -1,0 +1,159 @@
+//! The power of single force elements, for the outputs that name them: `power(spring)`.
+
+use super::builder::Builder;
+use super::scope::{Allowed, Delivered, Scope, Value};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Function, Vec3};
+use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
+use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
+use crate::syntax::{self, Description, Name};
+
+/// How many forces of each kind there are.
+#[derive(Clone, Copy)]
+pub struct Counts {
+    springs: usize,
+    dashpots: usize,
+    frictions: usize,
+    loads: usize,
+    potentials: usize,
+    dissipations: usize,
+    others: usize,
+}
+
+impl Counts {
+    /// Those of a model.
+    pub fn of(model: &Model<'_>) -> Counts {
+        Counts {
+            springs: model.springs.len(),
+            dashpots: model.dashpots.len(),
+            frictions: model.frictions.len(),
+            loads: model.loads.len(),
+            potentials: model.potentials.len(),
+            dissipations: model.dissipations.len(),
+            others: model.inertances.len() + model.acceleration_forces.len(),
+        }
+    }
+}
+
+/// Whether an output, or what it is made of, names the power of an element.
+pub fn is_asked(d: &Description, element: &Name) -> bool {
+    let names = |e: &syntax::Expr| {
+        e.parts().iter().any(|part| match &part.kind {
+            syntax::ExprKind::Call(function, arguments) => {
+                function.text == "power" && arguments.iter().any(|a| a.name() == Some(element.text.as_str()))
+            }
+            _ => false,
+        })
+    };
+    d.outputs.iter().any(|output| names(&output.value)) || d.definitions.iter().any(|d| names(&d.value))
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// The power of what an element has added since then: of forces on rates their products, of energies what they lose along the
+    /// motion.
+    pub fn power_since(&self, before: &Counts, element: &str) -> Delivered<'g> {
+        let (m, now) = (&self.model, Counts::of(&self.model));
+        if now.others > before.others {
+            return Err("its force depends on accelerations");
+        }
+        let mut power = m.graph.zero();
+        for spring in &m.springs[before.springs..] {
+            power +=
+                -(spring.stiffness * (position_in(m.graph, &spring.on) - spring.free) * rate(m, &spring.on));
+        }
+        for dashpot in &m.dashpots[before.dashpots..] {
+            power += -(dashpot.damping * rate(m, &dashpot.on).square());
+        }
+        for dry in &m.frictions[before.frictions..] {
+            let speed = rate(m, &dry.on);
+            power += -(dry.friction * (speed / m.friction_speed).call(Function::Tanh) * speed);
+        }
+        for load in &m.loads[before.loads..] {
+            power += load.force * load.rate;
+        }
+        let energies = &m.potentials[before.potentials..];
+        if symbols_in(energies).into_iter().any(|s| Quantity::of(s) == Quantity::Time) {
+            return Err("its energy depends on time");
+        }
+        for energy in energies {
+            power += -time_derivative(m.space(), *energy);
+        }
+        for function in &m.dissipations[before.dissipations..] {
+            for (k, d) in velocity_gradient(*function) {
+                power += -(d * Quantity::Velocity(k).expr(m.graph));
+            }
+        }
+        Ok(power + self.power_of_input(element))
+    }
+
+    /// The power of an input that acts on a coordinate or a body.
+    fn power_of_input(&self, element: &str) -> Expr<'g> {
+        let m = &self.model;
+        let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
+        let u = Quantity::Input(k).expr(m.graph);
+        match &m.inputs[k].1 {
+            Input::Named => m.graph.zero(),
+            Input::Coordinate(c) => u * rate(m, c),
+            Input::Sum(all, _) => all.iter().fold(m.graph.zero(), |sum, c| sum + u * rate(m, c)),
+            Input::Force { link, point, along } => {
+                let (linear, angular) = self.twist(*link);
+                u * (linear + angular.cross(*point)).dot(self.in_axes_of(*link, along))
+            }
+            Input::Torque { link, about } => u * self.twist(*link).1.dot(self.in_axes_of(*link, about)),
+        }
+    }
+
+    /// Velocity of a link's origin, and its angular velocity, in its axes.
+    fn twist(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
+        let zero = Vec3::zero(self.model.graph);
+        let kinematics = self.scope.kinematics.borrow();
+        kinematics.twists.get(link.0).map_or((zero, zero), |twist| (twist.linear, twist.angular))
+    }
+
+    fn in_axes_of(&self, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {
+        let zero = Vec3::zero(self.model.graph);
+        self.scope.kinematics.borrow().resolve(direction, Some(link), zero)
+    }
+}
+
+impl<'g> Scope<'_, 'g> {
+    /// `power(element)`: what a force element or an input delivers to the bodies, W; negative where it takes energy out.
+    pub fn power(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let known = || self.actions.iter().map(String::as_str);
+        let [e] = arguments else {
+            cx.error(function.place.clone(), "`power` takes one force element").help("write `power(spring)`");
+            return None;
+        };
+        let Some(name) = e.name() else {
+            cx.error(e.place.clone(), "expected a force element").suggest("", known());
+            return None;
+        };
+        if !self.check_allowed(Allowed::Reaction, "the power of an element", &function.place, cx) {
+            return None;
+        }
+        match self.kinematics.borrow().powers.get(name) {
+            Some(Ok(power)) => Some(Value::Scalar(*power)),
+            Some(Err(why)) => {
+                cx.error(e.place.clone(), format!("the power of `{name}` is not there: {why}"))
+                    .help("write it as a product of a force and a rate");
+                None
+            }
+            None => {
+                // An element with a mistake has none, and that was told.
+                if !self.actions.iter().any(|action| action == name) && self.is_news(name, cx) {
+                    let error = cx.error(e.place.clone(), format!("unknown force element `{name}`"));
+                    error.suggest(name, known());
+                    if error.is_bare() {
+                        error.help("name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`");
+                    }
+                }
+                None
+            }
+        }
+    }
+}
