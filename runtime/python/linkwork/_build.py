@@ -1,6 +1,7 @@
 """Declarations and robot files to compiled libraries, which are kept."""
 
 import difflib
+import errno
 import hashlib
 import json
 import os
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from pathlib import Path
 
 from ._mechanism import Error, Mechanism, load
@@ -208,8 +210,17 @@ def _files_named(source):
     return b"".join(path.read_bytes() for path in found if path.is_file())
 
 
+# One thread compiles the command, the others find it.
+_COMMAND = threading.Lock()
+
+
 def _command(quiet):
     """Linkwork's command, which is compiled once."""
+    with _COMMAND:
+        return _compiled_command(quiet)
+
+
+def _compiled_command(quiet):
     target = _cache() / "target"
     suffix = ".exe" if os.name == "nt" else ""
     key = hashlib.sha256(_fingerprint() + toolchain().encode()).hexdigest()[:16]
@@ -294,12 +305,22 @@ def _stem():
 
 def _run(arguments, failure, environment=None):
     """What a command prints. Its complaints are the error."""
-    try:
-        done = subprocess.run(
-            [str(a) for a in arguments], capture_output=True, text=True, encoding="utf-8", env=environment, check=False
-        )
-    except OSError as error:
-        raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
+    for pause in (0.05, 0.2, 1.0, None):
+        try:
+            done = subprocess.run(
+                [str(a) for a in arguments],
+                capture_output=True,
+                text=True,
+                encoding="utf-8",
+                env=environment,
+                check=False,
+            )
+            break
+        except OSError as error:
+            # A process that another thread starts at this moment has the new file open a little longer.
+            if error.errno != errno.ETXTBSY or pause is None:
+                raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
+            time.sleep(pause)
     if done.returncode == 0:
         return done.stdout
     complaints = done.stderr.strip() or f"exit status {done.returncode}"
