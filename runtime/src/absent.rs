@@ -203,3 +203,11 @@ pub trait HasFileParameters<'a> {}
     note = "write `#[mechanism(urdf = \"…\", parameters = inertial)]`, or `inertial(\"link\", …)` for some of the links"
 )]
 pub trait HasFileInertials<'a> {}
+
+/// A mechanism that declares equilibria.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` declares no equilibrium",
+    label = "this needs a declared equilibrium",
+    note = "declare one among the fields: `#[equilibrium(joint = angle)] upright: Equilibrium`"
+)]
+pub trait DeclaresEquilibria<'a> {}

@@ -16,6 +16,7 @@
 //! | contacts that open and close | [`Contact`] |
 //! | bounds, stops | [`Limit`] |
 //! | states of first order | [`State`] |
+//! | configurations at rest | [`Equilibrium`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
 //! | expressions | [`Scalar`], [`Vector`], [`Potential`], [`Rayleigh`] |
 //!
@@ -447,6 +448,22 @@ pub enum Contact {}
 /// Euler) hold it for constant within a step.
 pub enum State {}
 
+/// Configuration at rest about which the linear equations of motion are printed.
+///
+/// `#[equilibrium(hinge = pi, motor = 0)] upright: Equilibrium`: values of coordinates, inputs and states of first order, numbers or
+/// expressions of the parameters. What is not named is zero; orientations of [`Ball`] and [`Free`] are those of the axes beside
+/// them. Motion that is driven at constant rates counts as rest: a bead on a hoop that spins. Several may be declared.
+///
+/// The documentation of the struct, and `LINEAR_EQUATIONS` with one text for each of `EQUILIBRIA`, have the equations of motion to
+/// first order, `M ξ̈ + C ξ̇ + K ξ = B u + Jᵀ λ`, in the parameters of the mechanism; those of constraints and of states of first
+/// order stand beside them. The deviations `ξ` are those of coordinates, and for `Ball` and `Free` small rotations (rad) and
+/// displacements (m) in body axes. Up to three velocities come with the characteristic equation, the natural frequency (rad/s) of
+/// a single oscillation and the conditions of stability: those of Routh and Hurwitz where deviations are damped, distinct imaginary
+/// roots where they are not (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV).
+///
+/// What is no equilibrium does not compile, and the message says which force is left; nor does one where a force has a corner.
+pub enum Equilibrium {}
+
 /// Scalar expression with a name.
 ///
 /// `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
@@ -492,5 +509,5 @@ macro_rules! derivable {
 derivable! {
     Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
     Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
-    State Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector
+    State Equilibrium Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector
 }

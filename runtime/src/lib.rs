@@ -145,9 +145,9 @@ mod trigonometry;
 /// `Vector`, are left out here, so that `use linkwork::nalgebra::*;` may stand beside this.
 pub mod prelude {
     pub use crate::elements::{
-        Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Force, Frame, Free, Friction, Gravity,
-        Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential, Rayleigh, Rolling,
-        Screw, Sleeve, Slipping, Slot, Spring, Stage, State, Torque, Universal, Weld,
+        Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Equilibrium, Force, Frame, Free,
+        Friction, Gravity, Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential,
+        Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Spring, Stage, State, Torque, Universal, Weld,
     };
     pub use crate::integrate::{
         DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,

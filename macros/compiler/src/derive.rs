@@ -7,7 +7,7 @@ use crate::expr::print::Written;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
 use crate::mechanics::conserved::{self, Conserved};
-use crate::mechanics::equations::Limits;
+use crate::mechanics::equations::{Limits, linear};
 use crate::mechanics::hamilton::{self, Hamilton};
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
@@ -101,8 +101,16 @@ pub fn derive_with<'g>(
         constants.push(Constant::parameters(&model.parameters));
     }
     constants.extend(drawing(model, requests));
+    let linear = linear_equations(model, &joints, &mass, cx)?;
+    constants.extend(Constant::linear_equations(&linear));
     let equations = printed(model, &joints, &mass, requests.equations, cx)?;
-    let output = Output { equations, prepared, constants, ..steps(model, &joints, functions) };
+    let output = Output {
+        equations,
+        linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
+        prepared,
+        constants,
+        ..steps(model, &joints, functions)
+    };
     sound(model, output, cx)
 }
 
@@ -119,6 +127,7 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
         frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
         charts: model.charts.clone(),
         equations: Written::default(),
+        linear_equations: Vec::new(),
         prepared: None,
         constants: Vec::new(),
     }
@@ -307,6 +316,21 @@ fn printed<'g>(
             })
         }
     }
+}
+
+/// The linear equations about declared equilibria, by name. `None` where one is none, with the reason in `cx`.
+fn linear_equations<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Vec<(String, Written)>> {
+    let mut all = Vec::new();
+    for at in &model.equilibria {
+        let found = linear::linear(model, joints, mass, at, cx);
+        all.extend(found.map(|found| (at.name.clone(), linear::written_linear(model, at, &found))));
+    }
+    (all.len() == model.equilibria.len()).then_some(all)
 }
 
 fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Written {

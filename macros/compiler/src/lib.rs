@@ -401,6 +401,9 @@ impl Source {
         if facts.requests.conserved {
             constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
         }
+        let equilibria = self.mechanism.description.equilibria.iter();
+        let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
+        constants.extend(derive::Constant::linear_equations(&unknown));
         if facts.requests.drawing {
             constants.push(derive::Constant::drawing(&[]));
         }
@@ -457,6 +460,7 @@ impl Source {
             // How many base parameters there are, only the equations could tell.
             base: 7 * nv,
             parameters: description.parameters.len(),
+            equilibria: description.equilibria.len(),
             entries: vec![(0, 0); nv * (nv + 1) / 2],
             ..Facts::default()
         }

@@ -12,6 +12,8 @@ mod arguments;
 mod attributes;
 #[path = "mistakes/elements.rs"]
 mod elements;
+#[path = "mistakes/equilibria.rs"]
+mod equilibria;
 #[path = "mistakes/expressions.rs"]
 mod expressions;
 #[path = "mistakes/figures.rs"]

@@ -186,6 +186,7 @@ fn every_word_is_named_by_what_needs_it() {
                 "HoldsParameters",
                 "HasFileParameters",
                 "HasFileInertials",
+                "DeclaresEquilibria",
                 "HasContacts",
             ];
             let known = expected.contains(&reason.as_str()) || of_all.contains(&reason.as_str());

@@ -3,7 +3,7 @@
 use super::facts::{Facts, Need};
 
 /// Constants of mechanisms, with what each needs.
-const CONSTANTS: [(&str, &[Need]); 24] = [
+const CONSTANTS: [(&str, &[Need]); 27] = [
     ("BASE_PARAMETERS", &[Need::Inertia, Need::Regressor]),
     ("BODIES", &[Need::Inertia, Need::Regressor]),
     ("CONFIGURATION", &[]),
@@ -14,9 +14,12 @@ const CONSTANTS: [(&str, &[Need]); 24] = [
     ("DRAWING", &[Need::Drawing]),
     ("EQUATIONS", &[]),
     ("EQUATIONS_LATEX", &[]),
+    ("EQUILIBRIA", &[Need::Inertia, Need::Equilibria]),
     ("FILE", &[Need::FileParameters]),
     ("FRAMES", &[]),
     ("INPUTS", &[]),
+    ("LINEAR_EQUATIONS", &[Need::Inertia, Need::Equilibria]),
+    ("LINEAR_EQUATIONS_LATEX", &[Need::Inertia, Need::Equilibria]),
     ("LINKS", &[Need::FileInertials]),
     ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Packed]),
     ("NC", &[Need::Constraints]),

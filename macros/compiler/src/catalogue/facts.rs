@@ -50,6 +50,8 @@ pub enum Need {
     FileParameters,
     /// Mass properties of links among them.
     FileInertials,
+    /// Declared equilibria.
+    Equilibria,
     /// Limits of coordinates.
     Limits,
     /// Derivatives of forward dynamics by calls of other functions.
@@ -62,7 +64,7 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 26] = [
+    pub const ALL: [Need; 27] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
@@ -85,6 +87,7 @@ impl Need {
         Need::Parameters,
         Need::FileParameters,
         Need::FileInertials,
+        Need::Equilibria,
         Need::Limits,
         Need::Calls,
         Need::PassiveCalls,
@@ -116,6 +119,7 @@ impl Need {
             Need::Parameters => "HasParameters",
             Need::FileParameters => "HasFileParameters",
             Need::FileInertials => "HasFileInertials",
+            Need::Equilibria => "DeclaresEquilibria",
             Need::Limits | Need::Calls | Need::PassiveCalls | Need::FewContacts => return None,
         })
     }
@@ -155,6 +159,8 @@ pub struct Facts {
     pub bodies: usize,
     /// How many base parameters there are.
     pub base: usize,
+    /// How many equilibria are declared.
+    pub equilibria: usize,
     /// How many quantities are conserved.
     pub conserved: usize,
     /// How many contacts open and close, and how many rates they have.
@@ -208,6 +214,7 @@ impl Facts {
             constraints,
             contacts: [model.contacts.len(), model.contact_rates().len()],
             limits: model.limit_values().len(),
+            equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
             figures: model.figures().len(),
             parameters: model.parameters.len(),
@@ -240,6 +247,7 @@ impl Facts {
             Need::Parameters => self.parameters > 0,
             Need::FileParameters => self.requests.file_parameters,
             Need::FileInertials => self.requests.file_inertials,
+            Need::Equilibria => self.equilibria > 0,
             Need::Limits => self.limits > 0,
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),

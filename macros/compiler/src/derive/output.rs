@@ -75,6 +75,8 @@ pub struct Output {
     pub charts: Vec<Chart>,
     /// The equations of motion for reading; empty for large mechanisms.
     pub equations: Written,
+    /// The linear equations of every declared equilibrium.
+    pub linear_equations: Vec<Written>,
     /// The functions of numbers that are computed before, if they were asked for.
     pub prepared: Option<Prepared>,
     /// Further constants.
@@ -208,6 +210,31 @@ impl Constant {
             "Name of every entry of [`conserved`](Self::conserved): what keeps its value in every motion without inputs, whatever the parameters are. Found by trying energy, Jacobi's integral and momenta.",
             list,
         )
+    }
+
+    /// The linear equations of declared equilibria: the name of each, and what is written; none without.
+    pub fn linear_equations(all: &[(String, Written)]) -> Vec<Constant> {
+        if all.is_empty() {
+            return Vec::new();
+        }
+        let of = |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
+        vec![
+            Constant::strings(
+                "EQUILIBRIA",
+                "Name of every declared equilibrium.",
+                &of(|(name, _)| name.clone()),
+            ),
+            Constant::strings(
+                "LINEAR_EQUATIONS",
+                "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in the parameters of the mechanism: what is at rest, the equations, and of up to three velocities the characteristic equation with the conditions of stability.",
+                &of(|(_, written)| written.plain.clone()),
+            ),
+            Constant::strings(
+                "LINEAR_EQUATIONS_LATEX",
+                "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of `amsmath` each.",
+                &of(|(_, written)| written.latex.clone()),
+            ),
+        ]
     }
 
     /// What the word `drawing` gives.

@@ -73,6 +73,9 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         let _ =
             writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
     }
+    for linear in &output.linear_equations {
+        let _ = writeln!(text, "\n# Linear equations\n\n```text\n{}\n```", linear.plain.trim_end());
+    }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
         text.push_str("\n# Conserved\n\n");
         text.push_str(if kept.list.is_empty() { "Nothing that is looked for.\n" } else { "" });

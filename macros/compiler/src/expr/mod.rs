@@ -4,6 +4,7 @@
 pub mod air;
 pub mod diff;
 pub mod eval;
+pub mod exact;
 pub mod factor;
 pub mod graph;
 pub mod handle;

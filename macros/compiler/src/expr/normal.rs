@@ -106,7 +106,7 @@ fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomi
 }
 
 /// `1 / p`: factor by factor for a single term, else an atom of its own for what is left after common factors.
-fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
+pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let first = *p.terms.first()?;
     let common = p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial));
     let mut product = Monomial::ONE;

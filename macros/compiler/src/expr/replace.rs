@@ -1,6 +1,6 @@
 //! Replacement of symbols by expressions.
 
-use super::node::{Id, Node, Symbol};
+use super::node::{Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
 /// An expression with symbols replaced where `by` says so.
@@ -10,12 +10,29 @@ pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr
 
 /// Expressions with symbols replaced where `by` says so.
 pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
-    let Some(first) = e.first() else { return Vec::new() };
-    let mut known = Memo::new(first.graph());
-    e.iter().map(|e| replace_one(*e, &mut known, by)).collect()
+    replace_calls(e, by, &|f, x| x.call(f))
 }
 
-fn replace_one<'g>(e: Expr<'g>, known: &mut Memo<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
+/// What stands for a function of an expression.
+type Call<'a, 'g> = &'a dyn Fn(Function, Expr<'g>) -> Expr<'g>;
+
+/// Expressions with symbols replaced where `by` says so, and with functions as `call` makes them.
+pub fn replace_calls<'g>(
+    e: &[Expr<'g>],
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+    call: Call<'_, 'g>,
+) -> Vec<Expr<'g>> {
+    let Some(first) = e.first() else { return Vec::new() };
+    let mut known = Memo::new(first.graph());
+    e.iter().map(|e| replace_one(*e, &mut known, by, call)).collect()
+}
+
+fn replace_one<'g>(
+    e: Expr<'g>,
+    known: &mut Memo<'g>,
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+    call: Call<'_, 'g>,
+) -> Expr<'g> {
     let graph = e.graph();
     // Operands before operations, without recursion.
     let mut todo = vec![e.id()];
@@ -31,7 +48,7 @@ fn replace_one<'g>(e: Expr<'g>, known: &mut Memo<'g>, by: &dyn Fn(Symbol) -> Opt
             }
         });
         if todo.len() == before {
-            let new = rebuilt(graph, id, known, by).id();
+            let new = rebuilt(graph, id, known, by, call).id();
             known.set(id, new);
             todo.pop();
         }
@@ -44,6 +61,7 @@ fn rebuilt<'g>(
     id: Id,
     known: &Memo<'g>,
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+    call: Call<'_, 'g>,
 ) -> Expr<'g> {
     let at = |a: Id| graph.expr(known.get(a).unwrap_or(a));
     match graph.node(id) {
@@ -57,7 +75,7 @@ fn rebuilt<'g>(
         Node::Sub(a, b) => at(a) - at(b),
         Node::Mul(a, b) => at(a) * at(b),
         Node::Div(a, b) => at(a) / at(b),
-        Node::Call(f, a) => at(a).call(f),
+        Node::Call(f, a) => call(f, at(a)),
         Node::Atan2(a, b) => at(a).atan2(at(b)),
         Node::Pow(a, b) => at(a).pow(at(b)),
         Node::Extreme(f, a, b) => at(a).extreme(f, at(b)),

@@ -15,6 +15,7 @@ use crate::kinematics::Joint;
 use crate::mechanism::{Chart, Model, Quantity};
 
 mod canonical;
+pub mod linear;
 #[cfg(test)]
 mod tests;
 mod written;

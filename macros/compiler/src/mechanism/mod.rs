@@ -6,6 +6,7 @@ mod constraint;
 mod contact;
 pub mod drawing;
 mod element;
+mod equilibrium;
 mod gradients;
 mod inertia;
 mod limit;
@@ -21,6 +22,7 @@ pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission
 pub use contact::Contact;
 pub use drawing::{Piece, PieceKind, Role};
 pub use element::{AccelerationForce, CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
+pub use equilibrium::{DRY_FRICTION, Equilibrium, RestingState};
 pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;
 pub use limit::Limit;

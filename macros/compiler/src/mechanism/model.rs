@@ -4,6 +4,7 @@ use super::constraint::{Constraint, SolvedSide};
 use super::contact::Contact;
 use super::drawing::Piece;
 use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
+use super::equilibrium::Equilibrium;
 use super::gradients::Gradients;
 use super::inertia::Inertia;
 use super::limit::Limit;
@@ -52,6 +53,8 @@ pub struct Model<'g> {
     pub inputs: Vec<(String, Input<'g>)>,
     /// Limits, one for each entry of `v` that has any.
     pub limits: Vec<Limit<'g>>,
+    /// Configurations at rest about which linear equations are printed.
+    pub equilibria: Vec<Equilibrium<'g>>,
     /// Contacts that open and close, stops among them.
     pub contacts: Vec<Contact<'g>>,
     /// What figures that follow from parameters must fulfil.

@@ -166,6 +166,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         released: _,
         drawing: _,
         limits: _,
+        equilibria: _,
         contacts: _,
         requirements: _,
         units: _,

@@ -87,6 +87,9 @@ fn build<'g>(
             builder.add_contacts(moving, cx);
             builder.check_acceleration_forces(cx);
             builder.add_expressions(constrained, cx);
+            if releasing.is_none() {
+                builder.add_equilibria(cx);
+            }
             builder.find_dependencies(constrained);
             builder.add_frames();
             builder.check_finite(cx);
@@ -133,6 +136,7 @@ fn empty_model<'g>(
         velocities: Vec::new(),
         inputs: Vec::new(),
         limits: Vec::new(),
+        equilibria: Vec::new(),
         contacts: Vec::new(),
         requirements: Vec::new(),
         frames: Vec::new(),

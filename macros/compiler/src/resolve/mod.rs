@@ -15,6 +15,7 @@ mod constraint;
 mod contact;
 mod drawing;
 mod drive;
+mod equilibria;
 mod expression;
 mod figures;
 mod flight;

@@ -13,19 +13,30 @@ mod slips;
 
 use slips::{no_arrow, no_comma, text_alone, unnamed};
 
-/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions, and
-/// `key = value` in any order.
+/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions (of an
+/// equilibrium any number), and `key = value` in any order.
 pub struct Arguments {
     relation: Option<(Expr, Expr)>,
-    equation: Option<(Expr, Expr)>,
+    equations: Vec<(Expr, Expr)>,
     plain: Vec<Expr>,
     named: Vec<(Name, Value)>,
     seen: Vec<Name>,
     place: Place,
     /// The element that they belong to.
     owner: String,
-    /// Two bodies are joined by an arrow here.
-    joins: bool,
+    /// What its word asks for.
+    form: Form,
+}
+
+/// What the arguments of an attribute may be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// Two bodies are joined by an arrow.
+    Joint,
+    /// Any number of places have values.
+    Equilibrium,
+    /// Nothing of this.
+    Other,
 }
 
 /// Names for the two ends of a thing in other tools.
@@ -57,10 +68,15 @@ impl Arguments {
     /// The arguments of `#[word(…)]`.
     pub fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        let joins = attribute.path().is_ident("joint");
+        let is = |word: &str| attribute.path().is_ident(word);
+        let form = match (is("joint"), is("equilibrium")) {
+            (true, _) => Form::Joint,
+            (_, true) => Form::Equilibrium,
+            _ => Form::Other,
+        };
         match &attribute.meta {
-            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, joins, cx),
-            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, joins, cx),
+            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, form, cx),
+            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, form, cx),
             Meta::NameValue(_) => {
                 let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
                 cx.error(span, "expected arguments in parentheses").help(format!("write `#[{word}(…)]`"));
@@ -71,11 +87,11 @@ impl Arguments {
 
     /// Parses the tokens between the parentheses.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
-        Arguments::parse_with(tokens, span, false, cx)
+        Arguments::parse_with(tokens, span, Form::Other, cx)
     }
 
-    fn parse_with(tokens: TokenStream, span: Span, joins: bool, cx: &mut Diagnostics) -> Option<Arguments> {
-        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, joins)).parse2(tokens);
+    fn parse_with(tokens: TokenStream, span: Span, form: Form, cx: &mut Diagnostics) -> Option<Arguments> {
+        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, form)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
             // The end of the input has no place of its own.
@@ -135,7 +151,7 @@ impl Arguments {
 
     /// True if nothing is left.
     pub fn is_empty(&self) -> bool {
-        self.named.is_empty() && self.plain.is_empty() && self.equation.is_none() && self.relation.is_none()
+        self.named.is_empty() && self.plain.is_empty() && self.equations.is_empty() && self.relation.is_none()
     }
 
     /// The expressions without a key.
@@ -354,7 +370,7 @@ impl Arguments {
 
     /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands alone.
     pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
-        if let Some((left, right)) = self.equation.take() {
+        if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
         }
         let is_expr = |(_, value): &(Name, Value)| matches!(value, Value::Expr(_));
@@ -366,6 +382,23 @@ impl Arguments {
         }
         let first = (!self.plain.is_empty()).then(|| self.plain.remove(0));
         first.map(|e| (e, None))
+    }
+
+    /// All places with their values, those of one word first.
+    pub fn take_values(&mut self) -> Vec<(Expr, Expr)> {
+        let mut values = Vec::new();
+        let mut rest = Vec::new();
+        for (name, value) in self.named.drain(..) {
+            match value {
+                Value::Expr(e) => {
+                    values.push((Expr { kind: ExprKind::Name(name.text), place: name.place }, e))
+                }
+                other => rest.push((name, other)),
+            }
+        }
+        self.named = rest;
+        values.append(&mut self.equations);
+        values
     }
 
     /// Says which element they belong to.
@@ -407,7 +440,7 @@ impl Arguments {
         if let Some(e) = self.plain.drain(..).next() {
             unnamed(&e, known, example, cx);
         }
-        if let Some((left, right)) = self.equation.take() {
+        if let Some((left, right)) = self.equations.pop() {
             let error = cx.error(left.place.to(&right.place), "expected `name = value`");
             match left.name().filter(|name| known.contains(name)) {
                 Some(name) => error.help(format!("write `{name} = {}`", right.spelt())),
@@ -435,16 +468,16 @@ fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-fn parse_arguments(input: ParseStream<'_>, span: Span, joins: bool) -> syn::Result<Arguments> {
+fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::Result<Arguments> {
     let mut arguments = Arguments {
         relation: None,
-        equation: None,
+        equations: Vec::new(),
         plain: Vec::new(),
         named: Vec::new(),
         seen: Vec::new(),
         place: span.into(),
         owner: String::new(),
-        joins,
+        form,
     };
     while !input.is_empty() {
         parse_argument(input, &mut arguments)?;
@@ -504,10 +537,10 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
         }
         let second = parse_expr(input)?;
-        if arguments.equation.is_some() {
+        if !arguments.equations.is_empty() && arguments.form != Form::Equilibrium {
             return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
         }
-        arguments.equation = Some((first, second));
+        arguments.equations.push((first, second));
     } else {
         arguments.plain.push(first);
     }

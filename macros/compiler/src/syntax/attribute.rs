@@ -206,6 +206,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         actions: Vec::new(),
         drives: Vec::new(),
         limits: Vec::new(),
+        equilibria: Vec::new(),
         contacts: Vec::new(),
         collisions: Vec::new(),
         drawing: false,
@@ -632,6 +633,7 @@ fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<Stri
     names.extend(description.joints.iter().map(|j| &j.name));
     names.extend(description.actions.iter().map(|a| &a.name));
     names.extend(description.limits.iter().map(|l| &l.name));
+    names.extend(description.equilibria.iter().map(|e| &e.name));
     names.extend(description.contacts.iter().map(|c| &c.name));
     names.extend(description.coordinates.iter().map(|c| &c.name));
     names.extend(description.frames.iter().map(|f| &f.name));

@@ -9,8 +9,8 @@ use super::joint::read_joint;
 use super::joint_kind;
 use super::limit::read_limit;
 use super::{
-    ActionKind, Body, ConstraintKind, Definition, Description, Expr, Frame, FreeCoordinate, Name, Particle,
-    Point, words,
+    ActionKind, Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate,
+    Name, Particle, Point, words,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of, syn_error};
 use proc_macro2::{Span, TokenStream};
@@ -19,7 +19,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
 /// The attributes of the language.
-pub const ATTRIBUTES: [&str; 15] = [
+pub const ATTRIBUTES: [&str; 16] = [
     "body",
     "particle",
     "frame",
@@ -31,6 +31,7 @@ pub const ATTRIBUTES: [&str; 15] = [
     "dissipation",
     "constraint",
     "contact",
+    "equilibrium",
     "define",
     "output",
     "state",
@@ -42,7 +43,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 15] = [
+const OTHERS: [(&str, &[&str]); 16] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -56,6 +57,7 @@ const OTHERS: [(&str, &[&str]); 15] = [
     ("Slipping", &["constraint"]),
     ("Contact", &["contact"]),
     ("State", &["state"]),
+    ("Equilibrium", &["equilibrium"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
 ];
@@ -301,6 +303,7 @@ fn example(attribute: &str) -> &'static str {
         "body" => "`#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]`",
         "particle" => "`#[particle(mass = m, at = body.at(l * x))]`",
         "joint" => "`#[joint(parent -> child, about = z)]`",
+        "equilibrium" => "`#[equilibrium(joint = angle)]`",
         "state" => "`#[state(rate = (command - level) / lag)]`",
         "limit" => "`#[limit(on = joint, from = a, to = b)]`",
         "contact" => "`#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`",
@@ -412,6 +415,11 @@ fn read_other(
             description.points.push(Point { name, on, at });
         }
         "Limit" => read_limit(name, arguments, description, cx),
+        "Equilibrium" => {
+            let values = arguments.take_values();
+            arguments.finish("an Equilibrium", &[], cx);
+            description.equilibria.push(Equilibrium { name, values });
+        }
         "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
         "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
         "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),

@@ -197,6 +197,8 @@ pub struct Description {
     pub drives: Vec<Drive>,
     /// Limits of coordinates.
     pub limits: Vec<Limit>,
+    /// Configurations at rest about which linear equations are printed.
+    pub equilibria: Vec<Equilibrium>,
     /// Coordinates of their own.
     pub coordinates: Vec<FreeCoordinate>,
     /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs themselves.
@@ -319,6 +321,15 @@ pub struct FreeCoordinate {
     pub name: Name,
     /// How many joints are declared before it.
     pub joints_before: usize,
+}
+
+/// A configuration at rest: what is not named is zero, and orientations are those of the axes beside them.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    /// Its name.
+    pub name: Name,
+    /// Coordinates, inputs and states, each with its value.
+    pub values: Vec<(Expr, Expr)>,
 }
 
 /// Bounds of a coordinate.

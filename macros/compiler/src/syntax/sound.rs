@@ -85,6 +85,7 @@ impl Reading {
         d.joints.retain(|j| kept(&j.name));
         d.actions.retain(|a| kept(&a.name));
         d.limits.retain(|l| kept(&l.name));
+        d.equilibria.retain(|e| kept(&e.name));
         d.coordinates.retain(|c| kept(&c.name));
         d.inputs.retain(kept);
         d.frames.retain(|f| kept(&f.name));

@@ -51,6 +51,7 @@ pub fn example(whose: &str) -> &'static str {
         "Torque" => "#[acts(on = joint)]",
         "Frame" => "#[frame(ground, z(angle))]",
         "Limit" => "#[limit(on = joint, from = a, to = b)]",
+        "Equilibrium" => "#[equilibrium(joint = angle)]",
         "State" => "#[state(rate = (command - level) / lag)]",
         "Point" => "#[point(on = body, at = length * x)]",
         "Potential" => "#[energy(expression)]",

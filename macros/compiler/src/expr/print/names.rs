@@ -103,7 +103,7 @@ impl Name {
     fn of_member(joint: &str, member: &str) -> Name {
         let joint = Glyph::of(joint);
         let mut letters = member.chars();
-        if let (Some(kind @ ('w' | 'v' | 'q')), Some(axis @ 'w'..='z'), None) =
+        if let (Some(kind @ ('w' | 'v' | 'q' | 'r' | 'd')), Some(axis @ 'w'..='z'), None) =
             (letters.next(), letters.next(), letters.next())
         {
             let base = if kind == 'w' { Glyph::Greek("omega", 'ω') } else { Glyph::Letter(kind) };

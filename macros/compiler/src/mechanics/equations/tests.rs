@@ -11,7 +11,9 @@ use crate::mechanism::{Chart, Motion, Pose};
 use std::path::Path;
 
 mod latex;
+mod linear;
 mod mechanisms;
+mod reading;
 
 use mechanisms::*;
 

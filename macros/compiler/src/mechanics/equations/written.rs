@@ -117,7 +117,7 @@ fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<Stri
 }
 
 /// Words in lines that a page has room for.
-fn filled(text: &str) -> String {
+pub(super) fn filled(text: &str) -> String {
     let (mut out, mut room) = (String::new(), 0);
     for word in text.split(' ') {
         let length = word.chars().count();
@@ -158,7 +158,7 @@ fn names(model: &Model<'_>) -> Names {
 }
 
 /// The same with others.
-fn names_with(model: &Model<'_>, others: &[String]) -> Names {
+pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
     let velocities = model.velocities.iter().map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
     let multipliers: Vec<String> = (1..=model.constraints.len()).map(|k| format!("lambda{k}")).collect();
@@ -167,7 +167,7 @@ fn names_with(model: &Model<'_>, others: &[String]) -> Names {
 }
 
 /// By velocity, whether it is the rate of a coordinate that has its name.
-fn rates(model: &Model<'_>) -> Vec<bool> {
+pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
         if let Chart::Plain(q, v) = chart {
@@ -178,12 +178,14 @@ fn rates(model: &Model<'_>) -> Vec<bool> {
 }
 
 /// The name of a symbol, and the rate of what it is.
-fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
+pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
     match Quantity::of(symbol) {
         Quantity::Parameter(k) => (model.parameters[k].clone(), 0),
         Quantity::Configuration(k) => (model.configuration[k].clone(), 0),
-        Quantity::Velocity(k) => (model.velocities[k].0.clone(), u8::from(rates[k])),
-        Quantity::Acceleration(k) => (model.velocities[k].0.clone(), 1 + u8::from(rates[k])),
+        Quantity::Velocity(k) => (model.velocities[k].0.clone(), u8::from(rates.get(k) == Some(&true))),
+        Quantity::Acceleration(k) => {
+            (model.velocities[k].0.clone(), 1 + u8::from(rates.get(k) == Some(&true)))
+        }
         Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
         Quantity::Time => ("t".to_string(), 0),
         Quantity::Force(k) => (format!("tau{k}"), 0),

@@ -76,6 +76,9 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
         places.action(action, inference);
     }
     d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.limit(l, inference));
+    for (place, value) in d.equilibria.iter().flat_map(|e| &e.values) {
+        places.value(place, value, inference);
+    }
     for constraint in &d.constraints {
         places.constraint(constraint, inference);
     }
@@ -239,6 +242,17 @@ impl<'a> Places<'a> {
         self.maybe(&limit.max_speed, q.over(&TIME), speed);
         self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
         self.all(&limit.restitution, &PLAIN, "1");
+    }
+
+    /// The value of a coordinate, an input or a state at rest.
+    fn value(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
+        if let Some(known) = coordinate(place, inference) {
+            self.add(value, &known, if known.is_plain() { "rad" } else { "" });
+        } else if place.name().is_some() {
+            let unknown = Dimension::variable(inference.system.variable());
+            self.add(place, &unknown, "");
+            self.add(value, &unknown, "");
+        }
     }
 
     fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {

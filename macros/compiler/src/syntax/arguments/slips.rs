@@ -74,7 +74,7 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
     while let Ok(sign) = ahead.call(syn::parse::ParseBuffer::parse::<proc_macro2::Punct>) {
         signs.push(sign.as_char());
     }
-    if arguments.joins && arguments.relation.is_none() && arguments.named.is_empty() {
+    if arguments.form == super::Form::Joint && arguments.relation.is_none() && arguments.named.is_empty() {
         if signs.is_empty() && ahead.peek2(Ident::peek_any) {
             ahead.call(Ident::parse_any).ok()?;
         }

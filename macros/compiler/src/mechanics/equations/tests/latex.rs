@@ -3,7 +3,8 @@
 use super::*;
 
 /// Commands of LaTeX and `amsmath` that may occur, besides those of Greek letters.
-const COMMANDS: [&str; 24] = [
+const COMMANDS: [&str; 25] = [
+    "lambda",
     "begin",
     "end",
     "mathcal",

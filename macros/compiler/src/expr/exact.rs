@@ -1,0 +1,127 @@
+//! Expressions with sines and cosines of known angles in place of the functions: of multiples of π/6 and π/4, of inverse
+//! functions, and of sums with such. For reading and for proofs: what is generated computes as it is written.
+
+use super::node::Function;
+use super::replace::replace_calls;
+use super::{Expr, Node, Symbol};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// A multiple of π has so many digits.
+const ROUNDING: f64 = 1e-14;
+
+/// Expressions with symbols replaced, and with sines and cosines of known angles by their values.
+pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
+    replace_calls(e, by, &|f, x| match f {
+        Function::Sin => circle(x)[0],
+        Function::Cos => circle(x)[1],
+        Function::Tan => {
+            let [sin, cos] = circle(x);
+            let plain = sin == x.sin() || cos.is_zero();
+            if plain { x.call(f) } else { sin / cos }
+        }
+        _ => x.call(f),
+    })
+}
+
+/// Sums that are nested deeper stay as they are.
+const DEPTH: usize = 16;
+
+/// Sine and cosine.
+fn circle(x: Expr<'_>) -> [Expr<'_>; 2] {
+    known(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
+}
+
+/// Sine and cosine, where they are known otherwise than by the function.
+fn known(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
+    let depth = depth.checked_sub(1)?;
+    let at = |id| x.graph().expr(id);
+    let one = x.num(1.0);
+    match x.node() {
+        Node::Const(value) => of_number(value).map(|point| point.map(|c| x.num(c))),
+        Node::Neg(a) => known(at(a), depth).map(|[sin, cos]| [-sin, cos]),
+        Node::Add(a, b) => sum(at(a), at(b), one, depth),
+        Node::Sub(a, b) => sum(at(a), at(b), -one, depth),
+        Node::Call(Function::Asin, a) => Some([at(a), (one - at(a).square()).sqrt()]),
+        Node::Call(Function::Acos, a) => Some([(one - at(a).square()).sqrt(), at(a)]),
+        Node::Call(Function::Atan, a) => {
+            let length = (one + at(a).square()).sqrt();
+            Some([at(a) / length, one / length])
+        }
+        Node::Atan2(y, x) => {
+            let length = (at(x).square() + at(y).square()).sqrt();
+            Some([at(y) / length, at(x) / length])
+        }
+        _ => None,
+    }
+}
+
+/// Of a sum, or a difference by the sign, one of which is known.
+fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
+    let (of_a, of_b) = (known(a, depth), known(b, depth));
+    if of_a.is_none() && of_b.is_none() {
+        return None;
+    }
+    let [sin_a, cos_a] = of_a.unwrap_or_else(|| [a.sin(), a.cos()]);
+    let [sin_b, cos_b] = of_b.unwrap_or_else(|| [b.sin(), b.cos()]);
+    let sin_b = sin_b * sign;
+    Some([sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b])
+}
+
+/// Of multiples of π/6 and π/4, to the last digit; of zero and right angles exactly.
+fn of_number(value: f64) -> Option<[f64; 2]> {
+    let twelfths = value / (PI / 12.0);
+    let whole = twelfths.round();
+    if (twelfths - whole).abs() > ROUNDING * whole.abs().max(1.0) || whole.abs() > 1e6 {
+        return None;
+    }
+    let root = 0.75_f64.sqrt();
+    // Of 0°, 15°, … 90°; those of odd multiples of 15° are no simple numbers.
+    let first = [Some(0.0), None, Some(0.5), Some(FRAC_1_SQRT_2), Some(root), None, Some(1.0)];
+    let sin = |k: i64| {
+        let k = k.rem_euclid(24);
+        let (k, sign) = if k > 12 { (k - 12, -1.0) } else { (k, 1.0) };
+        first[if k > 6 { 12 - k } else { k } as usize].map(|s| sign * s)
+    };
+    let k = whole as i64;
+    Some([sin(k)?, sin(k + 6)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Graph;
+
+    #[test]
+    fn known_angles_have_exact_sines() {
+        for k in -30..30 {
+            let x = f64::from(k) * PI / 12.0;
+            let Some([sin, cos]) = of_number(x) else {
+                assert!(k % 2 != 0 && k % 3 != 0, "{k}");
+                continue;
+            };
+            assert!((sin - x.sin()).abs() < 1e-14 && (cos - x.cos()).abs() < 1e-14, "{k}");
+            assert!(k % 6 != 0 || [sin, cos].iter().all(|c| c.fract() == 0.0), "{k}");
+        }
+        assert_eq!(of_number(0.3), None);
+    }
+
+    #[test]
+    fn inverse_functions_cancel() {
+        let g = Graph::new();
+        let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
+        let folded = |e| replace_exactly(&[e], &|_| None)[0];
+        assert_eq!(folded(x.call(Function::Acos).cos()), x);
+        assert_eq!(folded((-x.call(Function::Asin)).sin()), -x);
+        assert_eq!(folded((y - y.num(PI)).sin()), -y.sin());
+        let value = |e| crate::expr::eval::eval_one(e, &|s| if s == Symbol(0) { 0.3 } else { 0.8 });
+        for e in [
+            (x.call(Function::Acos) + y).sin(),
+            y.atan2(x).cos(),
+            (x.num(PI / 3.0) - x.call(Function::Atan)).sin(),
+            x.call(Function::Asin).call(Function::Tan),
+            (x + y).cos(),
+        ] {
+            assert!((value(e) - value(folded(e))).abs() < 1e-15, "{e:?}");
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The equations of motion to first order about a declared equilibrium, in the user's parameters. Deviations are those of
+//! plain coordinates, and for ball and free joints small rotations and displacements in body axes, whose rates are the
+//! velocities; constraints stand beside the equations with the deviations of their multipliers, states of first order
+//! with their rates.
+//!
+//! With the force balance `f(q, v, u, λ) = h − τ − Jᵀ λ` the equations are `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, where all
+//! coefficients are taken at rest: what `f_q` has of the multipliers is their geometric stiffness.
+
+use super::{Limits, Short, right_sides};
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::expr::diff::Derivative;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Atom, Monomial, Polynomial, Ring};
+use crate::kinematics::Joint;
+use crate::mechanics::crba::Matrix;
+use crate::mechanics::derivatives::symbolic;
+use crate::mechanics::{added_mass, constraints, rnea, velocities};
+use crate::mechanism::{Equilibrium, Model, Quantity};
+
+mod characteristic;
+mod parts;
+mod rest;
+mod stability;
+mod written;
+
+use parts::{Coefficients, multiplier, rank, rows};
+
+pub use characteristic::Characteristic;
+pub use parts::deviation;
+pub use stability::{Stability, Verdict};
+pub use written::written_linear;
+
+/// The linear equations about an equilibrium as polynomials of one ring.
+pub struct Linear {
+    /// The atoms.
+    pub ring: Ring,
+    /// What the deviations contribute: a row for each velocity, each constraint and each state.
+    pub motion: Vec<Polynomial>,
+    /// What inputs and multipliers contribute.
+    pub forces: Vec<Polynomial>,
+    /// What is not zero at rest: coordinates, inputs, states, multipliers, with their values.
+    pub values: Vec<(Quantity, Polynomial)>,
+    /// The characteristic polynomial of few velocities, and what it says.
+    pub stability: Option<Stability>,
+}
+
+/// The linear equations about an equilibrium; `None` where it is none, or where they cannot be written, with the reason in `cx`.
+pub fn linear<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    at: &Equilibrium<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Linear> {
+    let balance = balance(model, joints);
+    let mut normal = Normal::new(model.graph, rank);
+    normal.ring.allow_more();
+    let rest = rest::check(model, at, &balance, &mut normal, cx)?;
+    let all = coefficients(model, mass, at, &balance, &rest);
+    if let Some(what) = rest::unbounded(&all) {
+        cx.error(at.place.clone(), format!("the forces of `{}` have no derivatives at rest", at.name))
+            .help(what);
+        return None;
+    }
+    let found = written_out(model, at, &all, &rest, normal);
+    if found.is_none() {
+        cx.error(at.place.clone(), format!("the linear equations of `{}` are too long to be written", at.name))
+            .help("the generated function `linearize` has them in numbers; ask for the printed ones of a smaller mechanism");
+    }
+    let found = found?;
+    if found.changes() {
+        cx.error(
+            at.place.clone(),
+            format!("`{}` does not stay at rest: what drives it changes in time", at.name),
+        )
+        .help("linear equations with constant coefficients need forces that stay the same");
+        return None;
+    }
+    Some(found.with_stability(model, &all))
+}
+
+/// `h − τ − Jᵀ λ` by velocity, with symbols for the multipliers.
+fn balance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
+    bias.into_iter().zip(right_sides(model, joints)).map(|(bias, right)| bias - right).collect()
+}
+
+fn coefficients<'g>(
+    model: &Model<'g>,
+    mass: &Matrix<'g>,
+    at: &Equilibrium<'g>,
+    balance: &[Expr<'g>],
+    rest: &rest::Rest<'g>,
+) -> Coefficients<'g> {
+    let (g, nv) = (model.graph, model.nv());
+    let rows = rows(model, balance, at);
+    let derivatives = symbolic::derivatives(model, &rows);
+    let (mut by_deviation, mut by_rate) = (derivatives.by_q, derivatives.by_v);
+    for (s, state) in at.states.iter().enumerate() {
+        let mut by = Derivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);
+        for (k, row) in rows.iter().enumerate() {
+            by_deviation[k].push(by.of(*row));
+            let own = k == nv + model.constraints.len() + s;
+            by_rate[k].push(if own { g.one() } else { g.zero() });
+        }
+    }
+    let mut by_acceleration = vec![vec![g.zero(); nv + at.states.len()]; rows.len()];
+    for (row, own) in by_acceleration.iter_mut().zip(added_mass::effective(model, mass)) {
+        row[..nv].copy_from_slice(&own);
+    }
+    let jacobian = constraints::jacobian(model);
+    let zeros = vec![g.zero(); jacobian.len()];
+    let multipliers: Matrix<'g> = (0..rows.len())
+        .map(|k| if k < nv { jacobian.iter().map(|row| row[k]).collect() } else { zeros.clone() })
+        .collect();
+    let inputs = symbolic::by_input(model, &rows);
+    let at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.of(row)).collect() };
+    Coefficients {
+        orders: [at_rest(by_deviation), at_rest(by_rate), at_rest(by_acceleration)],
+        inputs: at_rest(inputs),
+        multipliers: at_rest(multipliers),
+    }
+}
+
+/// All rows as polynomials.
+fn written_out<'g>(
+    model: &Model<'g>,
+    at: &Equilibrium<'g>,
+    all: &Coefficients<'g>,
+    rest: &rest::Rest<'g>,
+    mut normal: Normal<'g>,
+) -> Option<Linear> {
+    let symbols: [fn(usize) -> Quantity; 3] = [deviation, Quantity::Velocity, Quantity::Acceleration];
+    let (mut motion, mut forces) = (Vec::new(), Vec::new());
+    for k in 0..all.inputs.len() {
+        let mut left = Polynomial::default();
+        // Highest derivatives first: atoms are read in the order in which they come.
+        for (symbol, coefficients) in symbols.iter().zip(&all.orders).rev() {
+            add_products(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
+        }
+        let mut right = Polynomial::default();
+        add_products(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
+        add_products(&mut right, &all.multipliers[k], multiplier, 1.0, &mut normal)?;
+        motion.push(left);
+        forces.push(right);
+    }
+    let values = rest.values(model, at);
+    let values: Vec<(Quantity, Polynomial)> =
+        values.into_iter().map(|(what, e)| Some((what, normal.of(e)?))).collect::<Option<_>>()?;
+    let mut short = Short::new(normal.ring, Vec::new(), &Limits::ASKED);
+    let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
+    let values: Option<Vec<_>> = values.iter().map(|(what, p)| Some((*what, short.of(p)?))).collect();
+    let values = values?.into_iter().filter(|(_, p)| !p.terms.is_empty()).collect();
+    Some(Linear { ring: short.ring, motion, forces, values, stability: None })
+}
+
+/// Adds coefficients times symbols.
+fn add_products<'g>(
+    sum: &mut Polynomial,
+    coefficients: &[Expr<'g>],
+    symbol: fn(usize) -> Quantity,
+    sign: f64,
+    normal: &mut Normal<'g>,
+) -> Option<()> {
+    for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
+        let coefficient = normal.of(*coefficient)?;
+        let atom = normal.ring.atom(Atom::Symbol(symbol(k).symbol()))?;
+        let product = normal.ring.times(&coefficient, &Polynomial::single(atom, sign))?;
+        *sum = normal.ring.plus(sum, &product)?;
+    }
+    Some(())
+}
+
+impl Linear {
+    /// Whether a coefficient changes in time.
+    fn changes(&self) -> bool {
+        let time = self.ring.mask(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
+        let time = self.with_time(time);
+        let values = self.values.iter().map(|(_, p)| p);
+        let mut all = self.motion.iter().chain(&self.forces).chain(values);
+        all.any(|p| p.terms.iter().any(|t| t.monomial.meets(time)))
+    }
+
+    /// The atoms that contain time.
+    fn with_time(&self, time: Monomial) -> Monomial {
+        let mut found = time;
+        for (k, atom) in self.ring.atoms.iter().enumerate() {
+            let has = |p: &Polynomial| p.terms.iter().any(|t| t.monomial.meets(found));
+            let contains = match atom {
+                Atom::Symbol(_) => false,
+                Atom::Wave(wave) => {
+                    let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
+                    angles.into_iter().any(|(angle, _)| angle.monomial.meets(found))
+                }
+                Atom::Inverse(p) | Atom::Call(_, p) => has(p),
+                Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => has(p) || has(q),
+                Atom::Table(.., arguments) => arguments.iter().any(has),
+            };
+            if contains {
+                found = found.or(Monomial::all_of(k));
+            }
+        }
+        found
+    }
+
+    fn with_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
+        if let Some(characteristic) = characteristic::of(model, all) {
+            self.stability = stability::of(characteristic);
+        }
+        self
+    }
+}

@@ -1,0 +1,148 @@
+//! The characteristic polynomial of linear equations: the determinant of `M s² + C s + K`, bordered by the constraints,
+//! expanded by minors.
+
+use super::parts::{Coefficients, rank};
+use super::rest::vanishes;
+use crate::expr::factor::without_noise;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Polynomial, Ring};
+use crate::expr::trigonometry::simplified;
+use crate::expr::{Expr, Node, Symbol};
+use crate::mechanism::{Model, Rule};
+use std::collections::BTreeMap;
+
+/// Most velocities whose polynomial is written.
+const VELOCITIES: usize = 3;
+/// Most rows, with constraints and states.
+const ROWS: usize = 6;
+/// Most terms of all coefficients.
+const TERMS: usize = 120;
+
+/// A characteristic polynomial.
+pub struct Characteristic {
+    /// The atoms.
+    pub ring: Ring,
+    /// Coefficients by power, the last not zero.
+    pub coefficients: Vec<Polynomial>,
+    /// The forces are those of a potential: its roots are squares of real and of imaginary numbers.
+    pub conservative: bool,
+    /// Parameters that are masses, or otherwise positive.
+    pub positive: Vec<Symbol>,
+}
+
+/// A polynomial of the root, by power.
+type OfRoot = Vec<Polynomial>;
+
+/// The polynomial of few velocities; `None` of more, and where it is too long.
+pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
+    let (nv, nc) = (model.nv(), model.constraints.len());
+    let rows = all.inputs.len();
+    if nv > VELOCITIES || rows > ROWS {
+        return None;
+    }
+    let mut normal = Normal::new(model.graph, rank);
+    normal.ring.allow_more();
+    let mut matrix: Vec<Vec<OfRoot>> = Vec::new();
+    for k in 0..rows {
+        let deviations = 0..rows - nc;
+        let entry = |normal: &mut Normal<'g>, c: usize| -> Option<OfRoot> {
+            all.orders.iter().map(|order| normal.of(order[k][c])).collect()
+        };
+        let mut row: Vec<OfRoot> = deviations.map(|c| entry(&mut normal, c)).collect::<Option<_>>()?;
+        for multiplier in &all.multipliers[k] {
+            row.push(vec![normal.of(-*multiplier)?]);
+        }
+        matrix.push(row);
+    }
+    let conservative = is_conservative(model, all, &mut normal)?;
+    let determinant = determinant(&matrix, &mut normal.ring)?;
+    let mut coefficients = Vec::new();
+    for p in determinant {
+        let p = without_noise(&normal.ring, &p);
+        let p = simplified(&mut normal.ring, &p)?;
+        coefficients.push(if vanishes(&normal.ring, &p) { Polynomial::default() } else { p });
+    }
+    while coefficients.last().is_some_and(|p| p.terms.is_empty()) {
+        coefficients.pop();
+    }
+    let terms: usize = coefficients.iter().map(|p| p.terms.len()).sum();
+    let positive = positive(model);
+    (terms <= TERMS && coefficients.len() > 1).then_some(Characteristic {
+        ring: normal.ring,
+        coefficients,
+        conservative,
+        positive,
+    })
+}
+
+/// Parameters that are masses or must be positive otherwise.
+fn positive(model: &Model<'_>) -> Vec<Symbol> {
+    let mut found = Vec::new();
+    for requirement in &model.requirements {
+        if let (Rule::Mass | Rule::Positive, [value]) = (requirement.rule, requirement.values.as_slice())
+            && let Node::Symbol(symbol) = value.node()
+        {
+            found.push(symbol);
+        }
+    }
+    found
+}
+
+/// Nothing is damped, and the stiffness is symmetric.
+fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut Normal<'g>) -> Option<bool> {
+    let nv = model.nv();
+    let [stiffness, damping, _] = &all.orders;
+    let holonomic = model.constraints.iter().all(|c| c.residual.is_some());
+    if !holonomic || !model.acceleration_forces.is_empty() || all.inputs.len() > nv + model.constraints.len()
+    {
+        return Some(false);
+    }
+    let mut zero = |e: Expr<'g>| -> Option<bool> {
+        let p = normal.of(e)?;
+        Some(vanishes(&normal.ring, &p))
+    };
+    for i in 0..nv {
+        for j in 0..nv {
+            if !zero(damping[i][j])? || (j < i && !zero(stiffness[i][j] - stiffness[j][i])?) {
+                return Some(false);
+            }
+        }
+    }
+    Some(true)
+}
+
+/// The determinant, from the minors of the last rows.
+fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
+    let n = matrix.len();
+    let mut minors: BTreeMap<u32, OfRoot> = BTreeMap::from([(0, vec![Polynomial::number(1.0)])]);
+    for row in matrix.iter().rev() {
+        let mut next: BTreeMap<u32, OfRoot> = BTreeMap::new();
+        for (columns, minor) in &minors {
+            for (c, entry) in row.iter().enumerate().filter(|(c, _)| columns & (1 << c) == 0) {
+                if entry.iter().all(|p| p.terms.is_empty()) {
+                    continue;
+                }
+                // How many of the other columns stand before this one.
+                let before = (columns & ((1 << c) - 1)).count_ones();
+                let sign = if before % 2 == 0 { 1.0 } else { -1.0 };
+                let sum = next.entry(columns | (1 << c)).or_default();
+                add_product(sum, entry, minor, sign, ring)?;
+            }
+        }
+        minors = next;
+    }
+    Some(minors.remove(&((1 << n) - 1)).unwrap_or_default())
+}
+
+fn add_product(sum: &mut OfRoot, a: &OfRoot, b: &OfRoot, sign: f64, ring: &mut Ring) -> Option<()> {
+    for (i, a) in a.iter().enumerate().filter(|(_, a)| !a.terms.is_empty()) {
+        for (j, b) in b.iter().enumerate().filter(|(_, b)| !b.terms.is_empty()) {
+            let product = ring.times(a, b)?.scaled(sign);
+            if sum.len() <= i + j {
+                sum.resize(i + j + 1, Polynomial::default());
+            }
+            sum[i + j] = ring.plus(&sum[i + j], &product)?;
+        }
+    }
+    Some(())
+}

@@ -1,0 +1,343 @@
+//! Whether a declared equilibrium is one: constraints are fulfilled, states do not change, the multipliers balance what they
+//! can, and no force is left. What is left is proven to be zero as a polynomial, or tried in numbers for the parameters.
+
+use super::parts::{Coefficients, deviation, multiplier, rows as linear_rows};
+use crate::diag::Diagnostics;
+use crate::expr::diff::TINY;
+use crate::expr::eval::{Tape, needed};
+use crate::expr::exact::replace_exactly;
+use crate::expr::factor::without_noise;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Polynomial, Ring};
+use crate::expr::print::Writer;
+use crate::expr::sample::sample;
+use crate::expr::trigonometry::simplified;
+use crate::expr::{Expr, Extreme, Function, Node, Symbol};
+use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity};
+
+/// Random parameters that are tried, until there are enough for which everything is finite.
+const TRIALS: u64 = 400;
+/// How many are enough.
+const ENOUGH: usize = 6;
+/// What is left of terms that cancel.
+const ROUNDING: f64 = 1e-10;
+
+/// The state at rest.
+pub struct Rest<'g> {
+    configuration: Vec<Expr<'g>>,
+    inputs: Vec<Expr<'g>>,
+    multipliers: Vec<Expr<'g>>,
+    states: Vec<(usize, Expr<'g>)>,
+}
+
+impl<'g> Rest<'g> {
+    fn new(at: &Equilibrium<'g>) -> Rest<'g> {
+        Rest {
+            configuration: at.configuration.clone(),
+            inputs: at.inputs.clone(),
+            multipliers: Vec::new(),
+            states: at.states.iter().map(|state| (state.parameter, state.value)).collect(),
+        }
+    }
+
+    /// Expressions at rest.
+    pub fn of(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let zero = |e: &Expr<'g>| Some(e.zero());
+        let first = e.first();
+        let moved = replace_exactly(e, &|s| match Quantity::of(s) {
+            Quantity::Configuration(k) => self.configuration.get(k).copied(),
+            Quantity::Input(k) => self.inputs.get(k).copied(),
+            Quantity::Given(k) => self.multipliers.get(k).copied(),
+            Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero),
+            _ => None,
+        });
+        replace_exactly(&moved, &|s| match Quantity::of(s) {
+            Quantity::Parameter(k) => self.states.iter().find(|(of, _)| *of == k).map(|(_, value)| *value),
+            _ => None,
+        })
+    }
+
+    /// Everything that may differ from zero.
+    pub fn values(&self, model: &Model<'g>, at: &Equilibrium<'g>) -> Vec<(Quantity, Expr<'g>)> {
+        let nv = model.nv();
+        // Of orientations along the axes nothing is said.
+        let lasts: Vec<usize> = quaternions(model).map(|first| first + 3).collect();
+        let is_plain = |k: &usize| !lasts.contains(k) || self.configuration[*k].value() != Some(1.0);
+        let all = (0..self.configuration.len()).filter(is_plain);
+        let configuration = all.map(|k| (Quantity::Configuration(k), self.configuration[k]));
+        let inputs = (0..).map(Quantity::Input).zip(self.inputs.iter().copied());
+        let states = at.states.iter().enumerate().map(|(k, state)| (deviation(nv + k), state.value));
+        let multipliers = (0..).map(multiplier).zip(self.multipliers.iter().copied());
+        let all: Vec<(Quantity, Expr<'g>)> =
+            configuration.chain(inputs).chain(states).chain(multipliers).collect();
+        let (what, values): (Vec<Quantity>, Vec<Expr<'g>>) = all.into_iter().unzip();
+        what.into_iter().zip(self.of(&values)).collect()
+    }
+}
+
+/// What is wrong, and what to do about it.
+type Refusal = (String, &'static str);
+
+/// Checks an equilibrium, and finds its multipliers. `None` with the reason in `cx`.
+pub fn check<'g>(
+    model: &Model<'g>,
+    at: &Equilibrium<'g>,
+    balance: &[Expr<'g>],
+    normal: &mut Normal<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Rest<'g>> {
+    match checked(model, at, balance, normal) {
+        Ok(rest) => Some(rest),
+        Err((what, help)) => {
+            cx.error(at.place.clone(), what).help(help);
+            None
+        }
+    }
+}
+
+fn checked<'g>(
+    model: &Model<'g>,
+    at: &Equilibrium<'g>,
+    balance: &[Expr<'g>],
+    normal: &mut Normal<'g>,
+) -> Result<Rest<'g>, Refusal> {
+    let mut rest = Rest::new(at);
+    let name = &at.name;
+    if !model.frictions.is_empty() || model.constraints.iter().any(|c| !c.friction.is_empty()) {
+        return Err((format!("dry friction has no linear equations about `{name}`"), DRY_FRICTION));
+    }
+    if let Some(k) = not_unit(model, &rest, normal) {
+        return Err((
+            format!("the quaternion of `{}` in `{name}` has not the length one", model.configuration[k]),
+            "its components are those of a unit quaternion; what is not named is an orientation along the axes",
+        ));
+    }
+    let kept = linear_rows(model, balance, at).split_off(balance.len());
+    let all: Vec<Expr<'g>> = balance.iter().chain(&kept).copied().collect();
+    if let Some(what) = corner(&all, &rest) {
+        return Err((
+            format!("a force has no derivative in `{name}`: `{what}` has a corner there"),
+            "declare the equilibrium away from it, or round the corner off",
+        ));
+    }
+    check_kept(model, at, &rest, &kept, normal)?;
+    let mut left = rest.of(balance);
+    if !model.constraints.is_empty() {
+        (rest.multipliers, left) = solved(model, &rest, balance).ok_or_else(|| {
+            (
+                format!("the constraints depend on each other in `{name}`"),
+                "their forces are not determined there: leave out those that follow from others",
+            )
+        })?;
+    }
+    for (k, force) in left.into_iter().enumerate() {
+        is_zero(-force, normal, model).map_err(|left| {
+            let velocity = &model.velocities[k].0;
+            (
+                format!("`{name}` is no equilibrium: the force {left} on `{velocity}` is left"),
+                "choose coordinates where it is zero, or hold an input at a value that balances it: `#[equilibrium(joint = angle, motor = value)]`",
+            )
+        })?;
+    }
+    Ok(rest)
+}
+
+/// Constraints are fulfilled and stay so at rest, and states do not change.
+fn check_kept<'g>(
+    model: &Model<'g>,
+    at: &Equilibrium<'g>,
+    rest: &Rest<'g>,
+    kept: &[Expr<'g>],
+    normal: &mut Normal<'g>,
+) -> Result<(), Refusal> {
+    let name = &at.name;
+    for (c, row) in model.constraints.iter().zip(rest.of(kept)) {
+        is_zero(row, normal, model).map_err(|left| {
+            (
+                format!("`{name}` does not fulfil the constraint `{}`: {left} is left of it", c.name),
+                "give the coordinates values that fulfil it: `#[equilibrium(joint = value)]`, with expressions of the parameters",
+            )
+        })?;
+    }
+    let rates: Vec<Expr<'g>> = model.constraints.iter().flat_map(|c| [c.rate, c.bias]).collect();
+    if rest.of(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
+        return Err((
+            format!("constraints that are driven in time leave `{name}` no rest"),
+            "linear equations with constant coefficients need constraints that stay the same",
+        ));
+    }
+    let states: Vec<Expr<'g>> = at.states.iter().map(|state| state.rate).collect();
+    for (state, rate) in at.states.iter().zip(rest.of(&states)) {
+        is_zero(rate, normal, model).map_err(|left| {
+            let state = &model.parameters[state.parameter];
+            (
+                format!("the state `{state}` changes in `{name}`: its rate is {left}"),
+                "give it the value at which its rate is zero",
+            )
+        })?;
+    }
+    Ok(())
+}
+
+/// The first component of a quaternion that is none of a unit.
+fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> Option<usize> {
+    quaternions(model).find(|q| {
+        let components = &rest.configuration[*q..q + 4];
+        let length = components.iter().fold(model.graph.zero(), |sum, c| sum + c.square());
+        is_zero(length - model.graph.one(), normal, model).is_err()
+    })
+}
+
+/// The first components of all quaternions.
+fn quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
+    model.charts.iter().filter_map(|chart| match chart {
+        Chart::Ball(q, _) => Some(*q),
+        Chart::Free(q, _) => Some(q + 3),
+        Chart::Plain(..) => None,
+    })
+}
+
+/// Whether an expression of the parameters is always zero; otherwise what is left, as text.
+fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
+    let p = normal.of(e).map(|p| without_noise(&normal.ring, &p));
+    let Some(p) = p.and_then(|p| simplified(&mut normal.ring, &p)) else {
+        let tape = Tape::of(&[e]);
+        let zero = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
+        let zero = zero.len() >= ENOUGH && zero.iter().all(|value| value.abs() < ROUNDING);
+        return if zero { Ok(()) } else { Err("that".to_string()) };
+    };
+    if vanishes(&normal.ring, &p) {
+        return Ok(());
+    }
+    let name = |symbol| super::super::written::name(model, &[], symbol).0;
+    Err(format!("`{}`", Writer::new(&normal.ring, &name).polynomial(&p)))
+}
+
+/// Whether a polynomial is zero for all parameters: its terms are gone, or cancel in numbers.
+pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
+    let parts: Vec<Polynomial> = p.terms.iter().map(|t| Polynomial { terms: vec![*t] }).collect();
+    let relative = |seed: u64| {
+        let values: Vec<f64> =
+            parts.iter().map(|part| ring.evaluate(part, &|s| parameter(s, seed))).collect();
+        let size: f64 = values.iter().map(|value| value.abs()).sum();
+        Some(values.iter().sum::<f64>() / size)
+    };
+    if parts.is_empty() {
+        return true;
+    }
+    let found = trials(relative);
+    found.len() >= ENOUGH && found.iter().all(|part| part.abs() < ROUNDING)
+}
+
+/// Finite values at random parameters, as many as are enough.
+pub fn trials(value: impl Fn(u64) -> Option<f64>) -> Vec<f64> {
+    (0..TRIALS).filter_map(value).filter(|value| value.is_finite()).take(ENOUGH).collect()
+}
+
+/// A positive number for a parameter; later ones are further from one.
+pub fn parameter(s: Symbol, seed: u64) -> f64 {
+    sample(s, seed).powi(1 + (seed / 20).min(6) as i32)
+}
+
+/// A function with a corner or a jump, or one whose derivative is not finite, at its argument at rest.
+fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
+    let graph = e.first()?.graph();
+    let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
+    for id in needed(graph, e) {
+        let at = |id| graph.expr(id);
+        match graph.node(id) {
+            Node::Call(f @ (Function::Abs | Function::Signum | Function::Sqrt), a) => {
+                suspects.push((f.name(), at(a)));
+            }
+            Node::Extreme(f, a, b) => {
+                let name = if f == Extreme::Max { "max" } else { "min" };
+                suspects.push((name, at(a) - at(b)));
+            }
+            _ => {}
+        }
+    }
+    let moves = |e: &Expr<'_>| {
+        let symbols = crate::kinematics::symbols_in(&[*e]);
+        symbols.into_iter().any(|s| {
+            matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Velocity(_) | Quantity::Input(_))
+        })
+    };
+    suspects.retain(|(_, argument)| moves(argument));
+    let arguments: Vec<Expr<'g>> = suspects.iter().map(|(_, argument)| *argument).collect();
+    let values = rest.of(&arguments);
+    let touches = |value: &Expr<'g>| {
+        let tape = Tape::of(&[*value]);
+        let found = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
+        found.len() >= ENOUGH && found.iter().all(|value| value.abs() < ROUNDING)
+    };
+    suspects.iter().zip(&values).find(|(_, value)| touches(value)).map(|((name, _), _)| *name)
+}
+
+/// The multipliers, and the balance of forces with them. `None` where constraints depend on each other.
+fn solved<'g>(
+    model: &Model<'g>,
+    rest: &Rest<'g>,
+    balance: &[Expr<'g>],
+) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+    let g = model.graph;
+    let count = model.constraints.len();
+    let without = Rest {
+        multipliers: vec![g.zero(); count],
+        configuration: rest.configuration.clone(),
+        inputs: rest.inputs.clone(),
+        states: rest.states.clone(),
+    };
+    let right = without.of(balance);
+    let jacobian: Vec<Vec<Expr<'g>>> =
+        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.of(row)).collect();
+    // Rows: Jᵀ λ = what is to be balanced.
+    let mut rows: Vec<Vec<Expr<'g>>> =
+        (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
+    let mut left: Vec<usize> = (0..rows.len()).collect();
+    let mut pivots = Vec::new();
+    for column in 0..count {
+        let size = |row: usize| size(rows[row][column]);
+        let best = left.iter().copied().max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+        if size(best) < ROUNDING {
+            return None;
+        }
+        left.retain(|row| *row != best);
+        let own: Vec<Expr<'g>> = rows[best].iter().map(|e| *e / rows[best][column]).collect();
+        for (k, row) in rows.iter_mut().enumerate() {
+            let factor = row[column];
+            if k == best || factor.is_zero() {
+                continue;
+            }
+            row.iter_mut().zip(&own).for_each(|(e, own)| *e -= factor * *own);
+        }
+        rows[best] = own;
+        pivots.push(best);
+    }
+    let multipliers = pivots.iter().map(|row| rows[*row][count]).collect();
+    Some((multipliers, left.iter().map(|row| rows[*row][count]).collect()))
+}
+
+/// The least size of an expression of the parameters at a few of their values.
+fn size(e: Expr<'_>) -> f64 {
+    let tape = Tape::of(&[e]);
+    trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]))
+        .into_iter()
+        .map(f64::abs)
+        .fold(f64::MAX, f64::min)
+}
+
+/// Why coefficients are not finite numbers.
+pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
+    /// What is divided by nothing but what keeps it from being infinite.
+    const HUGE: f64 = 1e-6 / TINY;
+    let entries: Vec<Expr<'_>> =
+        all.orders.iter().chain([&all.inputs, &all.multipliers]).flatten().flatten().copied().collect();
+    let tape = Tape::of(&entries);
+    let largest = |seed: u64| {
+        let values = tape.values(&|s| parameter(s, seed));
+        let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        (values.iter().all(|value| value.is_finite()) && largest < HUGE).then_some(largest)
+    };
+    let finite = trials(largest).len() >= ENOUGH;
+    (!finite).then_some("a distance or an angle from which they are computed is singular there: declare the equilibrium elsewhere, or give the force otherwise")
+}

@@ -1,0 +1,306 @@
+//! What a characteristic polynomial says: roots that are zero, the frequency of a single oscillation, and the conditions under
+//! which deviations stay small. With odd powers the conditions are those of Routh and Hurwitz in the form of Liénard and
+//! Chipart (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV, § 13), without odd powers that the squares of the
+//! roots are real, negative and distinct: positive coefficients and a positive discriminant. Where forces have a potential
+//! those squares are real, and need not be distinct (Lagrange and Dirichlet).
+
+use super::characteristic::Characteristic;
+use super::parts::ROOT;
+use super::rest::{parameter, trials, vanishes};
+use crate::expr::normal::inverse;
+use crate::expr::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
+use crate::expr::{Function, Symbol};
+
+/// What a characteristic polynomial says.
+pub struct Stability {
+    /// The atoms.
+    pub ring: Ring,
+    /// The polynomial by power, without common factors of its coefficients.
+    pub coefficients: Vec<Polynomial>,
+    /// Parameters that it was divided by: they are taken to be positive.
+    pub divided: Vec<Symbol>,
+    /// How often zero is a root.
+    pub zeros: usize,
+    /// The frequency, if there is one oscillation and nothing else.
+    pub frequency: Option<Polynomial>,
+    /// Whether deviations stay small, beside the roots that are zero.
+    pub verdict: Verdict,
+}
+
+/// Whether deviations stay small.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// They die away where all of these are positive.
+    Asymptotic(Vec<Polynomial>),
+    /// They oscillate and stay small where all of these are positive.
+    Oscillation(Vec<Polynomial>),
+    /// Some do not die away, whatever the parameters are.
+    NotAsymptotic,
+    /// Some grow, whatever the parameters are.
+    Unstable,
+    /// All other roots are zero.
+    Nothing,
+    /// The conditions are too long.
+    Long,
+}
+
+/// Most terms of all conditions.
+const TERMS: usize = 120;
+
+/// What a polynomial says; `None` where the sign of its first coefficient depends on the parameters.
+pub fn of(c: Characteristic) -> Option<Stability> {
+    let Characteristic { mut ring, mut coefficients, conservative, positive: known } = c;
+    let mut positive = known.clone();
+    coefficients = without_even_divisors(&coefficients, &mut ring)?;
+    let leading = coefficients.last()?;
+    let signs = trials(|seed| Some(ring.evaluate(leading, &|s| parameter(s, seed)).signum()));
+    let sign = *signs.first()?;
+    if signs.iter().any(|other| *other != sign) {
+        return None;
+    }
+    let divided = divide(&ring, &mut coefficients, sign);
+    positive.extend(&divided);
+    let divided: Vec<Symbol> = divided.into_iter().filter(|s| !known.contains(s)).collect();
+    let zeros = coefficients.iter().take_while(|p| p.terms.is_empty()).count();
+    let rest = coefficients[zeros..].to_vec();
+    let even = rest.iter().skip(1).step_by(2).all(|p| p.terms.is_empty());
+    let verdict = match (rest.len() - 1, even) {
+        (0, _) => Verdict::Nothing,
+        (_, false) => asymptotic(&rest, &mut ring, &positive),
+        (_, true) => oscillation(&rest, conservative, &mut ring, &positive),
+    };
+    ring.atom(Atom::Symbol(ROOT.symbol()))?;
+    let oscillates = matches!(verdict, Verdict::Oscillation(_));
+    let frequency = match rest.as_slice() {
+        [last, middle, first] if middle.terms.is_empty() && oscillates => frequency(last, first, &mut ring),
+        _ => None,
+    };
+    Some(Stability { ring, coefficients, divided, zeros, frequency, verdict })
+}
+
+/// Divides by what all coefficients have in common, and by a sign: even powers, and parameters that are returned.
+fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol> {
+    let sign = sign / whole(coefficients.iter());
+    let mut terms = coefficients.iter().flat_map(|p| &p.terms).map(|t| t.monomial);
+    let Some(first) = terms.next() else { return Vec::new() };
+    let common = terms.fold(first, Monomial::common);
+    let (mut divisor, mut odd) = (Monomial::ONE, Vec::new());
+    for (atom, power) in common.factors() {
+        let symbol = match ring.atoms[atom] {
+            Atom::Symbol(symbol) => symbol,
+            _ => continue,
+        };
+        if power % 2 == 1 {
+            odd.push(symbol);
+        }
+        divisor = (0..power).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
+    }
+    for p in coefficients {
+        *p = scaled_to_whole(&over(p, divisor), sign);
+    }
+    odd
+}
+
+/// `sqrt(last / first)`.
+fn frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
+    let inverse = inverse(ring, first)?;
+    let square = ring.times(last, &inverse)?;
+    if let [Term { monomial: Monomial::ONE, coefficient }] = square.terms.as_slice() {
+        return Some(Polynomial::number(coefficient.sqrt()));
+    }
+    Some(Polynomial::single(ring.atom(Atom::Call(Function::Sqrt, square))?, 1.0))
+}
+
+/// Liénard and Chipart: every other coefficient, and every other of Hurwitz's determinants.
+fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verdict {
+    let n = rest.len() - 1;
+    let mut conditions: Vec<Polynomial> = rest.iter().step_by(2).take(n.div_ceil(2)).cloned().collect();
+    // The determinants of the orders n − 1, n − 3, …
+    let mut orders: Vec<usize> = (1..n).rev().step_by(2).collect();
+    orders.reverse();
+    if n == 1 {
+        conditions.truncate(1);
+    }
+    for order in orders {
+        match hurwitz(rest, order, ring) {
+            Some(determinant) => conditions.push(determinant),
+            None => return Verdict::Long,
+        }
+    }
+    settled(conditions, Verdict::Asymptotic, ring, positive)
+}
+
+/// Hurwitz's determinant of an order.
+fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynomial> {
+    let n = rest.len() - 1;
+    // Row i, column j, from one: the coefficient of s^(n − (2 i − j)).
+    let entry = |i: usize, j: usize| (2 * i).checked_sub(j).and_then(|k| n.checked_sub(k));
+    let rows: Vec<Vec<Polynomial>> = (1..=order)
+        .map(|i| {
+            (1..=order).map(|j| entry(i, j).map_or(Polynomial::default(), |k| rest[k].clone())).collect()
+        })
+        .collect();
+    minor(&rows, ring)
+}
+
+/// A determinant, by its first row.
+fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
+    let Some((first, others)) = rows.split_first() else { return Some(Polynomial::number(1.0)) };
+    let mut sum = Polynomial::default();
+    for (c, entry) in first.iter().enumerate().filter(|(_, p)| !p.terms.is_empty()) {
+        let without = |row: &Vec<Polynomial>| {
+            let kept = row.iter().enumerate().filter(|(k, _)| *k != c);
+            kept.map(|(_, p)| p.clone()).collect()
+        };
+        let own = minor(&others.iter().map(without).collect::<Vec<_>>(), ring)?;
+        let product = ring.times(entry, &own)?.scaled(if c % 2 == 0 { 1.0 } else { -1.0 });
+        sum = ring.plus(&sum, &product)?;
+    }
+    Some(sum)
+}
+
+/// The squares of the roots are real, negative and distinct.
+fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positive: &[Symbol]) -> Verdict {
+    let squares: Vec<Polynomial> = rest.iter().step_by(2).cloned().collect();
+    let mut conditions = squares[..squares.len() - 1].to_vec();
+    if !conservative && squares.len() > 2 {
+        match discriminant(&squares, ring) {
+            Some(discriminant) => conditions.push(discriminant),
+            None => return Verdict::Long,
+        }
+    }
+    settled(conditions, Verdict::Oscillation, ring, positive)
+}
+
+/// The discriminant of a polynomial of the second or third degree.
+fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
+    let mut product = |factor: f64, parts: &[usize]| {
+        let one = Polynomial::number(factor);
+        parts.iter().try_fold(one, |product, k| ring.times(&product, &c[*k]))
+    };
+    let terms = match c.len() {
+        3 => vec![product(1.0, &[1, 1])?, product(-4.0, &[0, 2])?],
+        4 => vec![
+            product(18.0, &[0, 1, 2, 3])?,
+            product(-4.0, &[2, 2, 2, 0])?,
+            product(1.0, &[1, 1, 2, 2])?,
+            product(-4.0, &[1, 1, 1, 3])?,
+            product(-27.0, &[0, 0, 3, 3])?,
+        ],
+        _ => return None,
+    };
+    let mut sum = Polynomial::default();
+    for term in &terms {
+        sum = ring.plus(&sum, term)?;
+    }
+    Some(sum)
+}
+
+/// Conditions without those that always hold; another verdict where one never does.
+fn settled(
+    conditions: Vec<Polynomial>,
+    verdict: fn(Vec<Polynomial>) -> Verdict,
+    ring: &mut Ring,
+    positive: &[Symbol],
+) -> Verdict {
+    let mut kept: Vec<Polynomial> = Vec::new();
+    let (mut unstable, mut zero) = (false, false);
+    for condition in conditions {
+        let Some(condition) = reduced(&condition, ring, positive) else { return Verdict::Long };
+        if condition.terms.is_empty() || vanishes(ring, &condition) {
+            zero = true;
+        } else if is_positive(&condition.scaled(-1.0), ring, positive) {
+            unstable = true;
+        } else if !is_positive(&condition, ring, positive) && !kept.contains(&condition) {
+            kept.push(condition);
+        }
+    }
+    let opposite = |p: &Polynomial| kept.contains(&p.scaled(-1.0));
+    zero |= kept.iter().any(opposite);
+    match (unstable, zero) {
+        (true, _) => Verdict::Unstable,
+        (_, true) => Verdict::NotAsymptotic,
+        _ if kept.iter().map(|p| p.terms.len()).sum::<usize>() > TERMS => Verdict::Long,
+        _ => verdict(kept),
+    }
+}
+
+/// True for a sum of positive terms.
+fn is_positive(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
+    let good = |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
+    !p.terms.is_empty() && p.terms.iter().all(|t| t.coefficient > 0.0 && t.monomial.factors().all(good))
+}
+
+fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
+    match &ring.atoms[atom] {
+        Atom::Symbol(symbol) => positive.contains(symbol),
+        Atom::Call(Function::Sqrt | Function::Exp | Function::Cosh, _) => true,
+        Atom::Inverse(p) => is_positive(p, ring, positive),
+        _ => false,
+    }
+}
+
+/// A condition without positive factors: of what is left as a product with a sum that has one sign, the sign alone stays.
+fn reduced(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polynomial> {
+    let p = without_even_divisors(std::slice::from_ref(p), ring)?.pop()?;
+    let Some(common) = common(&p) else { return Some(p) };
+    let mut divisor = Monomial::ONE;
+    for (atom, power) in common.factors() {
+        let times = if is_positive_atom(ring, atom, positive) { power } else { power - power % 2 };
+        divisor = (0..times).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
+    }
+    let factor = common.over(divisor);
+    let left = over(&p, common);
+    let sign = [1.0, -1.0].into_iter().find(|sign| is_positive(&left.scaled(*sign), ring, positive));
+    if let (Some(sign), true) = (sign, factor != Monomial::ONE) {
+        return Some(Polynomial::single(factor, sign));
+    }
+    Some(scaled_to_whole(&over(&p, divisor), 1.0 / whole([&p])))
+}
+
+/// The monomial that all terms have in common.
+fn common(p: &Polynomial) -> Option<Monomial> {
+    let first = p.terms.first()?;
+    Some(p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial)))
+}
+
+/// A quotient.
+fn over(p: &Polynomial, divisor: Monomial) -> Polynomial {
+    let divided = |t: &Term| Term { monomial: t.monomial.over(divisor), ..*t };
+    Polynomial::sum(p.terms.iter().map(divided).collect())
+}
+
+/// The size of the least coefficient if all others are whole multiples of it; otherwise one.
+fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
+    let sizes: Vec<f64> = all.into_iter().flat_map(|p| &p.terms).map(|t| t.coefficient.abs()).collect();
+    let least = sizes.iter().copied().fold(f64::MAX, f64::min);
+    let is_whole = |size: &f64| (size / least - (size / least).round()).abs() < 1e-9;
+    if sizes.iter().all(is_whole) { least } else { 1.0 }
+}
+
+/// Multiplied by a number; whole numbers are rounded to such.
+fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
+    let scale = |t: &Term| {
+        let coefficient = t.coefficient * factor;
+        let rounded = coefficient.round();
+        let near = rounded != 0.0 && (coefficient - rounded).abs() < 1e-11 * rounded.abs();
+        Term { coefficient: if near { rounded } else { coefficient }, ..*t }
+    };
+    Polynomial { terms: p.terms.iter().map(scale).collect() }
+}
+
+/// All multiplied by the even powers of atoms that some of them are divided by.
+fn without_even_divisors(all: &[Polynomial], ring: &mut Ring) -> Option<Vec<Polynomial>> {
+    let mut out = all.to_vec();
+    for k in 0..ring.atoms.len() {
+        let Atom::Inverse(p) = &ring.atoms[k] else { continue };
+        let [Term { monomial, .. }] = p.terms.as_slice() else { continue };
+        let monomial = *monomial;
+        let power = out.iter().flat_map(|p| &p.terms).map(|t| t.monomial.power(k)).max().unwrap_or(0);
+        let factor = Polynomial::single(monomial, 1.0);
+        for _ in 0..power.saturating_sub(power % 2) {
+            out = out.iter().map(|p| ring.times(p, &factor)).collect::<Option<_>>()?;
+        }
+    }
+    Some(out)
+}

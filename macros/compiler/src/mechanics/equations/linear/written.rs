@@ -1,0 +1,279 @@
+//! Linear equations as text, plain and typeset, in the user's own names.
+
+use super::super::written::{filled, name as name_of, names_with, rates};
+use super::Linear;
+use super::parts::{ROOT, multiplier};
+use super::stability::{Stability, Verdict};
+use crate::diag::all_of;
+use crate::expr::Symbol;
+use crate::expr::polynomial::{Atom, Monomial, Polynomial, Term};
+use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
+
+/// Columns of text.
+const WIDTH: usize = 100;
+/// What the roots are called, in this order of preference.
+const ROOTS: [&str; 4] = ["s", "r", "sigma", "root"];
+/// What the frequency is called.
+const FREQUENCIES: [&str; 3] = ["omega", "omega_n", "frequency"];
+
+/// Names of everything that linear equations contain.
+struct Words<'a, 'g> {
+    model: &'a Model<'g>,
+    at: &'a Equilibrium<'g>,
+    /// By velocity.
+    deviations: Vec<String>,
+    root: String,
+    frequency: String,
+}
+
+impl<'a, 'g> Words<'a, 'g> {
+    fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> Words<'a, 'g> {
+        let free = |choices: &[&str]| {
+            let taken = |word: &str| {
+                let velocities = model.velocities.iter().map(|(name, _)| name);
+                let inputs = model.inputs.iter().map(|(name, _)| name);
+                let mut all =
+                    model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
+                all.any(|name| name == word)
+            };
+            let found = choices.iter().find(|word| !taken(word));
+            found.or(choices.last()).map_or_else(String::new, ToString::to_string)
+        };
+        Words { model, at, deviations: deviations(model), root: free(&ROOTS), frequency: free(&FREQUENCIES) }
+    }
+
+    /// The name of a symbol, and the rate of what it is.
+    fn name(&self, symbol: Symbol) -> (String, u8) {
+        let nv = self.deviations.len();
+        let state = |k: usize| {
+            let state =
+                self.at.states.get(k - nv).and_then(|state| self.model.parameters.get(state.parameter));
+            state.cloned().unwrap_or_default()
+        };
+        let of = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
+        match Quantity::of(symbol) {
+            Quantity::Given(k) => (of(k), 0),
+            Quantity::Velocity(k) => (of(k), 1),
+            Quantity::Acceleration(k) => (of(k), 2),
+            Quantity::Force(k) => (format!("lambda{}", k + 1), 0),
+            Quantity::Time => (self.root.clone(), 0),
+            _ => name_of(self.model, &[], symbol),
+        }
+    }
+}
+
+/// By velocity, the name of the deviation of what it is the rate of: that of the coordinate, or those of a small
+/// displacement and a small rotation in body axes.
+fn deviations(model: &Model<'_>) -> Vec<String> {
+    let mut names: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
+    let joint = |name: &str| name.rsplit_once('.').map_or(String::new(), |(joint, _)| format!("{joint}."));
+    for chart in &model.charts {
+        let (first, members): (usize, &[&str]) = match chart {
+            Chart::Plain(q, v) => {
+                names[*v].clone_from(&model.configuration[*q]);
+                continue;
+            }
+            Chart::Ball(_, v) => (*v, &["rx", "ry", "rz"]),
+            Chart::Free(_, v) => (*v, &["dx", "dy", "dz", "rx", "ry", "rz"]),
+        };
+        let joint = joint(&names[first]);
+        for (k, member) in members.iter().enumerate() {
+            names[first + k] = format!("{joint}{member}");
+        }
+    }
+    names
+}
+
+/// What is written of linear equations, in one style.
+struct Lines {
+    /// Both sides of every equation.
+    equations: Vec<(String, String)>,
+    /// Names and values at rest.
+    values: Vec<(String, String)>,
+    polynomial: Option<String>,
+    frequency: Option<String>,
+    conditions: Vec<String>,
+}
+
+impl Lines {
+    fn of<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
+        let writer = Writer::styled(&linear.ring, style);
+        let sides = linear.motion.iter().zip(&linear.forces);
+        let values = linear.values.iter();
+        let stability = linear.stability.as_ref();
+        let of =
+            |stability: &Stability| Writer::styled(&stability.ring, style).polynomial(&in_one(stability));
+        let conditions = |stability: &Stability| match &stability.verdict {
+            Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
+                let writer = Writer::styled(&stability.ring, style);
+                all.iter().map(|condition| writer.polynomial(condition)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let frequency = stability.and_then(|stability| {
+            let frequency = stability.frequency.as_ref()?;
+            Some(Writer::styled(&stability.ring, style).polynomial(frequency))
+        });
+        Lines {
+            equations: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
+            values: values.map(|(what, p)| (style.symbol(what.symbol(), 1), writer.polynomial(p))).collect(),
+            polynomial: stability.map(of),
+            frequency,
+            conditions: stability.map(conditions).unwrap_or_default(),
+        }
+    }
+}
+
+/// The characteristic polynomial as one of its root.
+fn in_one(stability: &Stability) -> Polynomial {
+    let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
+    let root = root.map_or(Monomial::ONE, Monomial::atom);
+    let mut terms: Vec<Term> = Vec::new();
+    let mut power = Monomial::ONE;
+    for coefficient in &stability.coefficients {
+        let with = |t: &Term| Some(Term { monomial: t.monomial.times(power)?, ..*t });
+        terms.extend(coefficient.terms.iter().filter_map(with));
+        power = power.times(root).unwrap_or(power);
+    }
+    Polynomial::sum(terms)
+}
+
+/// Linear equations in all ways of writing.
+pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
+    let words = Words::new(model, at);
+    let marked = |symbol| {
+        let (name, dots) = words.name(symbol);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let plain = plain(&words, linear, &Lines::of(linear, Plain { name: &marked }));
+    let mut others = words.deviations.clone();
+    others.extend([words.root.clone(), words.frequency.clone()]);
+    let names = names_with(model, &others);
+    let dotted = |symbol| {
+        let (name, dots) = words.name(symbol);
+        (names.get(&name), dots)
+    };
+    let lines = Lines::of(linear, Latex { name: &dotted });
+    let spelled = |word: &str| crate::expr::print::latex::spelled(&names.get(word), 0);
+    Written { plain, latex: latex(&lines, &spelled(&words.frequency)) }
+}
+
+fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
+    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let header = match values.as_slice() {
+        [] => format!("{}: all coordinates and inputs at zero.", words.at.name),
+        all => format!("{}: {}; what is not named is zero.", words.at.name, all.join(", ")),
+    };
+    let mut out = filled(&header) + "\n\n";
+    out.extend(lines.equations.iter().map(|(motion, force)| line(&format!("{motion} = {force}"))));
+    out.push('\n');
+    if let (Some(stability), Some(polynomial)) = (&linear.stability, &lines.polynomial) {
+        out += &(filled(&about_roots(words, stability)) + "\n");
+        out += &line(&format!("    {polynomial} = 0"));
+        if let Some(frequency) = &lines.frequency {
+            out += &format!("Natural frequency, rad/s:\n    {} = {frequency}\n", words.frequency);
+        }
+        out += &(filled(verdict(stability)) + "\n");
+        out.extend(lines.conditions.iter().map(|condition| line(&format!("    {condition} > 0"))));
+        if stability.zeros > 0 {
+            out += &(filled(&about_zeros(words, stability)) + "\n");
+        }
+        out.push('\n');
+    }
+    out + &legend(words) + "\n"
+}
+
+/// What stands before the characteristic equation.
+fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
+    let root = &words.root;
+    let divided: Vec<String> = stability.divided.iter().map(|s| words.name(*s).0).collect();
+    match divided.is_empty() {
+        true => format!("Motions like exp({root} t), with the roots {root} of"),
+        false => {
+            let all = all_of(&divided);
+            format!(
+                "Motions like exp({root} t), with the roots {root} of (divided by {all}, taken to be positive)"
+            )
+        }
+    }
+}
+
+/// What stands before the conditions.
+fn verdict(stability: &Stability) -> &'static str {
+    match &stability.verdict {
+        Verdict::Asymptotic(all) if all.is_empty() => "Asymptotically stable: all deviations die away.",
+        Verdict::Asymptotic(_) => "Asymptotically stable where",
+        Verdict::Oscillation(all) if all.is_empty() => "Stable: all deviations oscillate.",
+        Verdict::Oscillation(_) => "Stable, all deviations oscillate, where",
+        Verdict::NotAsymptotic => "Not asymptotically stable: some deviations do not die away.",
+        Verdict::Unstable => "Unstable: some deviations grow.",
+        Verdict::Nothing => "All roots are zero: nothing brings deviations back.",
+        Verdict::Long => "The conditions of stability are too long to be read.",
+    }
+}
+
+/// What is said of roots that are zero.
+fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
+    let root = &words.root;
+    match stability.zeros {
+        1 => format!("One root is {root} = 0: that is said of the others; there is a deviation that stays."),
+        n => format!(
+            "{n} roots are {root} = 0: that is said of the others; there are deviations that stay or grow in proportion to time."
+        ),
+    }
+}
+
+/// What the names mean.
+fn legend(words: &Words<'_, '_>) -> String {
+    let model = words.model;
+    let primes = rates(model).iter().any(|plain| *plain);
+    let mut sentences = Vec::new();
+    if primes || !words.at.states.is_empty() {
+        sentences.push(
+            "In the equations names stand for deviations from the values at rest, primes mark their rates."
+                .to_string(),
+        );
+    } else {
+        sentences.push("Primes mark rates.".to_string());
+    }
+    for chart in &model.charts {
+        let (v, count) = match chart {
+            Chart::Plain(..) => continue,
+            Chart::Ball(_, v) => (*v, 3),
+            Chart::Free(_, v) => (*v, 6),
+        };
+        let all = all_of(&words.deviations[v + count - 3..v + count]);
+        sentences.push(format!("{all} are a small rotation about body axes."));
+        if count == 6 {
+            let all = all_of(&words.deviations[v..v + 3]);
+            sentences.push(format!("{all} are a small displacement along body axes."));
+        }
+    }
+    let multipliers: Vec<String> =
+        (0..model.constraints.len()).map(|k| words.name(multiplier(k).symbol()).0).collect();
+    if !multipliers.is_empty() {
+        let constraints: Vec<String> = model.constraints.iter().map(|c| c.name.clone()).collect();
+        let (is, of) = if multipliers.len() == 1 {
+            ("is the multiplier", "constraint")
+        } else {
+            ("are the multipliers", "constraints")
+        };
+        sentences.push(format!("{} {is} of the {of} {}.", all_of(&multipliers), all_of(&constraints)));
+    }
+    if !model.contacts.is_empty() {
+        sentences.push("Contacts are open.".to_string());
+    }
+    filled(&sentences.join(" "))
+}
+
+fn latex(lines: &Lines, frequency: &str) -> String {
+    let first = |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
+    let mut all: Vec<String> =
+        lines.equations.iter().map(|(motion, force)| format!("& {} = {force}", first(motion))).collect();
+    all.extend(lines.polynomial.iter().map(|p| format!("& {} = 0", first(p))));
+    all.extend(lines.frequency.iter().map(|value| format!("& {frequency} = {value}")));
+    all.extend(lines.conditions.iter().map(|condition| format!("& {} > 0", first(condition))));
+    format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}\n", all.join(" \\\\\n"))
+}

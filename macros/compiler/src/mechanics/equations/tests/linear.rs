@@ -1,0 +1,222 @@
+//! Linear equations against differences of the forces of Lagrange's equations, and what is written.
+
+use super::super::linear::{self, Linear};
+use super::*;
+
+/// Calls `f` with the linear equations of every equilibrium of a struct and with what is written of them.
+fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear, &str, &str)) {
+    with_model(gravity, item, |model| {
+        let joints = crate::kinematics::joints(&model);
+        let mass = crba::mass_matrix(&model, &joints);
+        assert!(!model.equilibria.is_empty());
+        for at in &model.equilibria {
+            let mut cx = Diagnostics::new();
+            let found = linear::linear(&model, &joints, &mass, at, &mut cx);
+            let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
+            let written = linear::written_linear(&model, at, &found);
+            assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+            f(&model, &found, &written.plain, &written.latex);
+        }
+    });
+}
+
+/// The rows of the linear equations against differences of the balance of forces, of constraints and of rates of states.
+fn check_rows(model: &Model<'_>, found: &Linear) {
+    let (nv, nu) = (model.nv(), model.nu());
+    let at = &model.equilibria[0];
+    let states = at.states.len();
+    let joints = crate::kinematics::joints(model);
+    let lagrange = lagrange::derive(model, &joints);
+    let parameter = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
+    let rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter);
+    let (q, u): (Vec<f64>, Vec<f64>) =
+        (at.configuration.iter().map(rest).collect(), at.inputs.iter().map(rest).collect());
+    // Forces of Lagrange's equations, which know no multipliers: those are left out, as is their geometric stiffness.
+    let right = right_sides(model, &joints);
+    let mut balance: Vec<Expr<'_>> = lagrange.bias.iter().zip(&right).map(|(a, b)| *a - *b).collect();
+    balance.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
+    balance.extend(at.states.iter().map(|state| -state.rate));
+    let value = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
+        eval(&balance, &|s| match Quantity::of(s) {
+            Quantity::Configuration(k) => q[k],
+            Quantity::Velocity(k) => v[k],
+            Quantity::Input(k) => u[k],
+            Quantity::Given(_) | Quantity::Time => 0.0,
+            Quantity::Parameter(k) if at.states.first().is_some_and(|s| s.parameter == k) => x,
+            _ => parameter(s),
+        })
+    };
+    let h = 1e-4;
+    let slope = |f: &dyn Fn(f64) -> Vec<f64>| -> Vec<f64> {
+        let ((a, b), (c, d)) = ((f(h), f(-h)), (f(2.0 * h), f(-2.0 * h)));
+        (0..a.len()).map(|k| (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h)).collect()
+    };
+    let moved = |list: &[f64], k: usize, by: f64| {
+        let mut list = list.to_vec();
+        list[k] += by;
+        list
+    };
+    let still = vec![0.0; nv];
+    let of = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
+        let one = |s: Symbol| match Quantity::of(s) {
+            Quantity::Parameter(_) => parameter(s),
+            _ => f64::from(u8::from(s == what.symbol())),
+        };
+        sides.iter().map(|p| found.ring.evaluate(p, &one)).collect()
+    };
+    for k in 0..nv {
+        // Configurations are plain here.
+        let by_q = slope(&|d| value(&moved(&q, k, d), &still, &u, 0.0));
+        assert_small(&of(linear::deviation(k), &found.motion), &by_q, "stiffness");
+        let by_v = slope(&|d| value(&q, &moved(&still, k, d), &u, 0.0));
+        assert_small(&of(Quantity::Velocity(k), &found.motion), &by_v, "damping");
+    }
+    for k in 0..nu {
+        let by_u: Vec<f64> =
+            slope(&|d| value(&q, &still, &moved(&u, k, d), 0.0)).iter().map(|x| -x).collect();
+        assert_small(&of(Quantity::Input(k), &found.forces), &by_u, "inputs");
+    }
+    if states > 0 {
+        let by_x = slope(&|d| value(&q, &still, &u, d));
+        assert_small(&of(linear::deviation(nv), &found.motion), &by_x, "states");
+    }
+}
+
+fn assert_small(a: &[f64], b: &[f64], what: &str) {
+    let size = b.iter().fold(1.0_f64, |size, b| size.max(b.abs()));
+    assert!(
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * size),
+        "{what}: {a:?} instead of {b:?}"
+    );
+}
+
+const PENDULUM: &str = "struct P { g: f64, m: f64, l: f64, c: f64,
+    #[body(mass = m, com = -l * y, inertia = diagonal(0, 0, 0))] bob: Body,
+    #[joint(ground -> bob, about = z)] hinge: Pin,
+    #[acts(on = hinge, damping = c)] drag: Dashpot,
+    #[acts(on = hinge)] motor: Torque, EQUILIBRIUM }";
+
+const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
+    #[particle(mass = m)] car: Particle, #[joint(ground -> car, along = x)] rail: Sleeve,
+    #[acts(on = rail, damping = 3 * k)] drag: Dashpot,
+    #[state(rate = (-power - gain * rail) / lag)] power: State,
+    #[acts(on = rail, value = 2 * power)] engine: Force,
+    #[equilibrium] still: Equilibrium }";
+
+#[test]
+fn a_pendulum() {
+    let at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
+    let contains = |equilibrium: &str, lines: &'static [&'static str]| {
+        with_linear("-g * y", &at(equilibrium), |model, found, plain, _| {
+            check_rows(model, found);
+            for line in lines {
+                assert!(plain.contains(line), "{line} in {plain}");
+            }
+        });
+    };
+    contains(
+        "#[equilibrium] down: Equilibrium",
+        &[
+            "m l² hinge'' + c hinge' + g m l hinge = motor\n",
+            "Asymptotically stable where\n    g l > 0\n    c > 0\n",
+        ],
+    );
+    contains(
+        "#[equilibrium(hinge = pi)] up: Equilibrium",
+        &[
+            "m l² hinge'' + c hinge' - g m l hinge = motor\n",
+            "    -g l > 0\n",
+            "up: hinge = pi; what is not named is zero.\n",
+        ],
+    );
+    // At a right angle gravity has no stiffness.
+    contains(
+        "#[equilibrium(hinge = pi / 2, motor = m * g * l)] held: Equilibrium",
+        &["m l² hinge'' + c hinge' = motor\n", "One root is s = 0"],
+    );
+    contains(
+        "#[equilibrium(hinge = pi / 3, motor = m * g * l * sin(pi / 3))] held: Equilibrium",
+        &["+ 1/2 g m l hinge = motor\n"],
+    );
+}
+
+#[test]
+fn rows_are_derivatives() {
+    for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
+        let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
+        with_linear(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
+            check_rows(model, found);
+        });
+    }
+    with_linear("-9.81 * z", LAG, |model, found, plain, _| {
+        check_rows(model, found);
+        assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
+    });
+}
+
+/// A particle on a circle of wire at its lowest point: the multiplier's geometric stiffness is all that there is.
+#[test]
+fn a_particle_on_a_wire() {
+    let item = "struct Wire { m: f64, g: f64, l: f64,
+        #[particle(mass = m)] p: Particle,
+        #[joint(ground -> p, along = (x, y))] place: Stage,
+        #[constraint(place.x * place.x + place.y * place.y = l * l)] wire: Holonomic,
+        #[equilibrium(place.y = -l)] low: Equilibrium,
+        #[equilibrium(place.y = l)] high: Equilibrium }";
+    with_linear("-g * y", item, |_, _, plain, _| {
+        let low = plain.starts_with("low");
+        let expected: &[&str] = match low {
+            true => &[
+                "m place.x'' + m g place.x/l = 0\n",
+                "-2 l place.y = 0\n",
+                "    omega = sqrt(g/l)\n",
+                "    g > 0\n",
+                "lambda1 = ",
+            ],
+            false => &["m place.x'' - m g place.x/l = 0\n", "    -g > 0\n"],
+        };
+        for line in expected {
+            assert!(plain.contains(line), "{line} in {plain}");
+        }
+    });
+}
+
+/// Small rotations about body axes: those of a pendulum on a ball joint, one of which nothing brings back.
+#[test]
+fn orientations_deviate_by_small_rotations() {
+    let item = "struct Tip { m: f64, g: f64, l: f64, a: f64, c: f64,
+        #[body(mass = m, com = -l * z, inertia = diagonal(a, a, c))] bob: Body,
+        #[joint(ground -> bob)] tip: Ball,
+        #[equilibrium] down: Equilibrium }";
+    with_linear("-g * z", item, |_, _, plain, latex| {
+        for line in [
+            "(m l² + a) tip.rx'' + m g l tip.rx = 0\n",
+            "c tip.rz'' = 0\n",
+            "    g l (m l² + a) > 0\n",
+            "2 roots are s = 0",
+        ] {
+            assert!(plain.contains(line), "{line} in {plain}");
+        }
+        assert!(latex.contains("\\ddot{r}_{\\mathrm{tip},x}"), "{latex}");
+    });
+}
+
+/// A bead on a hoop that spins is at rest on it, though it moves.
+#[test]
+fn a_bead_on_a_spinning_hoop() {
+    let item = "struct Bead { g: f64, m: f64, radius: f64, spin: f64,
+        theta: Coordinate,
+        #[frame(ground, z(spin * t))] hoop: Frame,
+        #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,
+        #[equilibrium] bottom: Equilibrium,
+        #[equilibrium(theta = acos(g / (spin * spin * radius)))] side: Equilibrium }";
+    with_linear("-g * z", item, |_, _, plain, _| {
+        let expected = match plain.starts_with("bottom") {
+            true => ["omega = sqrt(g/radius - spin²)\n", "    g - radius spin² > 0\n"],
+            false => ["side: theta = acos(g/(radius spin²));", "    -g² + radius² spin⁴ > 0\n"],
+        };
+        for line in expected {
+            assert!(plain.contains(line), "{line} in {plain}");
+        }
+    });
+}

@@ -1,0 +1,156 @@
+//! Declared equilibria → the values of all coordinates, inputs and states in them. Whether they are equilibria, the equations
+//! of motion tell.
+
+use super::builder::Builder;
+use crate::diag::Diagnostics;
+use crate::expr::Expr as Value;
+use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, RestingState};
+use crate::resolve::scope::{Allowed, Context};
+use crate::syntax::{self, Action, ActionKind, Expr, RATE_OF_STATE};
+use std::collections::BTreeSet;
+
+/// What can have a value at rest, by index.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Variable {
+    Coordinate(usize),
+    Input(usize),
+    State(usize),
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds all equilibria to the model.
+    pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
+        let rubs = |action: &Action| matches!(action.kind, ActionKind::Friction { .. });
+        let dry = self.description.actions.iter().any(rubs);
+        for declared in &self.description.equilibria {
+            if dry {
+                cx.error(
+                    declared.name.place.clone(),
+                    format!("dry friction has no linear equations about `{}`", declared.name.text),
+                )
+                .help(DRY_FRICTION);
+            } else if self.model.kinematic {
+                cx.error(declared.name.place.clone(), "linear equations of motion need inertia").help(
+                    "remove the equilibrium, or `inertia = none`: without inertia there are no dynamics",
+                );
+            } else if let Some(found) = self.equilibrium(declared, cx) {
+                self.model.equilibria.push(found);
+            }
+        }
+    }
+
+    fn equilibrium(&self, declared: &syntax::Equilibrium, cx: &mut Diagnostics) -> Option<Equilibrium<'g>> {
+        let g = self.scope.graph;
+        let mut found = Equilibrium {
+            name: declared.name.text.clone(),
+            place: declared.name.place.clone(),
+            configuration: vec![g.zero(); self.model.nq()],
+            inputs: vec![g.zero(); self.model.nu()],
+            states: self.resting_states(),
+        };
+        for chart in &self.model.charts {
+            if let Chart::Ball(q, _) | Chart::Free(q, _) = chart {
+                let last = if matches!(chart, Chart::Ball(..)) { q + 3 } else { q + 6 };
+                found.configuration[last] = g.one();
+            }
+        }
+        let before = cx.len();
+        let mut given = BTreeSet::new();
+        for (place, value) in &declared.values {
+            let Some(variable) = self.variable(place, cx) else { continue };
+            if !given.insert(variable) {
+                cx.error(place.place.clone(), format!("`{}` is given twice", place.spelt()))
+                    .help("remove one of the two");
+                continue;
+            }
+            let Some(value) = self.value_at_rest(variable, value, cx) else { continue };
+            match variable {
+                Variable::Coordinate(k) => found.configuration[k] = value,
+                Variable::Input(k) => found.inputs[k] = value,
+                Variable::State(k) => found.states[k].value = value,
+            }
+        }
+        (cx.len() == before).then_some(found)
+    }
+
+    /// The states of first order, at zero.
+    fn resting_states(&self) -> Vec<RestingState<'g>> {
+        let g = self.scope.graph;
+        let rate_of = |name: &str| {
+            let rate = format!("{name}{RATE_OF_STATE}");
+            let output = self.model.outputs.iter().find(|output| output.name == rate);
+            output.and_then(|output| output.values.first().copied()).unwrap_or(g.zero())
+        };
+        let states = self.description.states.iter();
+        states
+            .map(|(name, parameter)| RestingState {
+                parameter: *parameter,
+                value: g.zero(),
+                rate: rate_of(&name.text),
+            })
+            .collect()
+    }
+
+    /// An expression of the parameters.
+    fn value_at_rest(&self, variable: Variable, value: &Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = match variable {
+            Variable::Coordinate(k) => self.model.configuration.get(k)?,
+            Variable::Input(_) | Variable::State(_) => "",
+        };
+        let angle = self
+            .scope
+            .kinematics
+            .borrow()
+            .coordinates
+            .iter()
+            .any(|(known, _, angle)| known == name && *angle);
+        self.scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
+            true => scope.plane_angle(value, cx),
+            false => scope.scalar(value, cx),
+        })
+    }
+
+    /// What a name stands for that can have a value at rest.
+    fn variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
+        let text = place.spelt();
+        let coordinate = self.model.configuration.iter().position(|name| *name == text);
+        let input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
+        let state =
+            || self.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
+        let found = coordinate.map(Variable::Coordinate).or_else(input).or_else(state);
+        if found.is_none() {
+            self.report_no_variable(place, &text, cx);
+        }
+        found
+    }
+
+    fn report_no_variable(&self, place: &Expr, text: &str, cx: &mut Diagnostics) {
+        let own: Vec<&str> = self
+            .model
+            .configuration
+            .iter()
+            .filter(|name| name.strip_prefix(text).is_some_and(|rest| rest.starts_with('.')))
+            .map(String::as_str)
+            .collect();
+        let states = self.description.states.iter().map(|(name, _)| name.text.as_str());
+        let inputs = self.model.inputs.iter().map(|(name, _)| name.as_str());
+        let known: Vec<&str> =
+            self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
+        let follows = self.scope.joints.iter().any(|joint| joint == text);
+        let what = self.scope.what(text);
+        let error = cx.error(place.place.clone(), format!("`{text}` has no value at rest of its own"));
+        match (own.as_slice(), what) {
+            ([first, ..], _) => error.help(format!("its coordinates have: write `{first} = …`")),
+            (_, Some("a parameter")) => {
+                error.help("parameters have theirs in the struct, and values here may be expressions of them")
+            }
+            _ if follows => {
+                error.help("it has no coordinate: it is welded, closes a loop, or follows others")
+            }
+            _ => error.suggest(text, known),
+        };
+        if error.is_bare() {
+            error.help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
+        }
+    }
+}

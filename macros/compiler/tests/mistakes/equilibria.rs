@@ -1,0 +1,114 @@
+//! Declared equilibria that are none, and those without linear equations.
+
+use super::{Row, answers, messages};
+
+/// A pendulum with a motor, and one equilibrium.
+fn pendulum(said: &str) -> (String, String) {
+    let fields = "m: f64, l: f64,
+        #[body(mass = m, com = -l * y, inertia = sphere(m, l))] arm: Body,
+        #[joint(ground -> arm, about = z)] hinge: Pin,
+        #[acts(on = hinge)] motor: Torque,";
+    ("gravity = -9.81 * y".to_string(), format!("{fields} #[equilibrium({said})] rest: Equilibrium"))
+}
+
+const ROWS: &[Row] = &[
+    (
+        "hinge = pi / 2",
+        "`rest` is no equilibrium: the force `-9.81 m l` on `hinge` is left",
+        "hold an input at a value that balances it",
+    ),
+    ("motor = m", "`rest` is no equilibrium: the force `m` on `hinge` is left", "choose coordinates"),
+    (
+        "hinge = pi / 2, motor = 9.8 * m * l",
+        "`rest` is no equilibrium: the force `-0.01 m l` on `hinge` is left",
+        "hold an input",
+    ),
+    ("hinges = 0", "`hinges` has no value at rest of its own", "did you mean `hinge`?"),
+    ("l = 2", "`l` has no value at rest of its own", "parameters have theirs in the struct"),
+    ("arm = 2", "`arm` has no value at rest of its own", "expected `hinge` or `motor`"),
+    ("hinge = 180", "an angle of 180 rad is more than a full turn", "degrees(180)"),
+    ("hinge = motor", "the input `motor` cannot stand here", "only numbers and parameters"),
+    ("hinge = 0, hinge = 1", "`hinge` is given twice", "remove one of the two"),
+    ("hinge = x", "expected a scalar, found a vector", "length"),
+    ("pi", "expected `name = value`", "#[equilibrium(joint = angle)]"),
+    ("hinge = l", "`l` is a plain number here, but a length (m) elsewhere", "a factor is missing"),
+];
+
+#[test]
+fn what_is_no_equilibrium_is_said() {
+    answers(pendulum, ROWS);
+}
+
+/// A carriage on a rail.
+fn carriage(said: &str) -> (String, String) {
+    let fields = "m: f64, k: f64,
+        #[body(mass = m, inertia = sphere(m, 1))] cart: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,";
+    (String::new(), format!("{fields} {said}"))
+}
+
+const REFUSED: &[Row] = &[
+    (
+        "#[acts(on = rail, coulomb = k)] f: Friction, #[equilibrium] rest: Equilibrium",
+        "dry friction has no linear equations about `rest`",
+        "write a `Dashpot` for damping",
+    ),
+    (
+        "#[acts(on = rail, value = -k * abs(rail))] f: Force, #[equilibrium] rest: Equilibrium",
+        "a force has no derivative in `rest`: `abs` has a corner there",
+        "round the corner off",
+    ),
+    (
+        "#[acts(on = rail, value = -k * max(rail, 0))] f: Force, #[equilibrium] rest: Equilibrium",
+        "a force has no derivative in `rest`: `max` has a corner there",
+        "away from it",
+    ),
+    (
+        "#[acts(on = rail, value = k * sin(t))] f: Force, #[equilibrium] rest: Equilibrium",
+        "`rest` is no equilibrium: the force `k sin(t)` on `rail` is left",
+        "hold an input",
+    ),
+    (
+        "#[acts(on = rail, value = -k * rail * (2 + sin(t)))] f: Force, #[equilibrium] rest: Equilibrium",
+        "`rest` does not stay at rest: what drives it changes in time",
+        "forces that stay the same",
+    ),
+    (
+        "#[state(rate = (3 - level) * k)] level: State, #[equilibrium] rest: Equilibrium",
+        "the state `level` changes in `rest`: its rate is `3 k`",
+        "the value at which its rate is zero",
+    ),
+    (
+        "#[particle(mass = m)] p: Particle, #[joint(cart -> p, along = y)] mast: Sleeve, #[constraint(rail + mast = 2 * k)] held: Holonomic, #[equilibrium] rest: Equilibrium",
+        "`rest` does not fulfil the constraint `held`: `-2 k` is left of it",
+        "values that fulfil it",
+    ),
+];
+
+#[test]
+fn what_has_no_linear_equations_is_said() {
+    answers(carriage, REFUSED);
+}
+
+#[test]
+fn orientations_are_unit() {
+    let fields = |q: &str| {
+        format!(
+            "#[body(mass = 1, inertia = sphere(1, 1))] ball: Body, #[joint(ground -> ball)] tip: Ball,
+            #[equilibrium({q})] rest: Equilibrium"
+        )
+    };
+    let found = messages("", &fields("tip.qx = 1"));
+    assert!(found.len() == 1 && found[0].contains("the quaternion of `tip.qx` in `rest`"), "{found:?}");
+    assert_eq!(messages("", &fields("tip.qx = 1, tip.qw = 0")), [""; 0]);
+    let found = messages("", &fields("tip = 1"));
+    assert!(found.len() == 1 && found[0].contains("write `tip.qx = …`"), "{found:?}");
+}
+
+#[test]
+fn kinematic_mechanisms_have_no_linear_equations() {
+    let fields = "#[body] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin,
+        #[equilibrium] rest: Equilibrium";
+    let found = messages("inertia = none", fields);
+    assert!(found.len() == 1 && found[0].starts_with("linear equations of motion need inertia"), "{found:?}");
+}
