@@ -73,6 +73,7 @@ use std::path::PathBuf;
 /// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' forces, contracted with factors, and what `derivatives` adds |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
 /// | `hamilton` | adds the Hamiltonian and the canonical equations as functions of configuration and momentum |
+/// | `routh` | adds the Routhian and motion without cyclic coordinates, as functions of their momenta |
 /// | `conserved` | adds what keeps its value in every motion without inputs: energy, Jacobi's integral, momenta |
 /// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
 /// | `sensitivities` | adds derivatives of the dynamics by the struct's parameters |

@@ -44,6 +44,14 @@ pub trait AsksForCentroidal<'a> {}
 )]
 pub trait AsksForHamilton<'a> {}
 
+/// A mechanism with the word `routh`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not ask for `routh`",
+    label = "this needs the word `routh`",
+    note = "add the word to the attribute: `#[mechanism(…, routh)]`; the mechanism needs cyclic coordinates"
+)]
+pub trait AsksForRouth<'a> {}
+
 /// A mechanism with the word `conserved`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `conserved`",

@@ -7,8 +7,9 @@ use crate::expr::print::Written;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
 use crate::mechanics::conserved::{self, Conserved};
-use crate::mechanics::equations::{Limits, linear};
+use crate::mechanics::equations::{Limits, linear, reduced};
 use crate::mechanics::hamilton::{self, Hamilton};
+use crate::mechanics::routh::{self, Routh};
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
 use crate::passes::Passes;
@@ -74,11 +75,13 @@ pub fn derive_with<'g>(
             .help("code without loops has a line for each of them: ask for it of a smaller mechanism");
         return None;
     }
+    let cyclic = cyclic(model, requests, &joints, cx)?;
     let extras = Extras {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| entries(&mass)),
         hamilton: (requests.hamilton && !has_massless(model))
             .then(|| hamilton::derive(model, &joints, &mass)),
+        routh: cyclic.clone().filter(|_| requests.routh).map(|c| routh::derive(model, &joints, &mass, c)),
         conserved: requests.conserved.then(|| conserved::conserved(model, &joints)),
     };
     let all = |specialisation| functions(model, requests, passes, &joints, &extras, specialisation);
@@ -97,13 +100,14 @@ pub fn derive_with<'g>(
         let names: Vec<String> = kept.iter().map(|c| c.name.clone()).collect();
         constants.push(Constant::conserved(&names));
     }
+    constants.extend(extras.routh.as_ref().map(|routh| Constant::cyclic(&routh.cyclic)));
     if requests.sensitivities {
         constants.push(Constant::parameters(&model.parameters));
     }
     constants.extend(drawing(model, requests));
     let linear = linear_equations(model, &joints, &mass, cx)?;
     constants.extend(Constant::linear_equations(&linear));
-    let equations = printed(model, &joints, &mass, requests.equations, cx)?;
+    let equations = printed(model, &joints, &mass, (requests.equations, cyclic), cx)?;
     let output = Output {
         equations,
         linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
@@ -165,8 +169,10 @@ fn without(passes: Passes, skipped: Skipped) -> Passes {
 /// What there is only where forces do not depend on accelerations.
 fn without_momentum(requests: Requests) -> Option<&'static str> {
     let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
+    let reduced = requests.routh || requests.equations == Printed::Routh;
     let asked = [
         (canonical, "Hamilton's equations"),
+        (reduced, "Routh's equations"),
         (requests.second_derivatives, "second derivatives"),
         (requests.momentum_derivatives, "derivatives of momenta"),
     ];
@@ -201,8 +207,35 @@ struct Extras<'a, 'g> {
     entries: Option<Vec<(usize, usize)>>,
     /// For `hamilton`.
     hamilton: Option<Hamilton<'g>>,
+    /// For `routh`.
+    routh: Option<Routh<'g>>,
     /// For `conserved`.
     conserved: Option<Vec<Conserved<'g>>>,
+}
+
+/// The cyclic coordinates for what eliminates them, if that is asked for; `None` where there are none, with the reason in `cx`.
+fn cyclic<'g>(
+    model: &Model<'g>,
+    requests: Requests,
+    joints: &[Joint<'g>],
+    cx: &mut Diagnostics,
+) -> Option<Option<Vec<usize>>> {
+    if !requests.routh && requests.equations != Printed::Routh {
+        return Some(None);
+    }
+    let (what, help) = match routh::cyclic(model, joints) {
+        _ if !model.constraints.is_empty() => (
+            "Routh's equations are those of mechanisms without constraints",
+            "remove the word; `conserved` finds what constraints leave of momenta",
+        ),
+        found if found.is_empty() => (
+            "no coordinate of this mechanism is cyclic",
+            "Routh's equations eliminate plain coordinates on which the Lagrangian does not depend and which nothing dampens: remove the word",
+        ),
+        found => return Some(Some(found)),
+    };
+    cx.error(model.place.clone(), what).help(help);
+    None
 }
 
 /// Constraints determine coordinates without inertia: momenta do not tell their velocities.
@@ -216,7 +249,8 @@ impl<'g> Extras<'_, 'g> {
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
         let conserved = self.conserved.as_ref().map_or(0, Vec::len);
-        Facts { bodies, base, entries, passive, conserved, ..Facts::of(model, requests) }
+        let cyclic = self.routh.as_ref().map_or(0, |routh| routh.cyclic.len());
+        Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::of(model, requests) }
     }
 }
 
@@ -283,7 +317,7 @@ fn printed<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
-    printed: Printed,
+    (printed, cyclic): (Printed, Option<Vec<usize>>),
     cx: &mut Diagnostics,
 ) -> Option<Written> {
     let mut refuse = |what: &str, help: &str| {
@@ -299,6 +333,15 @@ fn printed<'g>(
                 refuse(
                     "the equations of this mechanism have thousands of terms",
                     "`equations = structure` says how they are made up; the generated functions do not multiply them out",
+                )
+            })
+        }
+        Printed::Routh => {
+            let reduced = cyclic.and_then(|cyclic| reduced::reduced(model, joints, mass, cyclic));
+            reduced.map(|r| reduced::written_reduced(model, &r)).or_else(|| {
+                refuse(
+                    "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by inertia, or thousands of terms",
+                    "the word `routh` gives them as functions; `equations = lagrange` prints others",
                 )
             })
         }

@@ -401,6 +401,9 @@ impl Source {
         if facts.requests.conserved {
             constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
         }
+        if facts.requests.routh {
+            constants.push(derive::Constant::cyclic(&[]));
+        }
         let equilibria = self.mechanism.description.equilibria.iter();
         let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
         constants.extend(derive::Constant::linear_equations(&unknown));

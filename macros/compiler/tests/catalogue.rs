@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Attribute, name and fields of mechanisms that have, between them, every function.
-const MECHANISMS: [(&str, &str, &str); 7] = [
+const MECHANISMS: [(&str, &str, &str); 8] = [
     (
         "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
@@ -60,6 +60,14 @@ const MECHANISMS: [(&str, &str, &str); 7] = [
         "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, prepare",
         "OfAFile",
         "",
+    ),
+    (
+        "routh, prepare, batch",
+        "Cyclic",
+        "m: f64,
+        #[body(mass = m, inertia = sphere(m, 1))] cart: Body, #[particle(mass = m)] bob: Particle,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(cart -> bob, along = x)] slide: Sleeve,",
     ),
     (
         "inertia = none",

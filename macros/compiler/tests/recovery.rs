@@ -187,6 +187,7 @@ fn every_word_is_named_by_what_needs_it() {
                 "HasFileParameters",
                 "HasFileInertials",
                 "DeclaresEquilibria",
+                "AsksForRouth",
                 "HasContacts",
             ];
             let known = expected.contains(&reason.as_str()) || of_all.contains(&reason.as_str());

@@ -3,7 +3,7 @@
 use super::facts::{Facts, Need};
 
 /// Constants of mechanisms, with what each needs.
-const CONSTANTS: [(&str, &[Need]); 27] = [
+const CONSTANTS: [(&str, &[Need]); 28] = [
     ("BASE_PARAMETERS", &[Need::Inertia, Need::Regressor]),
     ("BODIES", &[Need::Inertia, Need::Regressor]),
     ("CONFIGURATION", &[]),
@@ -11,6 +11,7 @@ const CONSTANTS: [(&str, &[Need]); 27] = [
     ("CONSTRAINTS", &[Need::Constraints]),
     ("CONTACTS", &[Need::Contacts]),
     ("CONTACT_ROWS", &[Need::Contacts]),
+    ("CYCLIC", &[Need::Inertia, Need::Routh, Need::NoConstraints]),
     ("DRAWING", &[Need::Drawing]),
     ("EQUATIONS", &[]),
     ("EQUATIONS_LATEX", &[]),

@@ -22,6 +22,8 @@ pub enum Need {
     Centroidal,
     /// The word `hamilton`.
     Hamilton,
+    /// The word `routh`.
+    Routh,
     /// The word `conserved`.
     Conserved,
     /// The word `regressor`.
@@ -64,13 +66,14 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 27] = [
+    pub const ALL: [Need; 28] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
         Need::MomentumDerivatives,
         Need::Centroidal,
         Need::Hamilton,
+        Need::Routh,
         Need::Conserved,
         Need::Regressor,
         Need::Sensitivities,
@@ -105,6 +108,7 @@ impl Need {
             Need::MomentumDerivatives => "AsksForMomentumDerivatives",
             Need::Centroidal => "AsksForCentroidal",
             Need::Hamilton => "AsksForHamilton",
+            Need::Routh => "AsksForRouth",
             Need::Conserved => "AsksForConserved",
             Need::Regressor => "AsksForRegressor",
             Need::Sensitivities => "AsksForSensitivities",
@@ -161,6 +165,8 @@ pub struct Facts {
     pub base: usize,
     /// How many equilibria are declared.
     pub equilibria: usize,
+    /// How many coordinates are cyclic, of those that the word `routh` eliminates.
+    pub cyclic: usize,
     /// How many quantities are conserved.
     pub conserved: usize,
     /// How many contacts open and close, and how many rates they have.
@@ -233,6 +239,7 @@ impl Facts {
             Need::MomentumDerivatives => self.requests.momentum_derivatives,
             Need::Centroidal => self.requests.centroidal,
             Need::Hamilton => self.requests.hamilton,
+            Need::Routh => self.requests.routh,
             Need::Conserved => self.requests.conserved,
             Need::Regressor => self.requests.regressor,
             Need::Sensitivities => self.requests.sensitivities,

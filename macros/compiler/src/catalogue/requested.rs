@@ -10,6 +10,7 @@ const STANDARD: usize = 10;
 
 const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Centroidal];
 const HAMILTON: &[Need] = &[Need::Inertia, Need::Hamilton, Need::RegularMass];
+const ROUTH: &[Need] = &[Need::Inertia, Need::Routh, Need::NoConstraints];
 const CONSERVED: &[Need] = &[Need::Inertia, Need::Conserved];
 const REGRESSOR: &[Need] = &[Need::Inertia, Need::Regressor];
 const PACKED: &[Need] = &[Need::Inertia, Need::Packed];
@@ -65,6 +66,31 @@ pub const CANONICAL: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: vec![
             "Hamilton's second equation: `ṗ = −∂H/∂q + τ`, and passive forces that have no potential, N and N·m; for ball and free joints in body components (Lie and Poisson). Forces of constraints belong to `tau`.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::Routhian, "routhian", ROUTH, |f| Declaration {
+        arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
+        shape: Shape::Scalar,
+        docs: vec![
+            "Routhian `R = L − p·w`, J, of the velocities of those coordinates that are not cyclic and of the momenta `p` of those that are, in the order of `CYCLIC`; `w` are their velocities, whose entries of `v` are not read.",
+            "Lagrange's equations hold for it: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 8.3.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::CyclicVelocities, "cyclic_velocities", ROUTH, |f| Declaration {
+        arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
+        shape: Shape::Vector(f.cyclic),
+        docs: vec![
+            "Velocities of the cyclic coordinates, m/s and rad/s, in the order of `CYCLIC`, of their momenta `p`: `w = −∂R/∂p`. Their entries of `v` are not read.",
+        ],
+        ..Declaration::default()
+    }),
+    Row::derived(Id::ReducedAccelerations, "reduced_accelerations", ROUTH, |f| Declaration {
+        arguments: vec![Q, V, Argument::Momenta(f.cyclic), Tau],
+        shape: Shape::Vector(f.nv.saturating_sub(f.cyclic)),
+        docs: vec![
+            "Accelerations of the coordinates that are not cyclic, m/s² and rad/s², in their order in `v`, by the momenta `p` of those that are, in the order of `CYCLIC`: Routh's equations with the forces `tau`. The momenta change by their own entries of `tau`. Entries of `v` of cyclic coordinates are not read.",
         ],
         ..Declaration::default()
     }),

@@ -13,6 +13,7 @@ use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
 use crate::mechanics::derivatives::parameters;
 use crate::mechanics::hamilton::Hamilton;
+use crate::mechanics::routh::Routh;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Chart, Model, PassiveForces};
 use crate::passes::Passes;
@@ -105,6 +106,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
+    /// What a function of the word `routh` gives.
+    fn routh(&self, outputs: impl FnOnce(&Routh<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.extras.and_then(|extras| extras.routh.as_ref()).map(outputs).unwrap_or_default()
+    }
+
     /// What a function for passive forces gives, where they have one.
     fn passive(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.model.passive.as_deref().map_or_else(Vec::new, outputs)
@@ -140,6 +146,9 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Hamiltonian => of(&self.canonical(|h| vec![h.hamiltonian])),
             Id::CanonicalVelocity => of(&self.canonical(|h| h.velocity.clone())),
             Id::CanonicalMomentumRate => of(&self.canonical(|h| h.momentum_rate.clone())),
+            Id::Routhian => of(&self.routh(|r| vec![r.routhian])),
+            Id::CyclicVelocities => of(&self.routh(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => of(&self.routh(|r| r.acceleration.clone())),
             Id::Conserved => {
                 let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
                 of(&kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect()))

@@ -203,6 +203,16 @@ impl Constant {
         }
     }
 
+    /// Which coordinates the word `routh` eliminates.
+    pub fn cyclic(list: &[usize]) -> Constant {
+        Constant {
+            name: "CYCLIC",
+            docs: "Index in `v` of the velocity of every cyclic coordinate: those on which the Lagrangian does not depend, whatever the parameters are, and whose momenta only inputs change.",
+            item: "usize",
+            list: list.iter().map(ToString::to_string).collect(),
+        }
+    }
+
     /// The names of what is conserved.
     pub fn conserved(list: &[String]) -> Constant {
         Constant::strings(

@@ -54,7 +54,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
                     "The structure of the equations of motion as text, and how to ask for all of their terms."
                 }
                 false => {
-                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian or the Hamiltonian before them."
+                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the Hamiltonian or the Routhian before them."
                 }
             },
         ),

@@ -16,6 +16,7 @@ use crate::mechanism::{Chart, Model, Quantity};
 
 mod canonical;
 pub mod linear;
+pub mod reduced;
 #[cfg(test)]
 mod tests;
 mod written;

@@ -30,6 +30,7 @@ pub mod reactions;
 pub mod regressor;
 pub mod regularity;
 pub mod rnea;
+pub mod routh;
 
 /// All velocities as symbols.
 pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

@@ -573,6 +573,7 @@ fn read_requests(
         momentum_derivatives: is_asked("momentum_derivatives"),
         centroidal: is_asked("centroidal"),
         hamilton: is_asked("hamilton"),
+        routh: is_asked("routh"),
         conserved: is_asked("conserved"),
         regressor: is_asked("regressor"),
         sensitivities: is_asked("sensitivities"),

@@ -32,6 +32,8 @@ pub struct Requests {
     pub centroidal: bool,
     /// Energy and canonical equations as functions of configuration and momentum.
     pub hamilton: bool,
+    /// Motion without cyclic coordinates, by their momenta.
+    pub routh: bool,
     /// Quantities that keep their values.
     pub conserved: bool,
     /// The dynamics as linear functions of the mass properties.
@@ -68,14 +70,20 @@ pub enum Printed {
     Lagrange,
     /// Hamilton's.
     Hamilton,
+    /// Routh's.
+    Routh,
     /// Their structure alone.
     Structure,
 }
 
 impl Printed {
     /// The words that ask for others than the readable ones.
-    pub const WORDS: [(&str, Printed); 3] =
-        [("lagrange", Printed::Lagrange), ("hamilton", Printed::Hamilton), ("structure", Printed::Structure)];
+    pub const WORDS: [(&str, Printed); 4] = [
+        ("lagrange", Printed::Lagrange),
+        ("hamilton", Printed::Hamilton),
+        ("routh", Printed::Routh),
+        ("structure", Printed::Structure),
+    ];
 }
 
 /// The passes that are left out: `skip_passes = [word, …]`. No function depends on them, only what it costs.
@@ -249,12 +257,13 @@ pub struct FileOptions {
 }
 
 /// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 12] = [
+pub(super) const REQUESTS: [&str; 13] = [
     "derivatives",
     "second_derivatives",
     "momentum_derivatives",
     "centroidal",
     "hamilton",
+    "routh",
     "conserved",
     "regressor",
     "sensitivities",

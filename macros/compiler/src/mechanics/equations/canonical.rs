@@ -73,7 +73,7 @@ fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 /// `M⁻¹ p`, group by group of coordinates that are coupled, and the determinants of the groups.
-fn velocities_of<'g>(
+pub(super) fn velocities_of<'g>(
     mass: &Matrix<'g>,
     p: &[Expr<'g>],
     normal: &mut Normal<'g>,

@@ -14,6 +14,7 @@ mod latex;
 mod linear;
 mod mechanisms;
 mod reading;
+mod routh;
 
 use mechanisms::*;
 
@@ -348,6 +349,8 @@ fn forms_that_there_are_not_are_refused() {
     assert_eq!(said("hamilton", FREE), [""; 0]);
     let rows = [
         ("hamilton", SPHERE.to_string(), "printed for mechanisms without constraints"),
+        ("routh", SPHERE.to_string(), "are those of mechanisms without constraints"),
+        ("routh", BALL.to_string(), "no coordinate of this mechanism is cyclic"),
         ("lagrange", masses(100), "have thousands of terms"),
         ("newton", SPHERE.to_string(), "unknown choice `newton` for `equations`"),
     ];

@@ -95,7 +95,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
 }
 
 /// Names of determinants that nothing else has.
-fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
+pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
     let mut letter = "D".to_string();
     while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&letter)) {
         letter.push('D');

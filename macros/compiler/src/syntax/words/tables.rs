@@ -300,6 +300,7 @@ pub const REQUESTS: Words = &[
     ("draw picture view viewer visual visuals render", "drawing"),
     ("momentum centroid", "centroidal"),
     ("hamiltonian canonical phasespace", "hamilton"),
+    ("routhian reduction ignorable reduced", "routh"),
     ("conservation integrals invariants cyclic", "conserved"),
     ("identification parameters basis", "regressor"),
     ("precompute cache prepared", "prepare"),

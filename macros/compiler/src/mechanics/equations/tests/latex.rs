@@ -3,7 +3,8 @@
 use super::*;
 
 /// Commands of LaTeX and `amsmath` that may occur, besides those of Greek letters.
-const COMMANDS: [&str; 25] = [
+const COMMANDS: [&str; 26] = [
+    "phi",
     "lambda",
     "begin",
     "end",

@@ -1,0 +1,177 @@
+//! Routh's equations, printed: the Routhian, the equations of the coordinates that are not cyclic, and the velocities of those
+//! that are, by their momenta.
+
+use super::canonical::{determinant, velocities_of};
+use super::written::{determinants, filled, name, names_with, rates};
+use super::{Limits, Short, quaternions, rank};
+use crate::diag::all_of;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Polynomial, Ring};
+use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::expr::{Expr, Symbol};
+use crate::kinematics::Joint;
+use crate::mechanics::crba::Matrix;
+use crate::mechanics::routh::{Solved, part, solved, with, with_velocities};
+use crate::mechanics::{accelerations, forces, rnea, velocities};
+use crate::mechanism::{Model, Quantity};
+
+/// Columns of text.
+const WIDTH: usize = 100;
+
+/// Routh's equations as polynomials of one ring; momenta are given numbers.
+pub struct Reduced {
+    /// The atoms.
+    pub ring: Ring,
+    /// The cyclic coordinates: indices of their velocities.
+    pub cyclic: Vec<usize>,
+    /// `R`.
+    pub routhian: Polynomial,
+    /// Accelerations and biases of the other coordinates.
+    pub motion: Vec<Polynomial>,
+    /// What inputs contribute to them.
+    pub forces: Vec<Polynomial>,
+    /// Velocities of the cyclic coordinates.
+    pub velocity: Vec<Polynomial>,
+    /// Rates of their momenta: inputs.
+    pub momentum_rate: Vec<Polynomial>,
+    /// Inertias that have symbols of their own, of coupled coordinates their determinants.
+    pub determinants: Vec<Polynomial>,
+}
+
+/// Routh's equations of a mechanism without constraints; `None` where they would be too long.
+pub fn reduced<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    cyclic: Vec<usize>,
+) -> Option<Reduced> {
+    let g = model.graph;
+    let mut normal = Normal::new(g, rank);
+    normal.ring.allow_more();
+    let own = part(mass, &cyclic, &cyclic);
+    let mut divisors = Vec::new();
+    let Solved { routhian, velocity } = solved(model, joints, &cyclic, &mut |p| {
+        let (velocity, found) = velocities_of(&own, &p, &mut normal)?;
+        divisors = found;
+        Some(velocity)
+    })?;
+    let all = with(model, &cyclic, &velocity);
+    let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
+    let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
+    let a = accelerations(model);
+    let dot = |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
+    let of = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
+    let a = of(&others, &a);
+    // What the cyclic coordinates accelerate by without and with inputs.
+    let across = part(mass, &cyclic, &others);
+    let carried = across.iter().zip(of(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
+    let carried: Vec<Expr<'g>> = carried.collect();
+    let (carried, _) = velocities_of(&own, &carried, &mut normal)?;
+    let (driven, _) = velocities_of(&own, &of(&cyclic, &inputs), &mut normal)?;
+    let (mut motion, mut forces) = (Vec::new(), Vec::new());
+    for k in &others {
+        let row = of(&cyclic, &mass[*k]);
+        motion.push(dot(&of(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
+        forces.push(inputs[*k] - dot(&row, &driven));
+    }
+    let momentum_rate = of(&cyclic, &inputs);
+    let lists = [vec![routhian], motion, forces, velocity, momentum_rate, divisors];
+    let mut found: Vec<Vec<Polynomial>> = Vec::new();
+    for list in &lists {
+        found.push(list.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?);
+    }
+    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut found = found
+        .iter()
+        .map(|list| list.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>())
+        .collect::<Option<Vec<_>>>()?
+        .into_iter();
+    let mut next = || found.next().unwrap_or_default();
+    Some(Reduced {
+        routhian: next().pop()?,
+        motion: next(),
+        forces: next(),
+        velocity: next(),
+        momentum_rate: next(),
+        determinants: next(),
+        ring: short.ring,
+        cyclic,
+    })
+}
+
+/// Routh's equations in all ways of writing.
+pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
+    let rates = rates(model);
+    let momenta: Vec<String> =
+        reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
+    let inertias = determinants(model, reduced.determinants.len());
+    let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
+    let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
+    // Accelerations of cyclic coordinates do not occur: their symbols stand for the rates of the momenta.
+    let name = |symbol: Symbol| match Quantity::of(symbol) {
+        Quantity::Given(c) => (momenta[c].clone(), 0),
+        Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
+            (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
+        }
+        Quantity::Prepared(k) => (inertias[k].clone(), 0),
+        _ => name(model, &rates, symbol),
+    };
+    let marked = |symbol| {
+        let (name, dots) = name(symbol);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let dotted = |symbol| {
+        let (name, dots) = name(symbol);
+        (all.get(&name), dots)
+    };
+    let lines = lines(reduced, Plain { name: &marked });
+    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain = line(&format!("R = {}", lines[0])) + "\n";
+    plain.extend(lines[1..].iter().map(line));
+    let still = reduced.momentum_rate.iter().all(|p| p.terms.is_empty());
+    let (is, of) = if momenta.len() == 1 {
+        ("is the momentum", "coordinate")
+    } else {
+        ("are the momenta", "coordinates")
+    };
+    let names: Vec<String> = reduced.cyclic.iter().map(|k| model.velocities[*k].0.clone()).collect();
+    let mut about = format!(
+        "R is the Routhian; {} {is} of the cyclic {of} {}{}; a prime marks a rate.",
+        all_of(&momenta),
+        all_of(&names),
+        if still { ", and constant" } else { "" }
+    );
+    match inertias.as_slice() {
+        [] => {}
+        [one] => about += &format!(" {one} is an inertia, of coupled coordinates its determinant."),
+        all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
+    }
+    plain = plain + "\n" + &filled(&about) + "\n";
+    let lines = self::lines(reduced, Latex { name: &dotted });
+    let first = |text: &String| text.strip_prefix('-').map_or(text.clone(), |rest| format!("{{-}}{rest}"));
+    let rest: Vec<String> = lines[1..].iter().map(|line| format!("& {}", first(line))).collect();
+    let latex = format!(
+        "\\begin{{aligned}}\n& \\mathcal{{R}} = {} \\\\\n{}\n\\end{{aligned}}\n",
+        lines[0],
+        rest.join(" \\\\\n")
+    );
+    Written { plain, latex }
+}
+
+/// The Routhian; then the equations of motion, the velocities of cyclic coordinates, their momenta and inertias.
+fn lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
+    let writer = Writer::styled(&reduced.ring, style);
+    let mut lines = vec![writer.polynomial(&reduced.routhian)];
+    let sides = reduced.motion.iter().zip(&reduced.forces);
+    lines.extend(sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b))));
+    let cyclic = || reduced.cyclic.iter().copied();
+    let velocities = cyclic().map(Quantity::Velocity).zip(&reduced.velocity);
+    let moved = reduced.momentum_rate.iter().filter(|p| !p.terms.is_empty()).count() > 0;
+    let momenta = cyclic().map(Quantity::Acceleration).zip(&reduced.momentum_rate).filter(|_| moved);
+    let determinants = (0..).map(determinant).zip(&reduced.determinants);
+    for (left, right) in velocities.chain(momenta).chain(determinants) {
+        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.polynomial(right)));
+    }
+    lines
+}

@@ -1,0 +1,215 @@
+//! Routh's reduction against accelerations of the whole mechanism, Lagrange's equations of the Routhian, and closed forms.
+
+use super::super::reduced::{reduced, written_reduced};
+use super::*;
+use crate::expr::eval::Tape;
+use crate::mechanics::routh;
+
+/// A heavy symmetric top in gimbals, a spherical pendulum, a slider on a shaft, a governor, and a chain on a cart that nothing holds.
+const ROWS: [(&str, &str, &[&str]); 5] = [
+    ("-g * z", GYROSCOPE, &["precession", "spin"]),
+    ("-9.81 * z", PENDULUM, &["phi"]),
+    ("0 * x", FREE_CART, &["rail"]),
+    ("-9.81 * z", GOVERNOR, &["shaft"]),
+    ("0 * x", SPINNING, &["spin"]),
+];
+
+const PENDULUM: &str = "struct Pendulum { m: f64, l: f64, phi: Coordinate, theta: Coordinate,
+    #[particle(mass = m, at = l * (sin(theta) * cos(phi) * x + sin(theta) * sin(phi) * y - cos(theta) * z))] bob: Particle }";
+
+const FREE_CART: &str = "struct FreeCart { m: f64, l: f64, k: f64,
+    #[body(mass = 2 * m)] cart: Body,
+    #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))] first: Body,
+    #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))] second: Body,
+    #[joint(ground -> cart, along = x)] rail: Sleeve,
+    #[joint(cart -> first, about = z)] one: Pin,
+    #[joint(first.at(l * x) -> second, about = z)] two: Pin,
+    #[acts(on = two, stiffness = k)] coil: Spring,
+    #[acts(on = two)] motor: Torque, #[acts(on = rail)] push: Force }";
+
+const GOVERNOR: &str = "struct Governor { m: f64, l: f64, c: f64, j: f64,
+    #[body(mass = 1, inertia = diagonal(1, 1, j))] column: Body,
+    #[body(mass = m, com = -l * z, inertia = sphere(m, l / 5))] arm: Body,
+    #[joint(ground -> column, about = z)] shaft: Pin,
+    #[joint(column -> arm, about = y)] hinge: Pin,
+    #[acts(on = hinge, damping = c)] damper: Dashpot,
+    #[acts(on = shaft)] motor: Torque }";
+
+const SPINNING: &str = "struct Spinning { m: f64, k: f64,
+    #[body(mass = m, inertia = diagonal(1, 1, 2))] wheel: Body, #[particle(mass = m)] slider: Particle,
+    #[joint(ground -> wheel, about = z)] spin: Pin,
+    #[joint(wheel -> slider, along = (x, y))] place: Stage,
+    #[energy(k / 2 * (place.x * place.x + place.y * place.y))] coil: Potential }";
+
+/// The values of expressions in a state, with momenta for the given symbols.
+fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn(Symbol) -> f64 + use<'a> {
+    let symbol = state(model, seed);
+    move |s| match Quantity::of(s) {
+        Quantity::Given(k) => p[k],
+        Quantity::Force(k) => tau[k],
+        _ => symbol(s),
+    }
+}
+
+#[test]
+fn reduced_motion_is_that_of_the_whole() {
+    for (gravity, item, names) in ROWS {
+        with_model(gravity, item, |model| {
+            let joints = crate::kinematics::joints(&model);
+            let mass = crba::mass_matrix(&model, &joints);
+            let cyclic = routh::cyclic(&model, &joints);
+            let found: Vec<&str> = cyclic.iter().map(|k| model.velocities[*k].0.as_str()).collect();
+            assert_eq!(found, names, "{}", model.name);
+            let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
+            let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+            let momenta =
+                crate::mechanics::momentum::generalized_momentum(&model, &joints, &velocities(&model));
+            // The whole: recursively, and by Lagrange's equations.
+            let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
+            let lagrange = lagrange::derive(&model, &joints);
+            let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
+            let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
+            for seed in 1..12 {
+                let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
+                let p: Vec<f64> = eval(&momenta, &at(&model, seed, &[], &tau));
+                let p: Vec<f64> = cyclic.iter().map(|k| p[*k]).collect();
+                let at = at(&model, seed, &p, &tau);
+                let expected = eval(&whole, &at);
+                let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
+                assert_near(&eval(&reduced.acceleration, &at), &expected, "accelerations");
+                let v = eval(&velocities(&model), &at);
+                let v: Vec<f64> = cyclic.iter().map(|k| v[*k]).collect();
+                assert_near(&eval(&reduced.velocity, &at), &v, "velocities");
+                let power: f64 = p.iter().zip(&v).map(|(p, v)| p * v).sum();
+                let lagrangian = lagrange.kinetic - lagrange.potential;
+                assert_near(&eval(&[reduced.routhian], &at), &[eval(&[lagrangian], &at)[0] - power], "R");
+            }
+        });
+    }
+}
+
+/// Lagrange's equations of the Routhian are those of the other coordinates: `d/dt ∂R/∂v − ∂R/∂q` is what has no potential.
+#[test]
+fn lagranges_equations_hold_for_the_routhian() {
+    for (gravity, item, _) in ROWS {
+        with_model(gravity, item, |model| {
+            let joints = crate::kinematics::joints(&model);
+            let mass = crba::mass_matrix(&model, &joints);
+            let cyclic = routh::cyclic(&model, &joints);
+            let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
+            let g = model.graph;
+            let derivative = |quantity: Quantity| {
+                crate::expr::diff::Derivative::with_respect_to(quantity.symbol(), g).of(reduced.routhian)
+            };
+            let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+            let momenta: Vec<Expr<'_>> = others.iter().map(|k| derivative(Quantity::Velocity(*k))).collect();
+            let slopes: Vec<Expr<'_>> =
+                others.iter().map(|k| derivative(Quantity::Configuration(*k))).collect();
+            let all = crate::mechanics::passive::passive_forces(&model, true);
+            let of_potentials = crate::mechanics::passive::passive_forces(&model, false);
+            let lost: Vec<Expr<'_>> = others.iter().map(|k| all[*k] - of_potentials[*k]).collect();
+            let (momenta, slopes, lost) = (Tape::of(&momenta), Tape::of(&slopes), Tape::of(&lost));
+            let (acceleration, velocity) = (Tape::of(&reduced.acceleration), Tape::of(&reduced.velocity));
+            for seed in 1..8 {
+                let tau = vec![0.0; model.nv()];
+                let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
+                let at = at(&model, seed, &p, &tau);
+                let (a, w) = (acceleration.values(&at), velocity.values(&at));
+                let moved = |h: f64| {
+                    let value = |s: Symbol| match Quantity::of(s) {
+                        Quantity::Configuration(k) => {
+                            let rate = cyclic
+                                .iter()
+                                .position(|c| *c == k)
+                                .map_or_else(|| at(Quantity::Velocity(k).symbol()), |c| w[c]);
+                            at(s) + h * rate
+                        }
+                        Quantity::Velocity(k) => {
+                            at(s) + others.iter().position(|o| *o == k).map_or(0.0, |o| h * a[o])
+                        }
+                        _ => at(s),
+                    };
+                    momenta.values(&value)
+                };
+                let h = 1e-3;
+                let ((b, c), (d, e)) = ((moved(h), moved(-h)), (moved(2.0 * h), moved(-2.0 * h)));
+                let rate: Vec<f64> =
+                    (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
+                let full = |s: Symbol| match Quantity::of(s) {
+                    Quantity::Velocity(k) => {
+                        cyclic.iter().position(|c| *c == k).map_or_else(|| at(s), |c| w[c])
+                    }
+                    _ => at(s),
+                };
+                for ((rate, slope), lost) in rate.iter().zip(slopes.values(&at)).zip(lost.values(&full)) {
+                    let size = 1.0 + rate.abs() + slope.abs();
+                    assert!(
+                        (rate - slope + lost).abs() < 1e-8 * size,
+                        "{}: {rate} {slope} {lost}",
+                        model.name
+                    );
+                }
+            }
+        });
+    }
+}
+
+/// The printed polynomials are the functions.
+#[test]
+fn printed_reduction_is_that_of_the_functions() {
+    let mut texts = Vec::new();
+    for (gravity, item, _) in ROWS {
+        with_model(gravity, item, |model| {
+            let joints = crate::kinematics::joints(&model);
+            let mass = crba::mass_matrix(&model, &joints);
+            let cyclic = routh::cyclic(&model, &joints);
+            let functions = routh::derive(&model, &joints, &mass, cyclic.clone());
+            let printed = reduced(&model, &joints, &mass, cyclic.clone()).expect("small");
+            let inputs = forces::generalized_forces(&model, &joints);
+            let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+            for seed in 1..8 {
+                let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
+                let symbol = at(&model, seed, &p, &[]);
+                let tau = eval(&inputs, &symbol);
+                let symbol = at(&model, seed, &p, &tau);
+                let a = eval(&functions.acceleration, &symbol);
+                let one = |s: Symbol| match Quantity::of(s) {
+                    Quantity::Prepared(_) => 1.0,
+                    _ => symbol(s),
+                };
+                let inertias: Vec<f64> =
+                    printed.determinants.iter().map(|d| printed.ring.evaluate(d, &one)).collect();
+                let value = |s: Symbol| match Quantity::of(s) {
+                    Quantity::Prepared(k) => inertias[k],
+                    Quantity::Acceleration(k) => {
+                        others.iter().position(|o| *o == k).map_or(f64::NAN, |o| a[o])
+                    }
+                    Quantity::Velocity(k) if cyclic.contains(&k) => f64::NAN,
+                    _ => symbol(s),
+                };
+                let of = |list: &[Polynomial]| -> Vec<f64> {
+                    list.iter().map(|p| printed.ring.evaluate(p, &value)).collect()
+                };
+                // Atoms that no polynomial contains are evaluated all the same.
+                assert_near(&of(&printed.motion), &of(&printed.forces), &model.name);
+                assert_near(&of(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
+                assert_near(
+                    &of(std::slice::from_ref(&printed.routhian)),
+                    &eval(&[functions.routhian], &symbol),
+                    "R",
+                );
+            }
+            let written = written_reduced(&model, &printed);
+            assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+            texts.push(written.plain);
+        });
+    }
+    for line in [
+        "R = 1/2 m l² theta'² - 1/2 p_phi²/D + 9.81 m l cos(theta)\n",
+        "phi' = p_phi/D\n",
+        "p_phi is the momentum of the cyclic coordinate phi, and constant;",
+    ] {
+        assert!(texts[1].contains(line), "{line} in {}", texts[1]);
+    }
+    assert!(texts[3].contains("p_shaft' = motor\n"), "{}", texts[3]);
+}

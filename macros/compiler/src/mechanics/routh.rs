@@ -1,0 +1,142 @@
+//! Routh's reduction: coordinates on which the Lagrangian does not depend leave the equations, and their momenta take the place of
+//! their velocities (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 8.3; Whittaker, *Analytical Dynamics*, § 38).
+//! The Routhian is `R(q, v, p) = L − p·w`, where `w` are the velocities of cyclic coordinates; Lagrange's equations hold for it
+//! with the other coordinates.
+
+use super::crba::Matrix;
+use super::{energy, ldl, momentum, rnea, velocities};
+use crate::expr::Expr;
+use crate::expr::eval::Tape;
+use crate::expr::replace::replace_all;
+use crate::expr::sample::sample;
+use crate::kinematics::{Joint, random_configuration};
+use crate::mechanism::{Chart, Model, Quantity};
+
+/// Random states that are tried.
+const STATES: u64 = 6;
+/// What is left of a rate that is zero, beside the others.
+const ROUNDING: f64 = 1e-11;
+
+/// A mechanism without its cyclic coordinates, as functions of `q`, the velocities of the others and the momenta of those.
+pub struct Routh<'g> {
+    /// The cyclic coordinates: indices of their velocities.
+    pub cyclic: Vec<usize>,
+    /// `R`.
+    pub routhian: Expr<'g>,
+    /// Velocities of the cyclic coordinates.
+    pub velocity: Vec<Expr<'g>>,
+    /// Accelerations of the others, with the forces `τ`.
+    pub acceleration: Vec<Expr<'g>>,
+}
+
+/// The cyclic coordinates: plain ones whose momenta do not change without inputs. What only special parameters make cyclic is
+/// not seen.
+pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
+    let rates = Tape::of(&momentum::momentum_rate(model, joints, &velocities(model)));
+    let mut plain: Vec<usize> = model
+        .charts
+        .iter()
+        .filter_map(|chart| match chart {
+            Chart::Plain(_, v) => Some(*v),
+            Chart::Ball(..) | Chart::Free(..) => None,
+        })
+        .collect();
+    for seed in 0..STATES {
+        let q = random_configuration(model, seed);
+        let values = rates.values(&|s| match Quantity::of(s) {
+            Quantity::Configuration(k) => q[k],
+            Quantity::Velocity(_) => 3.0 * sample(s, seed) - 3.0,
+            Quantity::Input(_) => 0.0,
+            _ => sample(s, seed),
+        });
+        let size = values.iter().map(|rate| rate.abs()).fold(1.0, f64::max);
+        plain.retain(|v| values[*v].abs() <= ROUNDING * size);
+    }
+    plain
+}
+
+/// The Routhian and the velocities of cyclic coordinates.
+pub struct Solved<'g> {
+    /// `R = T(v, 0) − ½ (p − π)·w − U`.
+    pub routhian: Expr<'g>,
+    /// `w`.
+    pub velocity: Vec<Expr<'g>>,
+}
+
+/// Solves `p = M_cc w + π` for the velocities `w` of cyclic coordinates; `π` is what the other velocities and driven motion
+/// contribute to their momenta.
+pub fn solved<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    cyclic: &[usize],
+    solve: &mut dyn FnMut(Vec<Expr<'g>>) -> Option<Vec<Expr<'g>>>,
+) -> Option<Solved<'g>> {
+    let g = model.graph;
+    let others = with(model, cyclic, &vec![g.zero(); cyclic.len()]);
+    let given = with_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
+    let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Given(c).expr(g) - given[*k]);
+    let p: Vec<Expr<'g>> = p.collect();
+    let velocity = solve(p.clone())?;
+    let kinetic = energy::kinetic_energy(model, joints, &velocities(model));
+    let lagrangian = with_velocities(&[kinetic - energy::potential_energy(model, joints)], &others)[0];
+    let twice = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, w)| sum + *p * *w);
+    Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
+}
+
+/// The reduced mechanism.
+pub fn derive<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    cyclic: Vec<usize>,
+) -> Routh<'g> {
+    let g = model.graph;
+    let own = part(mass, &cyclic, &cyclic);
+    let mut solve = |r: Vec<Expr<'g>>| Some(solved_by(&own, r));
+    let found = solved(model, joints, &cyclic, &mut solve);
+    let Solved { routhian, velocity } =
+        found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
+    let all = with(model, &cyclic, &velocity);
+    // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, without b.
+    let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
+    let force: Vec<Expr<'g>> =
+        bias.iter().enumerate().map(|(k, bias)| Quantity::Force(k).expr(g) - *bias).collect();
+    let of = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
+    let across = part(mass, &others, &cyclic);
+    let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
+    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let mut reduced = part(mass, &others, &others);
+    for (row, across) in reduced.iter_mut().zip(&across) {
+        row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot(across, taken));
+    }
+    let of_cyclic = of(&cyclic);
+    let right = of(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
+    let acceleration = solved_by(&reduced, right.collect());
+    Routh { cyclic, routhian, velocity, acceleration }
+}
+
+/// All velocities, those of cyclic coordinates by their momenta.
+pub fn with<'g>(model: &Model<'g>, cyclic: &[usize], velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut all = velocities(model);
+    cyclic.iter().zip(velocity).for_each(|(k, w)| all[*k] = *w);
+    all
+}
+
+/// Expressions with other velocities.
+pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    replace_all(e, &|s| match Quantity::of(s) {
+        Quantity::Velocity(k) => Some(v[k]),
+        _ => None,
+    })
+}
+
+/// Rows and columns of a matrix.
+pub fn part<'g>(m: &Matrix<'g>, rows: &[usize], columns: &[usize]) -> Matrix<'g> {
+    rows.iter().map(|i| columns.iter().map(|j| m[*i][*j]).collect()).collect()
+}
+
+fn solved_by<'g>(m: &Matrix<'g>, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    let order: Vec<usize> = (0..r.len()).rev().collect();
+    ldl::solve_in(m.clone(), r, &order, 0).x
+}
