@@ -22,6 +22,9 @@ const ENOUGH: usize = 6;
 /// What is left of terms that cancel.
 const ROUNDING: f64 = 1e-10;
 
+/// Characters of a message that print a force; more are cut off.
+const LONG: usize = 100;
+
 /// The state at rest.
 pub struct Rest<'g> {
     configuration: Vec<Expr<'g>>,
@@ -210,7 +213,11 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
         return Ok(());
     }
     let name = |symbol| super::super::written::name(model, &[], symbol).0;
-    Err(format!("`{}`", Writer::new(&normal.ring, &name).polynomial(&p)))
+    let text = Writer::new(&normal.ring, &name).polynomial(&p);
+    Err(match text.chars().count() > LONG {
+        true => format!("`{} …`", text.chars().take(LONG).collect::<String>().trim_end()),
+        false => format!("`{text}`"),
+    })
 }
 
 /// Whether a polynomial is zero for all parameters: its terms are gone, or cancel in numbers.

@@ -51,40 +51,70 @@ fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn
     }
 }
 
+/// Accelerations, velocities and Routhian against Lagrange's equations of the whole; the names of the cyclic
+/// coordinates are returned.
+fn check_whole(model: &Model<'_>) -> Vec<String> {
+    let joints = crate::kinematics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let cyclic = routh::cyclic(model, &joints);
+    let reduced = routh::derive(model, &joints, &mass, cyclic.clone());
+    let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
+    let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &velocities(model));
+    // The whole, by Lagrange's equations.
+    let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
+    let lagrange = lagrange::derive(model, &joints);
+    let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
+    let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
+    for seed in 1..12 {
+        let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
+        let p: Vec<f64> = eval(&momenta, &at(model, seed, &[], &tau));
+        let p: Vec<f64> = cyclic.iter().map(|k| p[*k]).collect();
+        let at = at(model, seed, &p, &tau);
+        let expected = eval(&whole, &at);
+        let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
+        assert_near(&eval(&reduced.acceleration, &at), &expected, "accelerations");
+        let v = eval(&velocities(model), &at);
+        let v: Vec<f64> = cyclic.iter().map(|k| v[*k]).collect();
+        assert_near(&eval(&reduced.velocity, &at), &v, "velocities");
+        let power: f64 = p.iter().zip(&v).map(|(p, v)| p * v).sum();
+        let lagrangian = lagrange.kinetic - lagrange.potential;
+        assert_near(&eval(&[reduced.routhian], &at), &[eval(&[lagrangian], &at)[0] - power], "R");
+    }
+    cyclic.iter().map(|k| model.velocities[*k].0.clone()).collect()
+}
+
 #[test]
 fn reduced_motion_is_that_of_the_whole() {
     for (gravity, item, names) in ROWS {
-        with_model(gravity, item, |model| {
-            let joints = crate::kinematics::joints(&model);
-            let mass = crba::mass_matrix(&model, &joints);
-            let cyclic = routh::cyclic(&model, &joints);
-            let found: Vec<&str> = cyclic.iter().map(|k| model.velocities[*k].0.as_str()).collect();
-            assert_eq!(found, names, "{}", model.name);
-            let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
-            let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-            let momenta =
-                crate::mechanics::momentum::generalized_momentum(&model, &joints, &velocities(&model));
-            // The whole: recursively, and by Lagrange's equations.
-            let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
-            let lagrange = lagrange::derive(&model, &joints);
-            let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
-            let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
-            for seed in 1..12 {
-                let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
-                let p: Vec<f64> = eval(&momenta, &at(&model, seed, &[], &tau));
-                let p: Vec<f64> = cyclic.iter().map(|k| p[*k]).collect();
-                let at = at(&model, seed, &p, &tau);
-                let expected = eval(&whole, &at);
-                let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
-                assert_near(&eval(&reduced.acceleration, &at), &expected, "accelerations");
-                let v = eval(&velocities(&model), &at);
-                let v: Vec<f64> = cyclic.iter().map(|k| v[*k]).collect();
-                assert_near(&eval(&reduced.velocity, &at), &v, "velocities");
-                let power: f64 = p.iter().zip(&v).map(|(p, v)| p * v).sum();
-                let lagrangian = lagrange.kinetic - lagrange.potential;
-                assert_near(&eval(&[reduced.routhian], &at), &[eval(&[lagrangian], &at)[0] - power], "R");
-            }
-        });
+        assert_eq!(with_model(gravity, item, |model| check_whole(&model)), names);
+    }
+}
+
+/// Chains of random links on a column along gravity, which turns freely.
+#[test]
+fn reduced_motion_of_random_chains_is_that_of_the_whole() {
+    let mut random = Random(77);
+    (0..20).for_each(|_| _ = random.below(2));
+    for length in [2, 3, 4, 2, 3, 4] {
+        let mut number = || random.below(1000) as f64 / 500.0 - 1.0;
+        let mut vector =
+            || format!("({:.3} * x + {:.3} * y + {:.3} * z)", number(), number(), number() + 0.1);
+        let mut item = "struct Chain { m: f64,
+            #[body(mass = m, com = 0.3 * x, inertia = cuboid(m, 0.2, 0.4, 0.6))] link0: Body,
+            #[joint(ground -> link0, about = z)] column: Pin,"
+            .to_string();
+        for k in 1..length {
+            item += &format!(
+                "#[body(mass = {k} * m, com = 0.2 * {}, inertia = cuboid(m, 0.5, 0.3, 0.2))] link{k}: Body,
+                #[joint(link{}.at({}) -> link{k}, about = unit({}))] joint{k}: Pin,",
+                vector(),
+                k - 1,
+                vector(),
+                vector()
+            );
+        }
+        let found = with_model("-9.81 * z", &(item + "}"), |model| check_whole(&model));
+        assert_eq!(found, ["column"]);
     }
 }
 
