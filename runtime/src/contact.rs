@@ -36,6 +36,7 @@ mod derivatives;
 mod held;
 mod holding;
 mod landing;
+mod layout;
 mod phase;
 mod problem;
 mod response;
@@ -50,16 +51,18 @@ pub use derivatives::{
 pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
 pub use landing::{LandedDerivatives, land, land_derivatives};
+use layout::Layout;
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
 use total::Total;
 
-/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip.
+/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a moment of friction
+/// ([`PRESSED_BY`](Contacts::PRESSED_BY)) are of turning alone, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
-    /// Index of the rate of the gap.
+    /// Index of the rate of the gap; of a moment of friction that of its first rate.
     pub first: usize,
-    /// How many there are: one without friction, up to three with it.
+    /// How many there are: one without friction, up to three with it; of spin one, of rolling up to two.
     pub count: usize,
 }
 
@@ -68,7 +71,7 @@ pub struct Rows {
 pub enum Touch {
     /// No force acts.
     Open,
-    /// Surfaces stay together, and do not slip if there is friction.
+    /// Surfaces stay together, and do not slip if there is friction; of a moment of friction, they do not turn.
     Sticks,
     /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has no direction, and does
     /// not act.
@@ -78,7 +81,7 @@ pub enum Touch {
 /// Coefficients of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<T> {
-    /// Of friction, `μ`: zero or more.
+    /// Of friction, `μ`: zero or more. Of a moment of friction the largest by the normal force, m.
     pub friction: T,
     /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they met.
     pub restitution: T,
@@ -100,11 +103,15 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     const CONTACTS: [&'static str; NK];
     /// Which rates belong to each contact.
     const CONTACT_ROWS: [Rows; NK];
+    /// Which contact presses whose friction each one is: itself, but for the moments of friction against spin and rolling. These follow
+    /// their contact, as `foot.spin` and `foot.roll` follow `foot`, have its gap, and rates of turning alone.
+    const PRESSED_BY: [usize; NK] = layout::own();
 
     /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they overlap.
     fn contact_gaps(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NK>;
 
-    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents.
+    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents; of moments of friction the
+    /// relative angular velocity about the normal, or about the tangents.
     fn contact_rates(
         &self,
         t: Self::Scalar,
@@ -343,7 +350,8 @@ where
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let h = epsilon::<T>().sqrt();
     let mut free = mechanism.contact_rates(t, q, v);
-    for Rows { first, .. } in M::CONTACT_ROWS {
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    for (_, first) in layout.gaps() {
         if let Some(rate) = free.get_mut(first) {
             *rate = rate.max(T::zero());
         }
@@ -353,7 +361,7 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let mut problem =
-        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
     let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
@@ -400,7 +408,9 @@ where
     if *held != still {
         // What is driven moves by itself.
         let apart = mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still);
-        for (gap, Rows { first, .. }) in gaps.iter_mut().zip(M::CONTACT_ROWS) {
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        for (k, gap) in gaps.iter_mut().enumerate() {
+            let (_, first) = layout.pressing(k);
             *gap -= apart.get(first).copied().unwrap_or(T::zero());
         }
     }
@@ -428,7 +438,12 @@ where
     let after = mechanism.contact_rates(t, q, free);
     let laws = mechanism.contact_laws();
     let problem = &mut acted.problem;
-    problem.select(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &after);
+    problem.select(
+        Layout::new(M::CONTACT_ROWS, M::PRESSED_BY),
+        &laws,
+        |k| closed.get(k) == Some(&true),
+        &after,
+    );
     if !problem.is_loaded(before) {
         return Ok(solved);
     }

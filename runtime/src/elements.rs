@@ -427,10 +427,15 @@ pub enum Slipping {}
 /// functions of the dynamics are those of bodies that move freely, and the module [`contact`](crate::contact) says what contacts do
 /// to them.
 ///
+/// `torsional = a`, m, adds a moment of friction about the normal, of at most `a` times the normal force, against the relative angular
+/// velocity there: a ball that spins on the spot comes to rest. `rolling = b`, m, adds one about the tangents, against rolling. Both
+/// hold where less is needed, as friction does. Beside `name` stand the contacts `name.spin` and `name.roll` then, each with the gap of
+/// `name` and rates of turning alone.
+///
 /// Surfaces may yield instead: with `stiffness = k`, N/m, they press with `k δ (1 + d δ̇)` where they overlap by `δ`, and with
 /// `hertz = k`, N/m^1.5, with `k δ^1.5 (1 + d δ̇)` as round bodies do. `dissipation = d`, s/m, is zero unless given; surfaces never
 /// pull (Hunt and Crossley, J. Appl. Mech. 42, 1975). Friction is `μ` times that against the slip, and falls off below
-/// `speed = …`, 1e-3 m/s unless given. Such a contact is a force element: it is part of forward and inverse dynamics, energies and all
+/// `speed = …`, 1e-3 m/s unless given; moments of friction fall off where `a` times the angular velocity is below it. Such a contact is a force element: it is part of forward and inverse dynamics, energies and all
 /// derivatives, moves with every method of integration, and is not among `CONTACTS`.
 ///
 /// The points of one declaration are named `name.0`, `name.1`, ….

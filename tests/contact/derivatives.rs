@@ -62,7 +62,7 @@ fn slope<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> 
 }
 
 /// Every column of every derivative.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     t: f64,
     (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),

@@ -177,6 +177,42 @@ fn chosen_contacts_stay_closed() {
     assert!(found.a.amax() < 1e-9 && push.amax() < 1e-6, "{push}");
 }
 
+/// A heavy particle on a light one on the floor.
+#[mechanism(gravity = -9.81 * z)]
+struct Anvil {
+    mass: f64,
+    #[particle(mass = 1e-4)]
+    sheet: Particle,
+    #[joint(ground -> sheet, along = z)]
+    low: Sleeve,
+    #[particle(mass = mass)]
+    anvil: Particle,
+    #[joint(ground -> anvil, along = z)]
+    high: Sleeve,
+    #[contact(sheet, ground.plane(z))]
+    floor: Contact,
+    #[contact(anvil, sheet.plane(z))]
+    face: Contact,
+}
+
+/// Forces are told apart however much heavier one body is than the other, in both orders of the contacts that it matters for.
+#[test]
+fn heavy_bodies_are_held_on_light_ones() {
+    for mass in [1.0, 1e2, 1e3, 1e4, 1e5] {
+        let m = Anvil { mass };
+        let (q, none) = (SVector::zeros(), SVector::zeros());
+        for touches in [[Touch::Sticks; 2], [Touch::Slips; 2]] {
+            let held = contact::forward_dynamics(&m, 0.0, &q, &none, &none, &touches).unwrap();
+            assert!((held.forces[1] / (mass * 9.81) - 1.0).abs() < 1e-6, "{mass}: {}", held.forces);
+            assert!((held.forces[0] / ((mass + 1e-4) * 9.81) - 1.0).abs() < 1e-6, "{mass}: {}", held.forces);
+            // What rounding leaves of the light one's weight under the heavy one.
+            assert!(held.a.amax() < 1e-15 * mass * 9.81 / 1e-4 + 1e-9, "{mass}: {}", held.a);
+        }
+        let run = simulate(&m).from([0.0; 2], [0.0; 2]).method(TimeStepping::step(1e-3)).duration(1.0);
+        assert!(run.finish().unwrap().q.amax() < 1e-8);
+    }
+}
+
 /// A stop that is asked to move: the crank is held by another, too.
 #[test]
 fn contacts_that_contradict_each_other_are_errors() {

@@ -36,6 +36,26 @@ struct Jammed {
     stops: Limit,
 }
 
+/// A ball on a floor that is there twice, and at a wall, all of which resist spin and rolling.
+#[mechanism(gravity = -9.81 * z)]
+struct Rubbed {
+    friction: f64,
+    moment: f64,
+    restitution: f64,
+    #[body(mass = 0.5, com = 0.01 * x, inertia = sphere(0.5, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(
+        ball.sphere(0.05), ground.plane(z), friction = friction, torsional = moment, rolling = moment, restitution = restitution
+    )]
+    floor: Contact,
+    #[contact(ball.sphere(0.05), ground.plane(z), friction = friction, torsional = moment)]
+    same: Contact,
+    #[contact(ball.sphere(0.05), ground.at(-0.05 * x).plane(x), friction = friction, rolling = moment)]
+    wall: Contact,
+}
+
 /// What a state gives, and half a dozen steps from it. Returns how many answers were errors.
 fn attack<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
@@ -104,6 +124,13 @@ pub fn attacks(seed: u64, count: usize) -> usize {
         (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
         q[16] += random.one_of([0.0, 1e-9, -1e-6]);
         let speed = random.one_of([0.0, 1e-9, 2.0]);
+        errors += attack(&m, q, random.vector(speed));
+
+        let m = Rubbed { friction, moment: random.one_of([0.0, 1e-3, 0.05, 1e6]), restitution };
+        let turn = SVector::from([0.0, 0.0, 0.0, random.next(), 3.0 * random.next(), random.next()]);
+        let mut q = m.integrate(&m.neutral(), &turn);
+        (q[0], q[2]) = (random.one_of([0.0, 0.0, 1.0, -1e-9]), 0.05 + random.one_of([0.0, 0.0, -1e-6, 0.01]));
+        let speed = random.one_of([0.0, 1e-9, 2.0, 50.0]);
         errors += attack(&m, q, random.vector(speed));
 
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);

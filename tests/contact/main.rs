@@ -13,3 +13,4 @@ mod piles;
 mod robots;
 mod soft;
 mod terrain;
+mod turning;

@@ -1,13 +1,15 @@
 //! Derivatives of the motion while given contacts stay closed.
 
 use super::held::held;
+use super::layout::Layout;
 use super::problem::{Problem, entry};
-use super::{Contacts, Rows, Touch};
+use super::{Contacts, Touch};
 use crate::blocks::{add_product, product, transposed, zeros};
 use crate::constraint::ConstraintError;
 use crate::derivatives::LinearMotion;
 use crate::private::constant;
 use crate::{Real, RheonomicDerivatives};
+use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// First derivatives of what contacts do. `#[mechanism(…, derivatives)]` implements it for mechanisms with contacts.
@@ -204,12 +206,13 @@ where
     };
     let Some(responses) = responses else { return Ok(found) };
     let laws = mechanism.contact_laws();
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
     if decay != T::zero() {
         let twice = decay * constant(2.0);
         parts.accelerations_by_q += parts.rates_by_q * twice;
         parts.accelerations_by_v += jacobian * twice;
-        for Rows { first, .. } in M::CONTACT_ROWS {
+        for (_, first) in layout.gaps() {
             for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
                 if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
                     *change += *by_q * decay * decay;
@@ -219,11 +222,11 @@ where
     }
     // How friction turns with the slip while the normal forces stay.
     let mut turned = [SMatrix::<T, NR, NV>::zeros(); 2];
-    for ((rows, touch), law) in M::CONTACT_ROWS.into_iter().zip(touches).zip(&laws) {
+    for (k, (touch, law)) in touches.iter().zip(&laws).enumerate() {
         if *touch == Touch::Slips {
-            let normal = law.friction * entry(&held.forces, rows.first);
+            let normal = law.friction * entry(&held.forces, layout.pressing(k).1);
             for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
-                turn(turned, rows, normal, &along, rates);
+                turn(turned, layout.tangents(k), normal, &along, rates);
             }
         }
     }
@@ -235,8 +238,7 @@ where
         add_product(&mut found.by_v, &by_tau, &product(&across, &turned_by_v));
     }
     let closed = touches.map(|touch| touch != Touch::Open);
-    let mut problem =
-        Problem::new(M::CONTACT_ROWS, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
+    let mut problem = Problem::new(layout, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
     problem.weigh(&responses.rates);
     // How the forces answer to the rates, which all of the derivatives share.
     let answer = problem.answers(touches, &along);
@@ -259,12 +261,11 @@ where
 /// `−μ fₙ u / |u|`.
 fn turn<T: Real, const NV: usize, const NR: usize>(
     turned: &mut SMatrix<T, NR, NV>,
-    Rows { first, count }: Rows,
+    tangents: Range<usize>,
     friction: T,
     rates: &SVector<T, NR>,
     changes: &SMatrix<T, NR, NV>,
 ) {
-    let tangents = first + 1..first + count;
     let speed = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * entry(rates, i)).sqrt();
     if speed == T::zero() {
         return;

@@ -1,7 +1,8 @@
 //! Motion while given contacts stay closed, whatever that takes.
 
+use super::layout::Layout;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Responses, Rows, Touch};
+use super::{Contacts, Responses, Touch};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::constant;
@@ -110,13 +111,15 @@ where
     if closed.iter().all(|is_closed| !is_closed) {
         return Ok((Held { a, forces: SVector::zeros() }, None));
     }
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let mut free = moved + mechanism.contact_bias(t, q, v);
     if decay != T::zero() {
         free += mechanism.contact_rates(t, q, v) * (decay * constant(2.0));
-        for (gap, Rows { first, .. }) in mechanism.contact_gaps(t, q).iter().zip(M::CONTACT_ROWS) {
+        let gaps = mechanism.contact_gaps(t, q);
+        for (k, first) in layout.gaps() {
             let rate = entry(&free, first);
-            put(&mut free, first, rate + *gap * decay * decay);
+            put(&mut free, first, rate + entry(&gaps, k) * decay * decay);
         }
     }
     if free.iter().any(|rate| !rate.is_finite()) {
@@ -124,7 +127,7 @@ where
     }
     let responses = mechanism.contact_responses(t, q, &closed);
     let mut problem =
-        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&responses.rates);
     let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
         constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),

@@ -1,6 +1,7 @@
 //! Impacts after which given contacts are closed, whatever that takes.
 
 use super::derivatives::ContactDerivatives;
+use super::layout::Layout;
 use super::problem::Problem;
 use super::{Contacts, Solved, Touch};
 use crate::Real;
@@ -75,8 +76,9 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let mut problem =
-        Problem::new(M::CONTACT_ROWS, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
     let responses = mechanism.contact_responses(t, q, &closed);
     problem.weigh(&responses.rates);
     let impulses = problem.hold(touches, &SVector::zeros()).map_err(|k| ConstraintError::Contact {

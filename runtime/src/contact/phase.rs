@@ -1,8 +1,9 @@
 //! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the next event is.
 
 use super::held::held;
+use super::layout::Layout;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Law, Rows, Touch, impact, near};
+use super::{Contacts, Law, Touch, impact, near};
 use crate::constraint::ConstraintError;
 use crate::forward::each_function;
 use crate::private::{constant, epsilon};
@@ -94,9 +95,9 @@ where
 {
     let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
     let (touching, still) = (touching(q), still(&rates));
-    let strikes = gaps.iter().zip(M::CONTACT_ROWS).any(|(gap, Rows { first, .. })| {
-        *gap <= touching && rates.get(first).is_some_and(|rate| *rate < -still)
-    });
+    let strikes = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY)
+        .gaps()
+        .any(|(k, first)| entry(&gaps, k) <= touching && entry(&rates, first) < -still);
     if strikes { impact(mechanism, t, q, v).map(|solved| solved.v) } else { Ok(*v) }
 }
 
@@ -118,9 +119,10 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
     {
         let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
         let (still, resting) = (still(&rates), resting(q));
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
         let mut closed = [false; NK];
-        for ((closed, gap), Rows { first, .. }) in closed.iter_mut().zip(&gaps).zip(M::CONTACT_ROWS) {
-            *closed = *gap <= resting && rates.get(first).is_some_and(|rate| rate.abs() <= still);
+        for (k, (closed, gap)) in closed.iter_mut().zip(&gaps).enumerate() {
+            *closed = *gap <= resting && entry(&rates, layout.pressing(k).1).abs() <= still;
         }
         let mut a = mechanism.try_forward_dynamics(t, q, v, tau)?;
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
@@ -134,29 +136,35 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         };
         let mut phase = open;
         if closed.contains(&true) {
-            Self::aim(&mut free, &rates, still * constant(2.0), M::CONTACT_ROWS);
+            Self::aim(&mut free, &rates, still * constant(2.0), layout);
             if free.iter().any(|rate| !rate.is_finite()) {
                 return Err(ConstraintError::NotFinite);
             }
-            let mut problem = Problem::new(
-                M::CONTACT_ROWS,
-                &mechanism.contact_laws(),
-                |k| closed.get(k) == Some(&true),
-                &free,
-            );
+            let mut problem =
+                Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
             let responses = mechanism.contact_responses(t, q, &closed);
             problem.weigh(&responses.rates);
             let forces = problem.solve().map_err(|k| ConstraintError::Contact {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
             let (touches, along) = problem.touches(&forces);
+            let states = touches.iter().zip(mechanism.contact_laws()).enumerate();
+            let mut stuck =
+                states.filter(|(_, (touch, law))| **touch == Touch::Sticks && law.friction > T::zero());
+            if let Some((k, _)) = stuck.find(|(k, _)| length(&rates, layout.tangents(*k)) > near()) {
+                // No forces let it slip on (Painlevé's paradox): it stops at once.
+                return Err(ConstraintError::Contact {
+                    constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
+                });
+            }
             phase = Self { touches, along, redundant: problem.is_redundant(&touches), ..open };
             a += responses.velocities * problem.spread(&forces);
         }
         let bent = mechanism.contact_rates(t, q, &a) - driven + bias;
         let touching = touching(q);
-        let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut());
-        for (((gap, closed), flight), Rows { first, .. }) in states.zip(M::CONTACT_ROWS) {
+        let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut()).enumerate();
+        for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.is_gap(*k)) {
+            let (_, first) = layout.pressing(k);
             let (gap, rate, acceleration) = (*gap, entry(&rates, first), entry(&bent, first));
             if closed || gap > near() {
                 continue;
@@ -173,13 +181,13 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
     }
 
     /// Makes accelerations of what the rates become after so short a time that slip does not stop, divided by it.
-    fn aim(free: &mut SVector<T, NR>, rates: &SVector<T, NR>, still: T, rows: [Rows; NK]) {
+    fn aim(free: &mut SVector<T, NR>, rates: &SVector<T, NR>, still: T, layout: Layout<NK>) {
         let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
-        for Rows { first, count } in rows {
-            let slip = length(rates, first + 1..first + count);
+        for tangents in (0..NK).map(|k| layout.tangents(k)) {
+            let slip = length(rates, tangents.clone());
             if slip > still {
                 let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
-                for i in first + 1..first + count {
+                for i in tangents {
                     put(free, i, entry(free, i) + entry(rates, i) / slip * size);
                 }
             }
@@ -188,21 +196,20 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
 
     /// The rates along which slip is braked: those that there are, or where a contact is only about to slip or has slipped too far
     /// the way it slips.
-    fn braked(&self, rates: &SVector<T, NR>, rows: [Rows; NK]) -> SVector<T, NR> {
+    fn braked(&self, rates: &SVector<T, NR>, layout: Layout<NK>) -> SVector<T, NR> {
         let mut braked = *rates;
-        for (_, Rows { first, count }) in
-            self.touches.iter().zip(rows).filter(|(touch, _)| **touch == Touch::Slips)
-        {
-            if self.slip(rates, first, count) <= T::zero() {
-                (first + 1..first + count).for_each(|i| put(&mut braked, i, entry(&self.along, i)));
+        let slips = self.touches.iter().enumerate().filter(|(_, touch)| **touch == Touch::Slips);
+        for tangents in slips.map(|(k, _)| layout.tangents(k)) {
+            if self.slip(rates, tangents.clone()) <= T::zero() {
+                tangents.for_each(|i| put(&mut braked, i, entry(&self.along, i)));
             }
         }
         braked
     }
 
     /// The slip of a contact the way it slips.
-    fn slip(&self, rates: &SVector<T, NR>, first: usize, count: usize) -> T {
-        (first + 1..first + count).fold(T::zero(), |sum, i| sum + entry(&self.along, i) * entry(rates, i))
+    fn slip(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
+        tangents.fold(T::zero(), |sum, i| sum + entry(&self.along, i) * entry(rates, i))
     }
 
     /// Whether contacts slip whose forces the motion does not tell apart.
@@ -265,7 +272,8 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let Self { mechanism, phase } = self;
-        let along = phase.braked(&mechanism.contact_rates(t, q, v), M::CONTACT_ROWS);
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let along = phase.braked(&mechanism.contact_rates(t, q, v), layout);
         held(*mechanism, t, (q, v), tau, &phase.touches, (&along, T::zero())).map(|(held, _)| held.a)
     }
 
@@ -299,7 +307,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let Self { s, t, q, v, tau } = *self;
         let Phased { mechanism, phase } = phased;
         let rates = mechanism.contact_rates(t, q, v);
-        let along = phase.braked(&rates, M::CONTACT_ROWS);
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let along = phase.braked(&rates, layout);
         let past = -T::one();
         let along = (&along, T::zero());
         let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, along) else { return past };
@@ -314,25 +323,26 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let friction = mechanism.contact_laws().map(|Law { friction, .. }| friction);
         let mut moving = constant::<T>(1.0);
         let mut forces = moving;
-        let contacts = M::CONTACT_ROWS.into_iter().zip(phase.touches).zip(phase.flights);
-        for (((Rows { first, count }, touch), flight), (gap, friction)) in
-            contacts.zip(gaps.iter().zip(friction))
-        {
+        let contacts = phase.touches.into_iter().zip(phase.flights).zip(gaps.iter().zip(friction));
+        for (k, ((touch, flight), (gap, friction))) in contacts.enumerate() {
+            let ((_, first), tangents) = (layout.pressing(k), layout.tangents(k));
             let (rate, normal) = (entry(&rates, first), entry(&held.forces, first));
             let least = match touch {
+                // Moments of friction close and open with their contact.
+                Touch::Open if !layout.is_gap(k) => T::one(),
                 Touch::Open => {
                     let gap = flight.map_or(*gap, |flight| flight.gap(s, rate, entry(&bent, first)));
                     if gap < T::zero() && rate >= -still { T::one() } else { gap }
                 }
-                Touch::Slips => self::still(&rates) + phase.slip(&rates, first, count),
+                Touch::Slips => self::still(&rates) + phase.slip(&rates, tangents.clone()),
                 Touch::Sticks => T::one(),
             };
             moving = moving.min(least);
             if touch != Touch::Open {
                 forces = forces.min(normal + rounding);
             }
-            if touch == Touch::Sticks && count > 1 && friction > T::zero() {
-                let size = length(&held.forces, first + 1..first + count);
+            if touch == Touch::Sticks && !tangents.is_empty() && friction > T::zero() {
+                let size = length(&held.forces, tangents);
                 forces = forces.min(friction * normal - size + rounding);
             }
         }
@@ -386,22 +396,23 @@ where
         return (*q, *v);
     }
     let rates = mechanism.contact_rates(t, q, v);
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let stops = still(&rates) * constant(2.0);
     let mut laws = mechanism.contact_laws();
-    for ((law, touch), Rows { first, count }) in laws.iter_mut().zip(phase.touches).zip(M::CONTACT_ROWS) {
-        if touch == Touch::Slips && phase.slip(&rates, first, count) > stops {
+    for (k, (law, touch)) in laws.iter_mut().zip(phase.touches).enumerate() {
+        if touch == Touch::Slips && phase.slip(&rates, layout.tangents(k)) > stops {
             law.friction = T::zero();
         }
     }
     let responses = mechanism.contact_responses(t, q, &closed);
     let undone = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
-        let mut problem = Problem::new(M::CONTACT_ROWS, laws, |k| closed.get(k) == Some(&true), left);
+        let mut problem = Problem::new(layout, laws, |k| closed.get(k) == Some(&true), left);
         problem.weigh(&responses.rates);
         responses.velocities * problem.spread(&problem.together(|_| true))
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
-    for (gap, Rows { first, .. }) in gaps.iter().zip(M::CONTACT_ROWS) {
-        put(&mut left, first, *gap);
+    for (k, first) in layout.gaps() {
+        put(&mut left, first, entry(&gaps, k));
     }
     let push = undone(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
     let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, &push, v));

@@ -1,9 +1,11 @@
 //! The impulses of all contacts that are closed: a complementarity problem with friction cones.
 
+use super::layout::Layout;
 use super::total::Total;
 use super::{Law, Rows, Touch};
 use crate::Real;
 use crate::private::{constant, epsilon};
+use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 mod linear;
@@ -28,6 +30,9 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     count: usize,
     /// Of each contact the first of its rates and how many there are.
     rows: Total<Rows, NK>,
+    /// Of each contact the one whose normal impulse its friction answers to: itself, but for moments of friction, whose rates are of
+    /// turning alone.
+    pressed_by: Total<usize, NK>,
     size: usize,
     /// `u₀`.
     free: List<T, NR>,
@@ -61,6 +66,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             contacts: Total::repeat((0, none)),
             count: 0,
             rows: Total::repeat(none),
+            pressed_by: Total::repeat(0),
             size: 0,
             free: Total::repeat(T::zero()),
             weights: Total::repeat(Total::repeat(T::zero())),
@@ -73,30 +79,34 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The contacts that are closed, with rates `free` without impulses.
     pub(super) fn new(
-        rows: [Rows; NK],
+        layout: Layout<NK>,
         laws: &[Law<T>; NK],
         is_closed: impl Fn(usize) -> bool,
         free: &SVector<T, NR>,
     ) -> Self {
         let mut problem = Self::none();
-        problem.select(rows, laws, is_closed, free);
+        problem.select(layout, laws, is_closed, free);
         problem
     }
 
-    /// Takes the contacts that are closed into one that has none.
+    /// Takes the contacts that are closed into one that has none; of moments of friction those whose contact is.
     pub(super) fn select(
         &mut self,
-        rows: [Rows; NK],
+        layout: Layout<NK>,
         laws: &[Law<T>; NK],
         is_closed: impl Fn(usize) -> bool,
         free: &SVector<T, NR>,
     ) {
         let problem = self;
-        let all = rows.into_iter().zip(laws).enumerate();
-        for (k, (of, law)) in all.filter(|(k, _)| is_closed(*k)) {
+        for (k, law) in laws.iter().enumerate().filter(|(k, _)| is_closed(*k)) {
             let (c, first) = (problem.count, problem.size);
+            let (by, _) = layout.pressing(k);
+            let known = || (0..c).find(|known| problem.contacts[*known].0 == by);
+            let Some(by) = (if by == k { Some(c) } else { known() }) else { continue };
+            let of = layout.rows(k);
             problem.contacts[c] = (k, of);
             problem.rows[c] = Rows { first, count: of.count };
+            problem.pressed_by[c] = by;
             problem.friction[c] = law.friction;
             for i in 0..of.count {
                 problem.free[first + i] = entry(free, of.first + i);
@@ -106,10 +116,21 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// The rows of a contact: that of its gap, and those of its slip.
-    fn of(&self, k: usize) -> (usize, core::ops::Range<usize>) {
+    /// Whether a contact has a gap of its own.
+    fn is_gap(&self, k: usize) -> bool {
+        self.pressed_by[k] == k
+    }
+
+    /// The row of the gap whose impulse presses, and those of slip or turning.
+    fn of(&self, k: usize) -> (usize, Range<usize>) {
         let Rows { first, count } = self.rows[k];
-        (first, first + 1..first + count)
+        (self.rows[self.pressed_by[k]].first, first + usize::from(self.is_gap(k))..first + count)
+    }
+
+    /// All rows of a contact.
+    fn all_of(&self, k: usize) -> Range<usize> {
+        let Rows { first, count } = self.rows[k];
+        first..first + count
     }
 
     /// Of each rate its number among those of the mechanism; the first `size` are used.
@@ -134,7 +155,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Whether surfaces approach each other, without impulses or before.
     pub(super) fn is_loaded(&self, before: &SVector<T, NR>) -> bool {
-        (0..self.count).any(|k| {
+        (0..self.count).filter(|k| self.is_gap(*k)).any(|k| {
             self.free[self.rows[k].first] < T::zero() || entry(before, self.contacts[k].1.first) < T::zero()
         })
     }
@@ -151,8 +172,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             reach = reach.max(weight(*i, *i));
         }
         for k in 0..self.count {
-            let Rows { first, count } = self.rows[k];
-            let trace = (first..first + count).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
+            let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
             // What constraints hold moves by rounding alone.
             let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
             self.step[k] = if moves { T::one() / trace } else { T::zero() };
@@ -161,7 +181,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The normal rates after the impact: at least this `part` of the restitution, and no less than zero.
     pub(super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
-        for k in 0..self.count {
+        for k in (0..self.count).filter(|k| self.pressed_by[*k] == *k) {
             let (contact, Rows { first, .. }) = self.contacts[k];
             let restitution = laws.get(contact).map_or(T::zero(), |law| law.restitution);
             self.least[k] = (-(restitution * part * entry(before, first))).max(T::zero());
@@ -198,11 +218,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         work > size * epsilon::<T>() * constant(ROUNDINGS)
     }
 
+    /// The step of the impulse that presses.
+    fn press(&self, k: usize) -> T {
+        self.step[self.pressed_by[k]] * self.scale
+    }
+
     /// What the natural map makes of a contact: the impulse of its gap before it is made zero or more, and what follows.
     fn mode(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
         let (n, tangents) = self.of(k);
         let step = self.step[k] * self.scale;
-        let normal = impulses[n] - step * (rates[n] - self.least[k]);
+        let normal = impulses[n] - self.press(k) * (rates[n] - self.least[self.pressed_by[k]]);
         if normal <= T::zero() || step == T::zero() {
             return (normal, Mode::Open);
         }
@@ -228,8 +253,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             touches[contact] = match self.mode(k, impulses, &rates).1 {
                 Mode::Open => Touch::Open,
                 Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
-                    for (c, component) in direction.iter().enumerate().take(rows.count - 1) {
-                        put(&mut along, rows.first + 1 + c, -*component);
+                    let start = usize::from(self.is_gap(k));
+                    for (place, component) in (rows.first + start..rows.first + rows.count).zip(direction) {
+                        put(&mut along, place, -component);
                     }
                     Touch::Slips
                 }
@@ -243,7 +269,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn map(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> [T; 3] {
         let (n, tangents) = self.of(k);
         let (normal, mode) = self.mode(k, impulses, rates);
-        let mut map = [impulses[n] - normal.max(T::zero()), T::zero(), T::zero()];
+        let pressed = if self.is_gap(k) { impulses[n] - normal.max(T::zero()) } else { T::zero() };
+        let mut map = [pressed, T::zero(), T::zero()];
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
             *entry = match mode {
                 Mode::Open => impulses[i],
@@ -264,7 +291,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let step = self.step[k] * self.scale;
             let left = if step == T::zero() {
                 // Nothing that impulses could do.
-                (self.least[k] - rates[self.rows[k].first]).max(T::zero())
+                if self.is_gap(k) {
+                    (self.least[k] - rates[self.rows[k].first]).max(T::zero())
+                } else {
+                    T::zero()
+                }
             } else {
                 let [normal, x, y] = self.map(k, impulses, &rates);
                 normal.abs().max((x * x + y * y).sqrt()) / step
@@ -314,7 +345,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let rest = self.rounding(impulses);
         let mut kept = Self::none();
         let (mut overlap, mut distance) = (T::zero(), T::zero());
-        for k in 0..self.count {
+        for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
             if impulses[n] > T::zero() && rates[n] <= rest {
                 let (c, (contact, Rows { first, .. })) = (kept.count, self.contacts[k]);
@@ -322,6 +353,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
                 kept.rows[c] = Rows { first: n, count: 1 };
+                kept.pressed_by[c] = c;
                 kept.free[c] = gap;
                 (kept.least[c], kept.step[c]) = (T::zero(), self.step[k]);
                 kept.count += 1;

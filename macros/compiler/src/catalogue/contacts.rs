@@ -21,7 +21,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts[1]),
         docs: vec![
-            "Rates at the contacts, m/s and rad/s: of each first the rate of its gap, then the slip of the first surface over the second one along one or two tangents, if it has friction. `CONTACT_ROWS` tells where those of a contact begin.",
+            "Rates at the contacts, m/s and rad/s: of each first the rate of its gap, then the slip of the first surface over the second one along one or two tangents, if it has friction; of moments of friction the relative angular velocity about the normal (`.spin`) or the tangents (`.roll`) alone. `CONTACT_ROWS` tells where those of a contact begin.",
         ],
         ..Declaration::default()
     }),

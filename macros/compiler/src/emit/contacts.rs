@@ -11,8 +11,10 @@ use std::fmt::Write;
 pub struct Touching {
     /// Its name.
     name: String,
-    /// How many rates it has: that of its gap, and those of slip.
+    /// How many rates it has: that of its gap, and those of slip, or of turning alone.
     rates: usize,
+    /// The contact that presses, if this is a moment of friction.
+    pressed_by: Option<usize>,
     /// Its gap is an angle.
     turns: bool,
     /// Coefficients of friction and restitution, if they are numbers.
@@ -25,6 +27,7 @@ impl Touching {
         let touching = |c: &crate::mechanism::Contact<'_>| Touching {
             name: c.name.clone(),
             rates: c.rates.len(),
+            pressed_by: c.pressed_by,
             turns: c.turns,
             laws: [c.friction.value(), c.restitution.value()],
         };
@@ -33,7 +36,7 @@ impl Touching {
 
     /// One, where only the equations could tell how many there are.
     pub fn unknown() -> Touching {
-        Touching { name: String::new(), rates: 1, turns: false, laws: [None; 2] }
+        Touching { name: String::new(), rates: 1, pressed_by: None, turns: false, laws: [None; 2] }
     }
 }
 
@@ -81,11 +84,17 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     } else {
         String::new()
     };
+    let pressed_by = if i.contacts.iter().any(|c| c.pressed_by.is_some()) {
+        let all: Vec<usize> = i.contacts.iter().enumerate().map(|(k, c)| c.pressed_by.unwrap_or(k)).collect();
+        format!("const PRESSED_BY: [usize; {count}] = {all:?};\n        ")
+    } else {
+        String::new()
+    };
     let _ = writeln!(
         out,
         "const CONTACTS: [&'static str; {count}] = Self::CONTACTS;
         const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = Self::CONTACT_ROWS;
-        #[inline]\nfn contact_gaps(&self, t: {scalar}, q: &{q}) -> {gaps} {{ Self::contact_gaps(self, {pass}q) }}
+        {pressed_by}#[inline]\nfn contact_gaps(&self, t: {scalar}, q: &{q}) -> {gaps} {{ Self::contact_gaps(self, {pass}q) }}
         #[inline]\nfn contact_rates(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_rates(self, {pass}q, v) }}
         #[inline]\nfn contact_jacobian(&self, t: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {rows}, {nv}> {{ Self::contact_jacobian(self, {pass}q) }}
         #[inline]\nfn contact_bias(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_bias(self, {pass}q, v) }}
@@ -148,11 +157,11 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
         let [friction, restitution] =
             contact.laws.map(|law| law.map_or("by parameters".to_string(), |law| law.to_string()));
         let unit = if contact.turns { "rad" } else { "m" };
-        let _ = writeln!(
-            text,
-            "| {k} | `{}` | {unit} | {} | {friction} | {restitution} |",
-            contact.name,
-            contact.rates - 1
-        );
+        // A moment of friction turns against the spin or the rolling of its contact.
+        let (slip, friction) = match contact.pressed_by {
+            None => ((contact.rates - 1).to_string(), friction),
+            Some(_) => (format!("{} of turning", contact.rates), format!("{friction} m")),
+        };
+        let _ = writeln!(text, "| {k} | `{}` | {unit} | {slip} | {friction} | {restitution} |", contact.name);
     }
 }

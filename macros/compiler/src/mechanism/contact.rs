@@ -11,11 +11,14 @@ pub struct Contact<'g> {
     pub gap: Expr<'g>,
     /// The gap is an angle.
     pub turns: bool,
+    /// The contact whose normal force presses, where this is one of its moments of friction: it has the gap of that contact, and rates
+    /// of turning alone.
+    pub pressed_by: Option<usize>,
     /// The rate of the gap, then those of the slip along one or two tangents if there is friction; linear in the velocities.
     pub rates: Vec<Expr<'g>>,
     /// Their derivatives at zero accelerations.
     pub biases: Vec<Expr<'g>>,
-    /// Coefficient of friction.
+    /// Coefficient of friction; of a moment of friction the largest by the normal force.
     pub friction: Expr<'g>,
     /// Coefficient of restitution.
     pub restitution: Expr<'g>,

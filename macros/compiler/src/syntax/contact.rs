@@ -4,7 +4,8 @@ use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Softness};
 use crate::diag::Diagnostics;
 
-const KEYS: [&str; 6] = ["friction", "restitution", "stiffness", "hertz", "dissipation", "speed"];
+const KEYS: [&str; 8] =
+    ["friction", "torsional", "rolling", "restitution", "stiffness", "hertz", "dissipation", "speed"];
 
 /// How a contact is written.
 pub const EXAMPLE: &str = "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]";
@@ -20,7 +21,8 @@ pub fn read_contact(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let friction = arguments.take_expr("friction", cx);
+    let [friction, torsional, rolling] =
+        ["friction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
     let restitution = arguments.take_expr("restitution", cx);
     let soft = read_softness(&name, restitution.as_ref(), arguments, cx);
     let mut surfaces = arguments.take_plain().into_iter();
@@ -33,6 +35,8 @@ pub fn read_contact(
                 first,
                 second,
                 friction,
+                torsional,
+                rolling,
                 restitution,
                 soft,
                 of_file: false,

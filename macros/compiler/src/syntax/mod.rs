@@ -362,6 +362,10 @@ pub struct Contact {
     pub second: Expr,
     /// Coefficient of friction; none if absent.
     pub friction: Option<Expr>,
+    /// Largest moment of friction about the normal, by the normal force; none if absent.
+    pub torsional: Option<Expr>,
+    /// Largest moment of friction about the tangents, by the normal force; none if absent.
+    pub rolling: Option<Expr>,
     /// Coefficient of restitution; zero if absent.
     pub restitution: Option<Expr>,
     /// The surfaces yield instead of being rigid.

@@ -2,13 +2,13 @@
 
 use super::super::Touch;
 use super::super::total::Total;
-use super::{List, Problem, Square, entry};
+use super::{List, Problem, ROUNDINGS, Square, entry};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion.
-const INDEPENDENT: f64 = 1e-6;
+/// Rows that are lighter than this part of the heaviest are told apart by a little of their own, so that it stays little beside them.
+const ALIKE: f64 = 256.0;
 
 /// How often what is left of equations that were told apart by a little is made up for.
 const PASSES: usize = 3;
@@ -20,9 +20,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let (mut held, mut wanted, mut size) =
             (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && is_kept(*k)) {
-            let (n, tangents) = self.of(k);
-            let most = if self.friction[k] > T::zero() { tangents.end } else { n + 1 };
-            for i in n..most {
+            let (n, _) = self.of(k);
+            let holds = self.friction[k] > T::zero();
+            for i in self.all_of(k).filter(|i| *i == n || holds) {
                 held[size] = i;
                 wanted[size] = if i == n { self.least[k] } else { T::zero() };
                 size += 1;
@@ -30,9 +30,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         let mut system = square();
         self.among(&held, size, &mut system);
-        let reach = held.iter().take(size).fold(T::zero(), |most, i| most.max(self.weights[*i][*i]));
         let mut impulses = List::repeat(T::zero());
-        if factorise(&mut system, size, T::zero()) {
+        if factorise(&mut system, size, false) {
             let mut right = List::repeat(T::zero());
             for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - self.free[*i];
@@ -42,7 +41,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return impulses;
         }
         self.among(&held, size, &mut system);
-        if !factorise(&mut system, size, reach * self.lift()) {
+        if !factorise(&mut system, size, true) {
             return impulses;
         }
         // Impulses that move nothing stay small, and what they leave is made up for.
@@ -63,16 +62,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let touches = Total::new(*touches, Touch::Open);
         let (mut held, mut size) = (List::<_, NR>::repeat(0), 0);
         for k in (0..self.count).filter(|k| touches[self.contacts[*k].0] != Touch::Open) {
-            let (n, tangents) = self.of(k);
+            if self.step[k] == T::zero() {
+                return true;
+            }
+            let (n, _) = self.of(k);
             let slips = touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
-            for i in n..if slips { n + 1 } else { tangents.end } {
+            for i in self.all_of(k).filter(|i| *i == n || !slips) {
                 held[size] = i;
                 size += 1;
             }
         }
         let mut system = square();
         self.among(&held, size, &mut system);
-        !factorise(&mut system, size, T::zero())
+        !factorise(&mut system, size, false)
     }
 
     /// Makes `system` `W` among `size` rates.
@@ -104,8 +106,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let accelerations = self.rates(forces);
             let mut left = List::repeat(T::zero());
             for k in 0..self.count {
-                let (n, tangents) = self.of(k);
-                for i in core::iter::once(n).chain(tangents) {
+                let (n, _) = self.of(k);
+                for i in self.all_of(k) {
                     left[i] = match i != n && slips[k] {
                         true => -(forces[i] + system[i][n] * forces[n]),
                         false => -accelerations[i],
@@ -114,24 +116,33 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             left
         };
-        for _ in 0..PASSES {
-            let right = left(&forces);
-            let most = self.rounding(&forces);
-            if right.iter().take(self.size).all(|left| left.abs() <= most) {
-                break;
+        let refine = |forces: &mut List<T, NR>, system: &Square<T, NR>| {
+            for _ in 0..PASSES {
+                let right = left(forces);
+                let most = self.rounding(forces);
+                if right.iter().take(self.size).all(|left| left.abs() <= most) {
+                    break;
+                }
+                let mut right = right.each(|left| [left]);
+                self.eliminate(&mut { *system }, &mut right);
+                forces.iter_mut().zip(*right).for_each(|(force, [change])| *force += change);
             }
-            let mut right = right.each(|left| [left]);
-            self.eliminate(&mut self.lifted(&system, &slips), &mut right);
-            forces.iter_mut().zip(*right).for_each(|(force, [change])| *force += change);
-        }
-        let left = left(&forces);
-        let most = self.rounding(&forces).max(self.speed() * self.lift());
-        let is_lost = |k: &usize| {
-            // It is where it is no number, too.
-            let is_held = left[self.rows[*k].first].abs() <= most;
-            !is_held
         };
-        match (0..self.count).find(is_lost) {
+        let lost = |forces: &List<T, NR>| {
+            let left = left(forces);
+            let most = self.rounding(forces).max(self.speed() * self.lift());
+            (0..self.count).filter(|k| self.is_gap(*k)).find(|k| {
+                // It is where it is no number, too.
+                let is_held = left[self.rows[*k].first].abs() <= most;
+                !is_held
+            })
+        };
+        refine(&mut forces, &self.lifted(&system, &slips));
+        if lost(&forces).is_some() && !self.is_redundant(touches) {
+            // What tells rows apart is more than what the motion does, and is not needed.
+            refine(&mut forces, &system);
+        }
+        match lost(&forces) {
             Some(k) => Err(self.contacts[k].0),
             None => Ok(forces),
         }
@@ -156,7 +167,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let (n, tangents) = self.of(k);
             let slip = |i: usize| entry(rates, places[i]);
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip(i) * slip(i)).sqrt();
-            for i in core::iter::once(n).chain(tangents) {
+            for i in self.all_of(k) {
                 if i == n || !slips[k] {
                     system[i] = self.weights[i];
                 } else if speed > T::zero() {
@@ -172,9 +183,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
         let mut system = *system;
         for k in 0..self.count {
-            let (n, tangents) = self.of(k);
-            for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips[k]) {
-                system[i][i] += reach * self.lift();
+            let (n, _) = self.of(k);
+            for i in self.all_of(k).filter(|i| *i == n || !slips[k]) {
+                system[i][i] += lift(self.weights[i][i], reach);
             }
         }
         system
@@ -190,8 +201,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut system = self.held_system(&slips, rates);
         let mut wanted = Total::repeat([T::zero(); NR]);
         for k in 0..self.count {
-            let (n, tangents) = self.of(k);
-            for i in core::iter::once(n).chain(tangents).filter(|i| *i == n || !slips[k]) {
+            let (n, _) = self.of(k);
+            for i in self.all_of(k).filter(|i| *i == n || !slips[k]) {
                 if let Some(wanted) = wanted[i].get_mut(places[i]) {
                     *wanted = -T::one();
                 }
@@ -271,16 +282,33 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 }
 
-/// Makes `A` into columns of the factor `L` of `A + lift = L Lᵀ` (Cholesky), with the reciprocals of its diagonal; false where rows
-/// depend on each other.
-fn factorise<T: Real, const NR: usize>(l: &mut Square<T, NR>, size: usize, lift: T) -> bool {
+/// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion: where bodies of very
+/// different masses touch little is left, but more than rounding would leave of nothing. `ε^(5/8)`.
+fn independent<T: Real>() -> T {
+    let half = epsilon::<T>().sqrt();
+    half * half.sqrt().sqrt()
+}
+
+/// By how much a row is told apart from others on which it depends; `weight` is its entry on the diagonal, `reach` the largest.
+fn lift<T: Real>(weight: T, reach: T) -> T {
+    let own = (weight * constant(ALIKE)).min(reach) * epsilon::<T>().sqrt();
+    own.max(reach * epsilon::<T>() * constant(ROUNDINGS))
+}
+
+/// Makes `A` into columns of the factor `L` of `A = L Lᵀ` (Cholesky), with the reciprocals of its diagonal; false where rows
+/// depend on each other, unless they are told apart by a little.
+fn factorise<T: Real, const NR: usize>(l: &mut Square<T, NR>, size: usize, is_lifted: bool) -> bool {
     let mut given = List::<T, NR>::repeat(T::zero());
     given.iter_mut().zip(l.iter().enumerate()).for_each(|(given, (j, row))| *given = row[j]);
+    let reach = given.iter().take(size).fold(T::zero(), |most, weight| most.max(*weight));
+    let part = independent::<T>();
     for j in 0..size {
         // What others took is gone from it already.
-        let pivot = l[j][j] + lift;
-        let is_independent =
-            pivot > if lift > T::zero() { T::zero() } else { given[j] * constant(INDEPENDENT) };
+        let (pivot, least) = match is_lifted {
+            true => (l[j][j] + lift(given[j], reach), T::zero()),
+            false => (l[j][j], given[j] * part),
+        };
+        let is_independent = pivot > least;
         if !is_independent {
             return false;
         }

@@ -59,20 +59,21 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         identify(system);
         let mut right = List::repeat(T::zero());
         for k in 0..self.count {
-            let (step, friction) = (self.step[k] * self.scale, self.friction[k]);
+            let (step, press) = (self.step[k] * self.scale, self.press(k));
+            let friction = self.friction[k];
             let (n, tangents) = self.of(k);
             let (normal, mode) = self.mode(k, impulses, &rates);
             if let Mode::Open = mode {
-                for i in core::iter::once(n).chain(tangents) {
-                    right[i] = -impulses[i];
-                }
+                self.all_of(k).for_each(|i| right[i] = -impulses[i]);
                 continue;
             }
-            right[n] = -(step * (rates[n] - self.least[k]));
-            for j in 0..self.size {
-                system[n][j] = step * self.weights[n][j];
+            if self.is_gap(k) {
+                right[n] = -(step * (rates[n] - self.least[k]));
+                for j in 0..self.size {
+                    system[n][j] = step * self.weights[n][j];
+                }
+                system[n][n] += self.lift();
             }
-            system[n][n] += self.lift();
             for (c, i) in tangents.clone().enumerate() {
                 let Mode::Slip { size, direction } = mode else {
                     right[i] = -(step * rates[i]);
@@ -87,7 +88,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 let turn = radius / size;
                 let unit = |a: usize, b: usize| if a == b { T::one() } else { T::zero() };
                 for j in 0..self.size {
-                    let of_normal = unit(n, j) - step * self.weights[n][j];
+                    let of_normal = unit(n, j) - press * self.weights[n][j];
                     let mut entry = unit(i, j) - friction * component(&direction, c) * of_normal;
                     for (d, other) in tangents.clone().enumerate() {
                         let across = unit(c, d) - component(&direction, c) * component(&direction, d);

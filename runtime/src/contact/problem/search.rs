@@ -38,7 +38,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     fn search(&mut self) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
-        let mut impulses = self.together(|k| self.free[self.rows[k].first] < self.least[k]);
+        let mut impulses = self.together(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
         if self.is_solved(&impulses) {
             return Ok(impulses);
         }
@@ -121,9 +121,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, tangents) = self.of(k);
             let weight = self.weights[n][n];
-            let normal = impulses[n] - (rate(impulses, n) - self.least[k]) / weight;
-            // A gap that its impulse does not move stays as it is.
-            impulses[n] = if weight > T::zero() { normal.max(T::zero()) } else { T::zero() };
+            if self.is_gap(k) {
+                let normal = impulses[n] - (rate(impulses, n) - self.least[k]) / weight;
+                // A gap that its impulse does not move stays as it is.
+                impulses[n] = if weight > T::zero() { normal.max(T::zero()) } else { T::zero() };
+            }
             let most = self.friction[k] * impulses[n];
             let trace = tangents.clone().fold(T::zero(), |sum, i| sum + self.weights[i][i]);
             if trace <= T::zero() {

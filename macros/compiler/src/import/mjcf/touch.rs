@@ -14,8 +14,8 @@ pub(super) struct Law {
     priority: f64,
     /// One without friction, three with that of slip, more with those of spin and rolling.
     dimensions: f64,
-    /// Of slip.
-    friction: f64,
+    /// Of slip, spin and rolling.
+    friction: [f64; 3],
 }
 
 /// A plane of the world.
@@ -44,7 +44,7 @@ impl Law {
             ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
         let dimensions = of("condim", 3.0);
         let usual = [1.0, 0.005, 0.0001];
-        let [friction, ..] = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
+        let friction = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
         Law { bits, priority, dimensions, friction }
     }
 
@@ -58,14 +58,19 @@ impl Law {
         self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
     }
 
-    /// The larger coefficient in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact").
-    fn friction_with(&self, other: &Law) -> f64 {
+    /// The larger coefficients in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact"):
+    /// of slip, spin and rolling.
+    fn friction_with(&self, other: &Law) -> [f64; 3] {
         let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
             Ordering::Greater => (self.dimensions, self.friction),
             Ordering::Less => (other.dimensions, other.friction),
-            Ordering::Equal => (self.dimensions.max(other.dimensions), self.friction.max(other.friction)),
+            Ordering::Equal => {
+                let larger = std::array::from_fn(|k| self.friction[k].max(other.friction[k]));
+                (self.dimensions.max(other.dimensions), larger)
+            }
         };
-        if dimensions < 3.0 { 0.0 } else { friction }
+        let least = [3.0, 4.0, 6.0];
+        std::array::from_fn(|k| if dimensions < least[k] { 0.0 } else { friction[k] })
     }
 }
 
@@ -81,12 +86,15 @@ impl Touching {
         };
         let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
         let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
-        let friction = self.law.friction_with(&plane.law);
+        let coefficient = |number: f64| (number != 0.0).then(|| Expr::number(number, at));
+        let [friction, torsional, rolling] = self.law.friction_with(&plane.law).map(coefficient);
         Contact {
             name: named(&name),
             first: method(body(link), "collision", Expr::number(self.number as f64, at)),
             second: method(point, "plane", normal),
-            friction: (friction != 0.0).then(|| Expr::number(friction, at)),
+            friction,
+            torsional,
+            rolling,
             restitution: None,
             soft: None,
             of_file: true,

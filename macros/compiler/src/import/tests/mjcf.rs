@@ -351,7 +351,11 @@ fn planes_are_touched() {
                 .contacts
                 .iter()
                 .map(|contact| {
-                    let friction = contact.friction.as_ref().map_or_else(|| "none".to_string(), render_expr);
+                    let mut friction =
+                        contact.friction.as_ref().map_or_else(|| "none".to_string(), render_expr);
+                    for more in [&contact.torsional, &contact.rolling].into_iter().flatten() {
+                        friction = format!("{friction} {}", render_expr(more));
+                    }
                     let (first, second) = (render_expr(&contact.first), render_expr(&contact.second));
                     format!("{}: {first} {second} {friction}\n", contact.name.text)
                 })
@@ -371,6 +375,16 @@ fn planes_are_touched() {
          a_up_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom1_up_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom2_up_contact: b.collision(2) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.2\n"
+    );
+    assert_eq!(
+        contacts("<geom type='plane' condim='4' friction='0.3 0.01' conaffinity='1' contype='0'/>"),
+        "a_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1 0.01\n"
+    );
+    assert_eq!(
+        contacts(
+            "<geom type='plane' condim='6' priority='2' friction='0.3 0.01 0.002' conaffinity='2' contype='0'/>"
+        ),
+        "b_geom1_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.3 0.01 0.002\n"
     );
     let none = contacts("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");

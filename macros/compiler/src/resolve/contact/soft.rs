@@ -1,7 +1,7 @@
 //! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient of restitution
 //! interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth in the slip.
 
-use super::unilateral::Point;
+use super::unilateral::{Laws, Point};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
@@ -55,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
     pub(super) fn add_soft_point(
         &mut self,
         point: &Point<'g>,
-        friction: Expr<'g>,
+        laws: Laws<'g>,
         soft: &Soft<'g>,
         forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
     ) {
@@ -73,6 +73,10 @@ impl<'g> Builder<'_, 'g> {
             self.model.loads.push(Load { rate, force: damping, dissipative: true });
         }
         forces.push((point.ancestor, normal * pressure));
+        let [spin, roll @ ..] = point.turns;
+        self.add_moment(&[spin], laws.torsional, pressure, soft.speed);
+        self.add_moment(&roll, laws.rolling, pressure, soft.speed);
+        let friction = laws.friction;
         if friction.is_zero() {
             return;
         }
@@ -84,6 +88,20 @@ impl<'g> Builder<'_, 'g> {
             let force = -(friction * pressure * rate / slip);
             self.model.loads.push(Load { rate, force, dissipative: true });
             forces.push((point.ancestor, direction * force));
+        }
+    }
+
+    /// Adds a moment of friction against the angular velocities `turns`: at most `most` by the normal force, and less where `most`
+    /// times the angular velocity is below the speed at which friction falls off.
+    fn add_moment(&mut self, turns: &[Expr<'g>], most: Expr<'g>, pressure: Expr<'g>, speed: Expr<'g>) {
+        if most.is_zero() {
+            return;
+        }
+        let sum = |sum: Expr<'g>, turn: &Expr<'g>| sum + (most * *turn).square();
+        let size = turns.iter().fold(speed.square(), sum).sqrt();
+        for turn in turns.iter().filter(|turn| !velocity_gradient(**turn).is_empty()) {
+            let force = -(most * pressure * (most * *turn) / size);
+            self.model.loads.push(Load { rate: *turn, force, dissipative: true });
         }
     }
 }

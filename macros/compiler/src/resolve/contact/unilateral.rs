@@ -24,12 +24,25 @@ const FLAT: f64 = 1e-24;
 
 const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
+/// Coefficients of a contact.
+#[derive(Clone, Copy)]
+pub(super) struct Laws<'g> {
+    pub(super) friction: Expr<'g>,
+    /// Largest moment about the normal by the normal force.
+    pub(super) torsional: Expr<'g>,
+    /// Largest moment about the tangents by the normal force.
+    pub(super) rolling: Expr<'g>,
+    restitution: Expr<'g>,
+}
+
 /// A point where two surfaces may touch.
 pub(super) struct Point<'g> {
     /// Distance.
     pub(super) gap: Expr<'g>,
     /// Normal and tangents, towards the first surface, each with the rate along it.
     pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
+    /// Relative angular velocity about each.
+    pub(super) turns: [Expr<'g>; 3],
     /// The link in whose axes the directions are.
     pub(super) ancestor: Option<LinkId>,
 }
@@ -53,7 +66,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_contact(&mut self, contact: &syntax::Contact, cx: &mut Diagnostics) {
-        let laws = self.laws(contact.friction.as_ref(), contact.restitution.as_ref(), &contact.name.text, cx);
+        let laws = self.laws(contact, cx);
         let firsts = self.touching(&contact.first, cx);
         // Two bodies in the place of two surfaces are one mistake.
         let seconds = match firsts {
@@ -90,12 +103,13 @@ impl<'g> Builder<'_, 'g> {
                 .help("surfaces touch that belong to bodies which move relative to each other");
             return;
         }
+        check_turns(contact, &apart, cx);
         let (several, mut forces) = (apart.len() > 1, Vec::new());
         for (k, point) in apart.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
             match soft.as_ref().and_then(Option::as_ref) {
-                Some(soft) => self.add_soft_point(point, laws.0, soft, &mut forces),
+                Some(soft) => self.add_soft_point(point, laws, soft, &mut forces),
                 None => self.add_point(name, point, laws, &mut forces),
             }
         }
@@ -118,10 +132,12 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let side = self.scope.graph.num(if pair.a.home.link == first_home { 1.0 } else { -1.0 });
+        let [w_a, w_b] = self.spins(&pair);
         let points = touches.into_iter().map(|touch| {
             let slip = self.slip(&pair, touch.point);
             let rates = touch.axes.map(|(_, e)| (e * side, e.dot(slip)));
-            Point { gap: touch.gap, rates, ancestor: pair.on_a.ancestor }
+            let turns = touch.axes.map(|(_, e)| e.dot(w_a - w_b));
+            Point { gap: touch.gap, rates, turns, ancestor: pair.on_a.ancestor }
         });
         Some(points.collect())
     }
@@ -131,12 +147,13 @@ impl<'g> Builder<'_, 'g> {
         &mut self,
         name: String,
         point: &Point<'g>,
-        laws: (Expr<'g>, Expr<'g>),
+        laws: Laws<'g>,
         forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
     ) {
         let [normal, slip @ ..] = point.rates;
-        let slides =
-            slip.into_iter().filter(|(_, rate)| !laws.0.is_zero() && !velocity_gradient(*rate).is_empty());
+        let slides = slip
+            .into_iter()
+            .filter(|(_, rate)| !laws.friction.is_zero() && !velocity_gradient(*rate).is_empty());
         let rates: Vec<(Vec3<'g>, Expr<'g>)> = std::iter::once(normal).chain(slides).collect();
         let number = self.model.contact_rates().len();
         for (k, (direction, _)) in rates.iter().enumerate() {
@@ -144,13 +161,28 @@ impl<'g> Builder<'_, 'g> {
             forces.push((point.ancestor, *direction * force));
         }
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
-        self.push_contact(name, point.gap, false, rates, laws);
+        let presses = self.model.contacts.len();
+        self.push_contact(name.clone(), (point.gap, false), None, rates, (laws.friction, laws.restitution));
+        let [spin, roll @ ..] = point.turns;
+        let none = self.scope.graph.zero();
+        for (word, rates, most) in [("spin", vec![spin], laws.torsional), ("roll", roll.into(), laws.rolling)]
+        {
+            let rates: Vec<Expr<'g>> =
+                rates.into_iter().filter(|rate| !velocity_gradient(*rate).is_empty()).collect();
+            if !most.is_zero() && !rates.is_empty() {
+                let name = format!("{name}.{word}");
+                self.push_contact(name, (point.gap, false), Some(presses), rates, (most, none));
+            }
+        }
     }
 
     /// Adds the stops at the bounds of a limit.
     fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let laws = self.laws(None, limit.restitution.as_ref(), &limit.name.text, cx);
-        let (Some(laws), Some((own, rate, turns))) = (laws, self.stopped(limit, cx)) else { return };
+        let restitution =
+            self.coefficient(limit.restitution.as_ref(), "restitution", Rule::Fraction, &limit.name.text, cx);
+        let (Some(restitution), Some((own, rate, turns))) = (restitution, self.stopped(limit, cx)) else {
+            return;
+        };
         let g = self.scope.graph;
         let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
             // Mistakes are told where the limit is read.
@@ -162,7 +194,7 @@ impl<'g> Builder<'_, 'g> {
         for (word, bound, side) in bounds.into_iter().flatten() {
             let gap = (own - bound) * g.num(side);
             let name = format!("{}.{word}", limit.name.text);
-            self.push_contact(name, gap, turns, vec![rate * g.num(side)], laws);
+            self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], (g.zero(), restitution));
         }
     }
 
@@ -190,39 +222,60 @@ impl<'g> Builder<'_, 'g> {
     fn push_contact(
         &mut self,
         name: String,
-        gap: Expr<'g>,
-        turns: bool,
+        (gap, turns): (Expr<'g>, bool),
+        pressed_by: Option<usize>,
         rates: Vec<Expr<'g>>,
         (friction, restitution): (Expr<'g>, Expr<'g>),
     ) {
         let biases = rates.iter().map(|rate| time_derivative(self.model.space(), *rate)).collect();
-        self.model.contacts.push(Contact { name, gap, turns, rates, biases, friction, restitution });
+        self.model.contacts.push(Contact {
+            name,
+            gap,
+            turns,
+            pressed_by,
+            rates,
+            biases,
+            friction,
+            restitution,
+        });
     }
 
-    /// Coefficients of friction and restitution; `None` after a mistake.
-    fn laws(
+    /// The coefficients of a contact; `None` after a mistake.
+    fn laws(&self, contact: &syntax::Contact, cx: &mut Diagnostics) -> Option<Laws<'g>> {
+        let name = &contact.name.text;
+        let mut read =
+            |e: &Option<syntax::Expr>, what, rule| self.coefficient(e.as_ref(), what, rule, name, cx);
+        let friction = read(&contact.friction, "friction", Rule::NotNegative);
+        let torsional = read(&contact.torsional, "torsional friction", Rule::NotNegative);
+        let rolling = read(&contact.rolling, "rolling friction", Rule::NotNegative);
+        let restitution = read(&contact.restitution, "restitution", Rule::Fraction);
+        Some(Laws {
+            friction: friction?,
+            torsional: torsional?,
+            rolling: rolling?,
+            restitution: restitution?,
+        })
+    }
+
+    /// A coefficient, zero if it is not given; `None` after a mistake.
+    fn coefficient(
         &self,
-        friction: Option<&syntax::Expr>,
-        restitution: Option<&syntax::Expr>,
+        e: Option<&syntax::Expr>,
+        what: &str,
+        rule: Rule,
         name: &str,
         cx: &mut Diagnostics,
-    ) -> Option<(Expr<'g>, Expr<'g>)> {
-        let g = self.scope.graph;
-        let mut read = |e: Option<&syntax::Expr>, what: &str, rule: Rule| {
-            let Some(e) = e else { return Some(g.zero()) };
-            let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
-            let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
-            if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
-                let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
-                cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"));
-                return None;
-            }
-            self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);
-            Some(value)
-        };
-        let friction = read(friction, "friction", Rule::NotNegative);
-        let restitution = read(restitution, "restitution", Rule::Fraction);
-        Some((friction?, restitution?))
+    ) -> Option<Expr<'g>> {
+        let Some(e) = e else { return Some(self.scope.graph.zero()) };
+        let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+        let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
+        if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
+            let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
+            cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"));
+            return None;
+        }
+        self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);
+        Some(value)
     }
 
     /// Surfaces of one side of a contact: one that rolls, a point, or the collision geometry of a file.
@@ -352,6 +405,20 @@ impl<'g> Builder<'_, 'g> {
             }
             form => sphere_contact(radius, form, c, turned_b),
         }
+    }
+}
+
+/// Reports moments of friction against what does not turn.
+fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
+    let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
+    let asked = [
+        (&contact.torsional, "about the normal of this contact", still(0)),
+        (&contact.rolling, "about the tangents of this contact", still(1) && still(2)),
+    ];
+    for (e, about, _) in asked.into_iter().filter(|(.., still)| *still && !contact.of_file) {
+        let Some(e) = e else { continue };
+        cx.error(e.place.clone(), format!("nothing turns {about}"))
+            .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");
     }
 }
 

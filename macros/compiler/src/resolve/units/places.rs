@@ -86,6 +86,7 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
         places.surface(&contact.first);
         places.surface(&contact.second);
         places.all(contact.friction.iter().chain(&contact.restitution), &PLAIN, "1");
+        places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
             let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));

@@ -236,6 +236,8 @@ pub const TORQUE: Words = &[
 /// Arguments of a contact.
 pub const CONTACT: Words = &[
     ("mu muk mus coefficient frictioncoefficient coulomb", "friction"),
+    ("spinning spin torsion torsionalfriction spinningfriction mutorsion drilling", "torsional"),
+    ("rollingfriction rollingresistance resistance murolling roll", "rolling"),
     ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),
     ("k compliance rigidity", "stiffness"),
     ("damping c damper", "dissipation"),
