@@ -7,6 +7,7 @@ mod events;
 mod files;
 mod forces;
 mod fuzz;
+mod gallery;
 mod laws;
 mod mechanisms;
 mod piles;

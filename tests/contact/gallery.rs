@@ -1,0 +1,282 @@
+//! Problems of textbooks on contact, against their closed forms.
+
+use linkwork::contact::{self, Touch};
+use linkwork::integrate::EventDriven;
+use linkwork::prelude::*;
+
+const G: f64 = 9.81;
+
+fn exact() -> EventDriven<f64> {
+    EventDriven::new().tolerance(1e-12, 1e-12)
+}
+
+/// Two balls of billiards.
+#[mechanism]
+struct Billiards {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 0.17, inertia = sphere(0.17, 0.0286))]
+    cue: Body,
+    #[joint(ground -> cue)]
+    first: Free,
+    #[body(mass = 0.17, inertia = sphere(0.17, 0.0286))]
+    object: Body,
+    #[joint(ground -> object)]
+    second: Free,
+    #[contact(cue.sphere(0.0286), object.sphere(0.0286), friction = friction, restitution = restitution)]
+    touch: Contact,
+}
+
+/// The cue ball throws the object ball off the line of centres: across it the object ball gets `μ (1 + e) v cos φ / 2`, or a seventh
+/// of what the surfaces slip at if that is less; with `r ω = v sin φ` of side spin they do not slip, and it is not thrown.
+#[test]
+fn a_ball_is_thrown() {
+    let (v, radius) = (2.0, 0.0286);
+    for (friction, restitution) in [(0.06, 0.95), (0.03, 1.0), (0.5, 0.9)] {
+        let m = Billiards { friction, restitution };
+        for cut in [0.05_f64, 0.3, 0.7, 1.2] {
+            for spin in [0.0, 0.5, 1.0, -1.0] {
+                let (sin, cos) = cut.sin_cos();
+                let mut q = m.neutral();
+                (q[7], q[8]) = (2.0 * radius * cos, 2.0 * radius * sin);
+                let mut before = SVector::<f64, 12>::zeros();
+                (before[0], before[5]) = (v, spin * v * sin / radius);
+                let after = contact::impact(&m, 0.0, &q, &before).unwrap().v;
+                let along = after[6] * cos + after[7] * sin;
+                let across = after[7] * cos - after[6] * sin;
+                let slip = (spin - 1.0) * v * sin;
+                let grip = (slip.abs() / 7.0).min(friction * (1.0 + restitution) / 2.0 * v * cos);
+                assert!((along - (1.0 + restitution) / 2.0 * v * cos).abs() < 1e-12, "{along}");
+                assert!((across - grip * slip.signum()).abs() < 1e-12, "{cut} {spin}: {across} {grip}");
+            }
+        }
+    }
+}
+
+/// A ball that may spin, and a floor.
+#[mechanism(gravity = -9.81 * z)]
+struct Bouncing {
+    friction: f64,
+    #[body(mass = 0.06, inertia = sphere(0.06, 0.03))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.03), ground.plane(z), friction = friction, restitution = 0.8)]
+    floor: Contact,
+}
+
+/// A ball that spins about y and strikes the floor leaves it with `(5 vₓ + 2 r ω) / 7` where it grips, and slower by
+/// `μ (1 + e) |v_z|` where it slips: back spin turns it back (Cross, *Grip-slip behavior of a bouncing ball*, Am. J. Phys. 70, 2002,
+/// for a solid sphere that grips at once).
+#[test]
+fn spin_changes_how_a_ball_bounces() {
+    for (friction, spin) in [(1.0, 0.0), (1.0, -150.0), (1.0, 200.0), (0.1, -150.0), (0.1, 250.0)] {
+        let m = Bouncing { friction };
+        let mut q = m.neutral();
+        q[2] = 0.03;
+        let before = SVector::from([2.0, 0.0, -4.0, 0.0, spin, 0.0]);
+        let after = contact::impact(&m, 0.0, &q, &before).unwrap().v;
+        let slip: f64 = 2.0 - 0.03 * spin;
+        let change = (2.0 / 7.0 * slip.abs()).min(friction * 1.8 * 4.0) * slip.signum();
+        assert!((after[0] - (2.0 - change)).abs() < 1e-12 && (after[2] - 3.2).abs() < 1e-12, "{after}");
+        assert!((after[4] - (spin + 2.5 * change / 0.03)).abs() < 1e-10, "{after}");
+    }
+}
+
+/// A rod of mass 1 and length 2 that slides on a floor with one end.
+#[mechanism(gravity = -9.81 * y)]
+struct Rod {
+    friction: f64,
+    #[body(mass = 1, inertia = rod(1, 2, x))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    pose: Planar,
+    #[contact(rod.at(-x), ground.plane(y), friction = friction)]
+    tip: Contact,
+}
+
+impl Rod {
+    /// Leaning by `tilt` over the floor, its tip sliding backwards at 1 m/s.
+    fn sliding(tilt: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+        let (sin, cos) = tilt.sin_cos();
+        ([cos, sin, tilt].into(), [-1.0 - rate * sin, rate * cos, rate].into())
+    }
+}
+
+/// The tip's normal acceleration is `p N − (g − ω² sin θ)` with `p = 1 + 3 cos θ (cos θ − μ sin θ)`, which below μ = 4/3 is positive
+/// wherever the rod is, so that the force follows (Painlevé, *Sur les lois du frottement de glissement*, 1895; Génot and Brogliato,
+/// *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
+#[test]
+fn a_rod_slides_where_no_paradox_is() {
+    let m = Rod { friction: 1.3 };
+    for k in 1..15 {
+        let (tilt, rate) = (0.1 * f64::from(k), 0.5);
+        let (q, v) = Rod::sliding(tilt, rate);
+        let rates = m.contact_rates(&q, &v);
+        assert!(rates[0].abs() < 1e-14 && (rates[1].abs() - 1.0).abs() < 1e-14, "{rates}");
+        let (sin, cos) = tilt.sin_cos();
+        let p = 1.0 + 3.0 * cos * (cos - m.friction * sin);
+        let normal = (G - rate * rate * sin) / p;
+        assert!(p > 0.0);
+        let found = contact::acting(&m, 0.0, &q, &v, &SVector::zeros()).unwrap();
+        assert!((found[0] / normal - 1.0).abs() < 1e-5, "{tilt}: {found} {normal}");
+        let slides = contact::forward_dynamics(&m, 0.0, &q, &v, &SVector::zeros(), &[Touch::Slips]).unwrap();
+        assert!((slides.forces[0] / normal - 1.0).abs() < 1e-9, "{tilt}: {} {normal}", slides.forces);
+    }
+}
+
+/// With μ = 2 at tan θ = 2, `p = −0.8`: no force lets the rod slide on. An impact without a collision stops its tip at once, with the
+/// impulses (0.3, 0.4) N·s, and it turns about the tip from then on. Both ways of simulating do that.
+#[test]
+fn a_rod_in_the_paradox_stops() {
+    let m = Rod { friction: 2.0 };
+    let tilt = 2.0_f64.atan();
+    let (q, v) = Rod::sliding(tilt, 0.0);
+    let (sin, cos) = tilt.sin_cos();
+    assert!((1.0 + 3.0 * cos * (cos - 2.0 * sin) + 0.8).abs() < 1e-14);
+    let stopped = contact::land(&m, 0.0, &q, &v, &[Touch::Sticks]).unwrap();
+    let [normal, along] = [stopped.impulses[0], stopped.impulses[1].abs()];
+    assert!((normal - 0.3).abs() < 1e-12 && (along - 0.4).abs() < 1e-12, "{}", stopped.impulses);
+    for h in [1e-4, 1e-5] {
+        let end = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(h).finish().unwrap();
+        assert!(m.contact_rates(&end.q, &end.v).amax() < 10.0 * h, "{end:?}");
+        assert!((end.v - stopped.v).amax() < 30.0 * h, "{} {}", end.v, stopped.v);
+    }
+    let run = simulate(&m).from(q, v);
+    let steps = run.clone().method(TimeStepping::step(1e-5)).duration(0.1).finish().unwrap();
+    let events = run.method(exact()).duration(0.1).finish().unwrap();
+    assert!((steps.q - events.q).amax() < 1e-4, "{} {}", steps.q, events.q);
+    assert!(m.contact_rates(&events.q, &events.v).amax() < 1e-9);
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    assert!((energy(&events.q, &events.v) - energy(&q, &stopped.v)).abs() < 1e-4);
+}
+
+/// A ladder on a smooth floor and a smooth wall.
+#[mechanism(gravity = -9.81 * y)]
+struct Ladder {
+    #[body(mass = 8, inertia = rod(8, 4, x))]
+    ladder: Body,
+    #[joint(ground -> ladder, about = z)]
+    pose: Planar,
+    #[contact(ladder.at(2 * x), ground.plane(x))]
+    wall: Contact,
+    #[contact(ladder.at(-2 * x), ground.plane(y))]
+    floor: Contact,
+}
+
+/// A ladder that slides down leaves the wall when its top has come down by a third, and goes on with the velocity along the floor that
+/// it has then.
+#[test]
+fn a_ladder_leaves_the_wall() {
+    let (m, half, start) = (Ladder {}, 2.0, 1.2_f64);
+    let q = [half * start.cos(), half * start.sin(), core::f64::consts::PI - start];
+    let leaves = 2.0 / 3.0 * start.sin();
+    let rate = (1.5 * G / half * start.sin() / 3.0).sqrt();
+    let speed = half * rate * leaves;
+    let (mut nearest, mut after) = (f64::INFINITY, 0);
+    for sample in simulate(&m).from(q, [0.0; 3]).method(exact()).duration(1.1) {
+        let sample = sample.unwrap();
+        let height = sample.q[1] / half;
+        nearest = nearest.min((height - leaves).abs());
+        let gaps = m.contact_gaps(&sample.q);
+        assert!(gaps.min() > -1e-12 && gaps[1] < 1e-11, "{gaps}");
+        if height > leaves + 1e-9 {
+            let turning = 1.5 * G / half * (start.sin() - height);
+            assert!((sample.v[2] * sample.v[2] - turning).abs() < 1e-9 && gaps[0] < 1e-11, "{sample:?}");
+        } else {
+            assert!((sample.v[0] - speed).abs() < 1e-9, "{sample:?} {speed}");
+            after += 1;
+        }
+    }
+    assert!(nearest < 1e-9 && after > 5, "{nearest} {after}");
+}
+
+/// A valve: a disc that a preloaded spring presses on its seat.
+#[mechanism]
+struct Valve {
+    restitution: f64,
+    #[particle(mass = 0.02)]
+    disc: Particle,
+    #[joint(ground -> disc, along = z)]
+    lift: Sleeve,
+    #[acts(on = lift, stiffness = 800, free_length = -0.004)]
+    spring: Spring,
+    #[limit(on = lift, from = 0, restitution = restitution)]
+    seat: Limit,
+}
+
+/// It chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact leaves `e` of the speed, and after infinitely many
+/// it is closed.
+#[test]
+fn a_valve_chatters() {
+    let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
+    let m = Valve { restitution };
+    let run = |t: f64| simulate(&m).from([0.0], [1.5]).method(exact()).duration(t).finish().unwrap();
+    let (mut t, mut speed) = (0.0, 1.5_f64);
+    for k in 0..60 {
+        let flight = 2.0 / omega * (speed / (omega * preload)).atan();
+        if k < 12 {
+            let top = run(t + flight / 2.0);
+            let height = preload.hypot(speed / omega) - preload;
+            assert!((top.q[0] - height).abs() < 1e-11 && top.v[0].abs() < 1e-8, "{k}: {top:?} {height}");
+        }
+        t += flight;
+        speed *= restitution;
+    }
+    let closed = run(t * 1.001);
+    assert!(closed.q[0].abs() < 1e-14 && closed.v[0].abs() < 1e-14, "{closed:?}");
+    // It stays, pressed with k d.
+    let force = contact::acting(&m, 0.0, &closed.q, &closed.v, &SVector::zeros()).unwrap();
+    assert!((force[0] - 800.0 * preload).abs() < 1e-6);
+}
+
+/// A one-way clutch, or a silent ratchet: a strut hinged 0.1 m above a slide, on which a torque of 0.3 N·m presses its tip.
+#[mechanism]
+struct Clutch {
+    friction: f64,
+    /// Angle of the strut with the vertical, rad.
+    lean: f64,
+    #[body(mass = 2)]
+    slide: Body,
+    #[joint(ground -> slide, along = x)]
+    way: Sleeve,
+    #[acts(on = way)]
+    load: Force,
+    #[body(mass = 0.01, com = -0.05 / cos(lean) * y, inertia = rod(0.01, 0.1 / cos(lean), y))]
+    strut: Body,
+    #[joint(ground.at(0.1 * y) -> strut, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, value = 0.3)]
+    press: Torque,
+    #[contact(strut.at(-0.1 / cos(lean) * y), slide.plane(y), friction = friction)]
+    tip: Contact,
+}
+
+/// Where tan α is less than the coefficient of friction the strut holds the slide against any load one way, and stops what moves that
+/// way at once; the other way it drags with `μ τ / (L (sin α + μ cos α))`. With less friction it slips either way.
+#[test]
+fn a_strut_is_a_one_way_clutch() {
+    let run = |m: &Clutch, load: f64, speed: f64, t: f64| {
+        let steps = simulate(m).from([0.0, -m.lean], [speed, 0.0]).inputs(move |_, _, _| [load].into());
+        steps.method(TimeStepping::step(1e-4)).duration(t).finish().unwrap()
+    };
+    let m = Clutch { friction: 0.3, lean: 0.25_f64.atan() };
+    let (sin, cos) = m.lean.sin_cos();
+    let length = 0.1 / cos;
+    let contacts = m.contact_gaps(&[0.0, -m.lean].into());
+    assert!(contacts[0].abs() < 1e-15, "{contacts}");
+    for load in [1.0, 100.0, 1e5] {
+        let end = run(&m, load, 0.0, 0.2);
+        assert!(end.q[0].abs() < 1e-9 && end.v.amax() < 1e-9, "{load}: {end:?}");
+    }
+    let end = run(&m, 0.0, 1.0, 0.01);
+    assert!(end.q[0].abs() < 2e-4 && end.v.amax() < 1e-9, "{end:?}");
+    let free = run(&m, -5.0, 0.0, 0.2);
+    let drag = 0.3 * 0.3 / (length * (sin + 0.3 * cos));
+    assert!((free.v[0] + (5.0 - drag) / 2.0 * 0.2).abs() < 1e-6, "{free:?} {drag}");
+    let slippery = Clutch { friction: 0.2, ..m };
+    let drag = 0.2 * 0.3 / (length * (sin - 0.2 * cos));
+    let slips = run(&slippery, drag + 4.0, 0.0, 0.2);
+    assert!((slips.v[0] - 0.4).abs() < 1e-6, "{slips:?} {drag}");
+    assert!(run(&slippery, drag - 0.1, 0.0, 0.2).v.amax() < 1e-9);
+}
