@@ -16,6 +16,7 @@ mod complete;
 mod differentiable;
 mod layout;
 mod linearize;
+mod second;
 mod slipping;
 mod solve;
 mod span;
@@ -25,12 +26,16 @@ mod stabilized;
 pub use assemble::{Loops, assemble};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
-pub(crate) use differentiable::{Frozen, column, each_column};
+pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
 #[doc(hidden)]
-pub use layout::{Elimination, InputDerivatives, MotionDerivatives, Responses};
+pub use layout::{ConstraintCurvature, Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, constrained_derivatives};
+pub use second::{ConstrainedSecondDerivatives, CurvatureVisitor, EquationSecondDerivatives};
+pub(crate) use second::{FrozenCurvature, adjoint, with_transpose};
+#[doc(hidden)]
+pub use second::{constrained_second_derivatives, with_curvature};
 #[doc(hidden)]
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]

@@ -45,6 +45,7 @@ mod explicit;
 mod implicit;
 mod projected;
 mod second;
+mod projection;
 
 pub use second::{TwiceDifferentiableStep, second_order};
 

@@ -78,7 +78,7 @@ extern crate std;
 #[doc(inline)]
 pub use batch::Batch;
 #[doc(inline)]
-pub use constraint::{Constrained, ConstrainedDerivatives, ConstraintError};
+pub use constraint::{Constrained, ConstrainedDerivatives, ConstrainedSecondDerivatives, ConstraintError};
 pub use contact::Contacts;
 pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
 #[doc(inline)]
@@ -169,9 +169,10 @@ pub mod __private {
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::constraint::{
-        Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses, Structure, assemble,
-        careful_dynamics, careful_response, constrained_derivatives, independent_solution, least_solution,
-        nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
+        ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
+        Structure, assemble, careful_dynamics, careful_response, constrained_derivatives,
+        constrained_second_derivatives, independent_solution, least_solution, nearly_singular,
+        pressing_solution, regular_solution, slipping_response, slipping_solution, with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::derivatives::acceleration_derivatives;

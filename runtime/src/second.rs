@@ -1,6 +1,7 @@
 //! Second derivatives of the dynamics for generic code: differential dynamic programming, Newton's method on trajectories.
 
 use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
+use crate::constraint::{CurvatureVisitor, FrozenCurvature};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{At, Derivatives, Real, RheonomicDerivatives};
@@ -19,15 +20,15 @@ pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
     (Square<T, NV>, Square<T, NV>, Square<T, NV>, SMatrix<T, NV, NU>, SMatrix<T, NV, NU>, SMatrix<T, NU, NU>);
 
 /// Second derivatives of a mechanism's functions, contracted with factors `λ`: Hessians of `λᵀ f`, in blocks of `NV` by `NV` (and by
-/// `NU`). `#[mechanism(…, second_derivatives)]` implements it for mechanisms without constraints; one that is driven in time has
-/// [`RheonomicSecondDerivatives`], and this at an instant ([`at`](crate::at)).
+/// `NU`). `#[mechanism(…, second_derivatives)]` implements it, with and without constraints, unless contacts slip; one that is driven
+/// in time has [`RheonomicSecondDerivatives`], and this at an instant ([`at`](crate::at)).
 ///
 /// Along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the derivatives by configuration twice;
 /// for ball and free joints `dq` is a motion in body axes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
     note = "the word asks for them: `#[mechanism(…, second_derivatives)]`",
-    note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`; with constraints there are none"
+    note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`; with contacts that slip there are none"
 )]
 pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Derivatives<NQ, NV, NU>
@@ -42,8 +43,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> SecondOrder<Self::Scalar, NV>;
 
-    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇` by [`forward_dynamics`](crate::Mechanism::forward_dynamics). Those by `v`
-    /// and `τ`, and by `τ` twice, are zero.
+    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇` by [`forward_dynamics`](crate::Mechanism::forward_dynamics), constraints
+    /// included. Those by `v` and `τ`, and by `τ` twice, are zero.
     fn forward_dynamics_second_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -60,6 +61,14 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         u: &SVector<Self::Scalar, NU>,
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
+
+    /// Hands the mechanism to `visitor` with the numbers of its constraints, where those have second derivatives; `None` elsewhere.
+    fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
 
     /// The second derivatives of `λᵀ v̇`, with `v̇` the acceleration under the inputs `u`: by state and inputs.
     ///
@@ -94,7 +103,7 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         let (qq, qv, vv, by_force) =
             SecondDerivatives::forward_dynamics_second_derivatives(self, q, v, &tau, lambda);
         let more =
-            SecondDerivatives::generalized_forces_second_derivatives(self, q, v, u, &(inverse * lambda));
+            SecondDerivatives::generalized_forces_second_derivatives(self, q, v, u, &inverse.tr_mul(lambda));
         let (mut all_qq, mut all_qv) = (qq + more.0, qv + more.1);
         if !is_zero(&tau_by_q) {
             let turned = product(&by_force, &tau_by_q);
@@ -114,7 +123,7 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
 /// has these, too.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
-    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; with constraints there are none"
+    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; with contacts that slip there are none"
 )]
 pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     RheonomicDerivatives<NQ, NV, NU>
@@ -148,17 +157,25 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         u: &SVector<Self::Scalar, NU>,
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
+
+    /// Hands the mechanism to `visitor` with the numbers of its constraints ([`SecondDerivatives::visit_constraint_curvature`]).
+    fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
 }
 
 /// Second derivatives of `λᵀ v̇` from first ones of `v̇` and from those of `μᵀ τ` of inverse dynamics for given factors `μ`.
 ///
-/// `τ(q, v, v̇(q, v, τ))` is `τ`; differentiated twice, with `μ = M⁻¹ λ`.
+/// `τ(q, v, v̇(q, v, τ))` is `τ`; differentiated twice, with `μ = M⁻ᵀ λ`.
 pub fn forward_second_derivatives<T: Real, const NV: usize>(
     (by_q, by_v, inverse): &(Square<T, NV>, Square<T, NV>, Square<T, NV>),
     lambda: &SVector<T, NV>,
     inverse_dynamics: impl FnOnce(&SVector<T, NV>) -> SecondOrder<T, NV>,
 ) -> SecondOrder<T, NV> {
-    let (mut qq, mut qv, vv, qa) = inverse_dynamics(&-(inverse * lambda));
+    let (mut qq, mut qv, vv, qa) = inverse_dynamics(&-inverse.tr_mul(lambda));
     let turned = product(&qa, by_q);
     add_multiple(&mut qq, T::one(), &turned);
     add_multiple(&mut qq, T::one(), &transposed(&turned));
@@ -171,6 +188,13 @@ where
     M: SecondDerivatives<NQ, NV, NU> + ?Sized,
 {
     each_function!(second, plain SecondDerivatives, self => *self);
+
+    fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
+    {
+        M::visit_constraint_curvature(self, visitor)
+    }
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
@@ -179,6 +203,13 @@ where
     M: SecondDerivatives<NQ, NV, NU>,
 {
     each_function!(second, drop SecondDerivatives, self => self);
+
+    fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
+    {
+        SecondDerivatives::visit_constraint_curvature(self, visitor)
+    }
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> SecondDerivatives<NQ, NV, NU> for At<'_, M, T>
@@ -187,4 +218,11 @@ where
     M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
     each_function!(second, at RheonomicSecondDerivatives, self => self.mechanism, self.t);
+
+    fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
+    where
+        V: CurvatureVisitor<T, NQ, NV, NU>,
+    {
+        self.mechanism.visit_constraint_curvature(FrozenCurvature { visitor, t: self.t })
+    }
 }

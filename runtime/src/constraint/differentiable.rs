@@ -47,23 +47,8 @@ pub trait ConstrainedDerivatives<
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
     ) -> MultiplierDerivatives<Self::Scalar, NV, NC> {
-        let (a, lambda) = self.constrained_dynamics(t, q, v, tau);
-        let parts = self.equation_derivatives(t, q, v, &a, &lambda);
-        let mass = self.mass_matrix(t, q);
-        // Forces that hold the balance of a change of velocity, and are constraints' alone.
-        let of = |forces: &SMatrix<_, NV, NV>, gaps: &SMatrix<_, NC, NV>| {
-            each_column(|j| {
-                let p = -column(forces, j);
-                let change = self.constraint_response(t, q, &p, &column(gaps, j));
-                let held = tau + p - mass * change;
-                self.constrained_dynamics(t, q, v, &held).1 - lambda
-            })
-        };
-        (
-            of(&parts.forces_by_q, &parts.accelerations_by_q),
-            of(&parts.forces_by_v, &parts.accelerations_by_v),
-            of(&-SMatrix::identity(), &SMatrix::zeros()),
-        )
+        let [by_q, by_v, by_tau] = solved_derivatives(self, t, q, v, tau).by;
+        (by_q.1, by_v.1, by_tau.1)
     }
 }
 
@@ -94,6 +79,84 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
             rates_by_q: SMatrix::from_array_storage(ArrayStorage(parts.rates_by_q)),
         }
     }
+}
+
+/// Derivatives of accelerations and multipliers.
+type Changes<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
+
+/// Constrained motion with its derivatives.
+pub(crate) struct Solved<T, const NV: usize, const NC: usize> {
+    pub(crate) a: SVector<T, NV>,
+    pub(crate) lambda: SVector<T, NC>,
+    /// By configuration, velocity and force.
+    pub(crate) by: [Changes<T, NV, NC>; 3],
+}
+
+/// Accelerations and multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics) with their derivatives.
+pub(crate) fn solved_derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    tau: &SVector<T, NV>,
+) -> Solved<T, NV, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
+    let parts = m.equation_derivatives(t, q, v, &a, &lambda);
+    let mass = m.mass_matrix(t, q);
+    let of = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
+        let (mut changes, mut multipliers) = (zeros(), zeros());
+        for j in 0..NV {
+            let p = -column(forces, j);
+            let change = m.constraint_response(t, q, &p, &column(gaps, j));
+            // Forces that hold the balance of a change of velocity, and are constraints' alone.
+            let held = tau + p - mass * change;
+            set_column(&mut changes, j, &change);
+            set_column(&mut multipliers, j, &(m.constrained_dynamics(t, q, v, &held).1 - lambda));
+        }
+        (changes, multipliers)
+    };
+    let by = [
+        of(&parts.forces_by_q, &parts.accelerations_by_q),
+        of(&parts.forces_by_v, &parts.accelerations_by_v),
+        of(&-SMatrix::identity(), &SMatrix::zeros()),
+    ];
+    Solved { a, lambda, by }
+}
+
+/// Multipliers `μ` of forces `p` that are constraints' alone, `p = Jᵀ μ`.
+pub(crate) fn multipliers<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    p: &SVector<T, NV>,
+) -> SVector<T, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let still = SVector::zeros();
+    let rest = m.bias_forces(t, q, &still);
+    m.constrained_dynamics(t, q, &still, &(rest - p)).1 - m.constrained_dynamics(t, q, &still, &rest).1
 }
 
 /// What is done with a mechanism whose constraints are of any number, by
@@ -204,6 +267,17 @@ pub(crate) fn column<T: Real, const R: usize, const C: usize>(
     j: usize,
 ) -> SVector<T, R> {
     m.data.0.get(j).map_or_else(SVector::zeros, |column| SVector::from(*column))
+}
+
+/// Puts a column into a matrix.
+pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
+    m: &mut SMatrix<T, R, C>,
+    j: usize,
+    column: &SVector<T, R>,
+) {
+    if let Some(out) = m.data.0.get_mut(j) {
+        *out = column.data.0[0];
+    }
 }
 
 /// A matrix by its columns.

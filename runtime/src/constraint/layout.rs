@@ -46,6 +46,21 @@ pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
     pub turning: [[T; NV]; NV],
 }
 
+/// Second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`. Matrices are lists of columns.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstraintCurvature<T, const NV: usize, const NC: usize> {
+    /// By `q` twice.
+    pub qq: [[T; NV]; NV],
+    /// By `q` (rows) and `v`.
+    pub qv: [[T; NV]; NV],
+    /// By `v` twice.
+    pub vv: [[T; NV]; NV],
+    /// By `q` (rows) and `a`.
+    pub qa: [[T; NV]; NV],
+    /// By `q` (rows) and `λ`.
+    pub q_lambda: [[T; NV]; NC],
+}
+
 /// The generalized forces of the inputs with their derivatives. Matrices are lists of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct InputDerivatives<T, const NV: usize, const NU: usize> {

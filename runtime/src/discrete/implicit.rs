@@ -5,9 +5,9 @@
 //! `p(q⁺, v⁺) = p(q_m, w) + (h/2) f(q_m, w) + Jᵀ(q⁺) μ`, with constraints on configurations that hold at `q⁺`, those on
 //! velocities at the midpoint, and all of their rates at the end ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
 
-use super::projected::{balance, check_regular, multipliers};
+use super::projected::{balance, check_regular};
 use super::{DifferentiableStep, Transition, advanced};
-use crate::constraint::{ConstrainedDerivatives, column, each_column};
+use crate::constraint::{ConstrainedDerivatives, column, each_column, multipliers};
 use crate::derivatives::{ByMotion, Derivatives, RheonomicDerivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};

@@ -3,37 +3,15 @@
 use super::Transition;
 use crate::Real;
 use crate::blocks::product;
-use crate::constraint::{ConstrainedDerivatives, ConstraintError, EquationDerivatives, column, each_column};
+use crate::constraint::{
+    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column, each_column, multipliers,
+};
 use crate::integrate::Error;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
 /// Corrections of a configuration that are followed; the second is rounding for what steps leave.
-const MOST_CORRECTIONS: usize = 8;
-
-/// Multipliers `μ` of forces `p` that are constraints' alone, `p = Jᵀ μ`.
-pub(super) fn multipliers<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NH: usize,
-    const NC: usize,
->(
-    m: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-    p: &SVector<T, NV>,
-) -> SVector<T, NC>
-where
-    T: Real,
-    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-{
-    let still = SVector::zeros();
-    let rest = m.bias_forces(t, q, &still);
-    m.constrained_dynamics(t, q, &still, &(rest - p)).1 - m.constrained_dynamics(t, q, &still, &rest).1
-}
+pub(super) const MOST_CORRECTIONS: usize = 8;
 
 /// Derivatives of `M x − Jᵀ λ` and `J x` by the configuration.
 pub(super) fn balance<
@@ -85,10 +63,96 @@ where
     Ok(())
 }
 
+/// A correction `x` of a configuration by Newton's method, `M x = Jᵀ λ`, `J x = −φ`, to first order.
+pub(super) struct Correction<T, const NV: usize, const NC: usize> {
+    pub(super) x: SVector<T, NV>,
+    /// Its multipliers `λ`.
+    pub(super) own: SVector<T, NC>,
+    /// Derivatives of `M x − Jᵀ λ` by the configuration.
+    pub(super) forces: SMatrix<T, NV, NV>,
+    /// How the correction changes with the configuration.
+    pub(super) change: SMatrix<T, NV, NV>,
+    /// Nothing is left but rounding.
+    pub(super) done: bool,
+}
+
+/// That of a configuration at the time `t`.
+pub(super) fn correction<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    near: &SVector<T, NQ>,
+) -> Correction<T, NV, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let residuals = m.constraint_residuals(t, near);
+    let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
+    let x = m.constraint_correction(t, near, &gap);
+    let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
+    let own = multipliers(m, t, near, &(m.mass_matrix(t, near) * x));
+    let (forces, mut gaps) = balance(m, t, near, &x, &own);
+    let jacobian = m.constraint_jacobian(t, near);
+    for k in 0..NH {
+        gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
+    }
+    let change = each_column(|j| m.constraint_response(t, near, &-column(&forces, j), &column(&gaps, j)));
+    Correction { x, own, forces, change, done }
+}
+
+/// The correction `x` of a velocity, `M x = Jᵀ λ`, `J (v + x) + … = 0`, to first order.
+pub(super) struct Stop<T, const NV: usize, const NC: usize> {
+    /// Its multipliers `λ`.
+    pub(super) own: SVector<T, NC>,
+    /// Derivatives of `M x − Jᵀ λ` by the configuration.
+    pub(super) forces: SMatrix<T, NV, NV>,
+    /// How the velocity after it changes with the configuration.
+    pub(super) turned: SMatrix<T, NV, NV>,
+    /// How it changes with the velocity before it.
+    pub(super) kept: SMatrix<T, NV, NV>,
+}
+
+/// That of the correction `x` which ends at the velocity `v`.
+pub(super) fn stop<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    x: &SVector<T, NV>,
+) -> Stop<T, NV, NC>
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let own = multipliers(m, t, q, &(m.mass_matrix(t, q) * x));
+    let forces = balance(m, t, q, x, &own).0;
+    let (still, none) = (SVector::zeros(), SVector::zeros());
+    let rates = m.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
+    let jacobian = m.constraint_jacobian(t, q);
+    let turned = each_column(|j| m.constraint_response(t, q, &-column(&forces, j), &column(&rates, j)));
+    let kept: SMatrix<T, NV, NV> = SMatrix::identity()
+        + each_column::<T, NV, NV>(|j| m.constraint_response(t, q, &none, &column(&jacobian, j)));
+    Stop { own, forces, turned, kept }
+}
+
 /// A step brought onto the constraints at the time `t` of its end.
 ///
-/// The configuration goes by Newton's corrections `M x = Jᵀ λ`, `J x = −φ`, the velocity by one, `J x = −(J v + …)`; each is
-/// differentiated as it is.
+/// The configuration goes by Newton's corrections, the velocity by one; each is differentiated as it is.
 pub(super) fn projected<
     M,
     T,
@@ -112,18 +176,7 @@ where
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();
     for _ in 0..MOST_CORRECTIONS {
-        let residuals = m.constraint_residuals(t, &near);
-        let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
-        let x = m.constraint_correction(t, &near, &gap);
-        let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
-        let own = multipliers(m, t, &near, &(m.mass_matrix(t, &near) * x));
-        let (forces, mut gaps) = balance(m, t, &near, &x, &own);
-        let jacobian = m.constraint_jacobian(t, &near);
-        for k in 0..NH {
-            gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
-        }
-        let change: SMatrix<T, NV, NV> =
-            each_column(|j| m.constraint_response(t, &near, &-column(&forces, j), &column(&gaps, j)));
+        let Correction { x, change, done, .. } = correction(m, t, &near);
         let (by_q, by_x) = m.integrate_derivatives(&x);
         moved = product(&(by_q + product(&by_x, &change)), &moved);
         near = m.integrate(&near, &x);
@@ -131,17 +184,7 @@ where
             break;
         }
     }
-    let x = v - free.v;
-    let own = multipliers(m, t, &q, &(m.mass_matrix(t, &q) * x));
-    let forces = balance(m, t, &q, &x, &own).0;
-    let still = SVector::zeros();
-    let rates = m.equation_derivatives(t, &q, &v, &still, &SVector::zeros()).rates_by_q;
-    let jacobian = m.constraint_jacobian(t, &q);
-    let none = SVector::zeros();
-    let turned: SMatrix<T, NV, NV> =
-        each_column(|j| m.constraint_response(t, &q, &-column(&forces, j), &column(&rates, j)));
-    let kept: SMatrix<T, NV, NV> = SMatrix::identity()
-        + each_column::<T, NV, NV>(|j| m.constraint_response(t, &q, &none, &column(&jacobian, j)));
+    let Stop { turned, kept, .. } = stop(m, t, (&q, &v), &(v - free.v));
     let turned = product(&turned, &moved);
     Ok(Transition {
         q,

@@ -1,10 +1,11 @@
 //! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming adds to costs.
 
-use super::DifferentiableStep;
 use super::explicit::{Sensitive, Start};
+use super::{DifferentiableStep, Through, projection};
+use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
-use crate::private::constant;
+use crate::private::{constant, to_f64};
 use crate::{At, InputSecondOrder, Real, RheonomicSecondDerivatives, SecondDerivatives, at};
 use nalgebra::{SMatrix, SVector};
 
@@ -12,8 +13,8 @@ use nalgebra::{SMatrix, SVector};
 /// ([`transition`](super::transition)): `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)`, exact to rounding. The factors
 /// are those of the configuration and of the velocity after the step.
 ///
-/// All coordinates of the mechanism are plain (`NQ` is `NV`: no ball and free joints), and it has no constraints; others do not
-/// compile here.
+/// All coordinates of the mechanism are plain (`NQ` is `NV`: no ball and free joints); others do not compile here. Under constraints
+/// the method is [`Rk4`], and the derivatives are those of the whole step, with the projection that ends it.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -40,7 +41,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// # Errors
 ///
-/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state that is not.
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state that is not,
+/// [`Error::Constraint`] where constraints lose rank or cannot be fulfilled.
 pub fn second_order<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -55,17 +57,86 @@ where
     M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
     S: TwiceDifferentiableStep<T>,
 {
-    const { assert!(!M::CONSTRAINED, "a step with derivatives is one of a mechanism without constraints") };
-    const { assert!(NQ == NV, "a step with second derivatives is one in plain coordinates") };
+    const {
+        assert!(NQ == NV, "a step with second derivatives is one in plain coordinates");
+        assert!(
+            !M::CONTACTING,
+            "a step with second derivatives is one of a mechanism whose contacts do not open and close: leave them out by `contact::apart`"
+        );
+        assert!(
+            !M::CONSTRAINED || S::UNDER_CONSTRAINTS,
+            "under constraints steps of this method have no second derivatives: take `Rk4`"
+        );
+    }
     method.check()?;
-    let found = method.differentiate_twice(mechanism, t, q, v, u, factors);
+    let found = if M::CONSTRAINED {
+        let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
+        let through = Curved { through: Through { method, t, q, v, u }, factors };
+        mechanism.visit_constraint_curvature(through).unwrap_or(Err(undetermined))?
+    } else {
+        method.differentiate_twice(mechanism, t, q, v, u, factors)
+    };
     let finite = found.0.iter().chain(found.2.iter()).chain(found.5.iter()).all(|x| x.is_finite());
-    if finite { Ok(found) } else { Err(Error::NotFinite { t: crate::private::to_f64(t) }) }
+    if finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
+}
+
+/// A step under constraints with the factors of its end.
+struct Curved<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+    through: Through<'a, S, T, NQ, NV, NU>,
+    factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
+}
+
+impl<S, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
+    for Curved<'_, S, T, NQ, NV, NU>
+where
+    T: Real,
+    S: TwiceDifferentiableStep<T>,
+{
+    type Output = Result<InputSecondOrder<T, NV, NU>, Error>;
+
+    /// What the projection adds to the curvature of the step before it, along the Jacobians of that.
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        let Through { method, t, q, v, u } = self.through;
+        let free = method.differentiate(mechanism, t, q, v, u)?;
+        let end = t + method.period();
+        let added = projection::curvature(mechanism, end, (&free.q, &free.v), self.factors)?;
+        let mut sum =
+            method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
+        add_along(&mut sum.0, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_q, &free.v_by_q));
+        add_along(&mut sum.1, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_v, &free.v_by_v));
+        add_along(&mut sum.2, &added, (&free.q_by_v, &free.v_by_v), (&free.q_by_v, &free.v_by_v));
+        add_along(&mut sum.3, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_u, &free.v_by_u));
+        add_along(&mut sum.4, &added, (&free.q_by_v, &free.v_by_v), (&free.q_by_u, &free.v_by_u));
+        add_along(&mut sum.5, &added, (&free.q_by_u, &free.v_by_u), (&free.q_by_u, &free.v_by_u));
+        Ok(sum)
+    }
+}
+
+/// Adds what the curvature of a projection is along columns of displacements and changes of velocity before it.
+fn add_along<T: Real, const NV: usize, const R: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    added: &projection::Curvature<T, NV>,
+    (left_q, left_v): (&SMatrix<T, NV, R>, &SMatrix<T, NV, R>),
+    (right_q, right_v): (&SMatrix<T, NV, C>, &SMatrix<T, NV, C>),
+) {
+    // There is none by the velocity twice.
+    let of_q = added.qq * right_q + added.qv * right_v;
+    *sum += left_q.tr_mul(&of_q) + left_v.tr_mul(&(added.qv.tr_mul(right_q)));
 }
 
 /// A method whose steps have second derivatives.
 pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
-    /// The second derivatives of a step of a mechanism with plain coordinates, without constraints.
+    /// A step under constraints is one without them that is brought onto the constraints at its end, so that it has second
+    /// derivatives, too.
+    const UNDER_CONSTRAINTS: bool;
+
+    /// The period of a step, s.
+    fn period(&self) -> T;
+
+    /// The second derivatives of a step of a mechanism with plain coordinates, before it is brought onto constraints.
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -80,6 +151,12 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
 }
 
 impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
+    const UNDER_CONSTRAINTS: bool = false;
+
+    fn period(&self) -> T {
+        self.length()
+    }
+
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -107,6 +184,12 @@ struct Stage<T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
+    const UNDER_CONSTRAINTS: bool = true;
+
+    fn period(&self) -> T {
+        self.length()
+    }
+
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,

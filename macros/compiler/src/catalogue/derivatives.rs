@@ -194,6 +194,28 @@ pub const SECOND_ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
+    Row::derived(
+        Id::ConstraintCurvature,
+        "__constraint_curvature",
+        &[Need::Inertia, Need::SecondDerivatives, Need::Constraints, Need::NoSlipping],
+        |f| {
+            let nc = constraints(f);
+            Declaration {
+                arguments: vec![
+                    Q,
+                    V,
+                    A,
+                    Argument::Given("lambda", 0, nc),
+                    Argument::Given("w", nc, f.nv),
+                    Argument::Given("z", nc + f.nv, nc),
+                    Argument::Given("y", 2 * nc + f.nv, nc),
+                ],
+                shape: Shape::Record(Record::ConstraintCurvature(f.nv, nc)),
+                ..Declaration::default()
+            }
+        },
+    )
+    .alone(),
 ];
 
 fn constraints(f: &Facts) -> usize {

@@ -68,6 +68,7 @@ pub enum Id {
     InputDerivatives,
     InverseDynamicsSecondDerivatives,
     GeneralizedForcesSecondDerivatives,
+    ConstraintCurvature,
     JointTorqueRegressor,
     StandardParameters,
     BaseRegressor,

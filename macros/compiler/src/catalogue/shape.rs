@@ -190,6 +190,8 @@ pub enum Record {
     InputDerivatives(usize, usize),
     /// Derivatives of what contacts do at given accelerations and forces, of so many velocities and rates.
     ContactDerivatives(usize, usize),
+    /// Second derivatives of what constraints add to the equations, contracted, of so many velocities and constraints.
+    ConstraintCurvature(usize, usize),
 }
 
 /// A field of a record: an array, or a list of so many.
@@ -219,6 +221,7 @@ impl Record {
             Record::MotionDerivatives(nv, nc) => ("MotionDerivatives", [nv, nc]),
             Record::InputDerivatives(nv, nu) => ("InputDerivatives", [nv, nu]),
             Record::ContactDerivatives(nv, nr) => ("ContactDerivatives", [nv, nr]),
+            Record::ConstraintCurvature(nv, nc) => ("ConstraintCurvature", [nv, nc]),
         }
     }
 
@@ -253,6 +256,10 @@ impl Record {
                 list("accelerations_by_v", nr, nv),
                 list("rates_by_q", nr, nv),
             ],
+            Record::ConstraintCurvature(nv, nc) => {
+                let [qq, qv, vv, qa] = ["qq", "qv", "vv", "qa"].map(|name| list(name, nv, nv));
+                vec![qq, qv, vv, qa, list("q_lambda", nv, nc)]
+            }
         }
     }
 }

@@ -33,7 +33,7 @@ pub const ROWS: &[Row] = &[
     Row::written("generalized_forces_derivatives", ASKED),
     Row::written(
         "forward_dynamics_second_derivatives",
-        &[Need::Inertia, Need::SecondDerivatives, Need::NoConstraints],
+        &[Need::Inertia, Need::SecondDerivatives, Need::NoSlipping],
     ),
     Row::written("integrate_derivatives", ASKED),
     Row::written("tangent_rate_derivatives", ASKED),

@@ -200,6 +200,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::GeneralizedForcesSecondDerivatives => {
                 self.derivatives(|d| plain(d.generalized_forces_second_derivatives()))
             }
+            Id::ConstraintCurvature => self.derivatives(|d| plain(d.constraint_curvature())),
             Id::JointTorqueRegressor => of(&self.identified(|i| i.joint_torque_regressor(joints))),
             Id::StandardParameters => of(&self.identified(Identification::standard_parameters)),
             Id::BaseRegressor => of(&self.identified(Identification::base_regressor)),

@@ -144,6 +144,10 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         second::inputs(self.parts.model, &self.tau, self.parts.specialisation)
     }
 
+    pub(super) fn constraint_curvature(&self) -> Program {
+        second::constraints(self.parts.model, self.parts.specialisation)
+    }
+
     pub(super) fn motion_derivatives(&self) -> Program {
         self.parts.constrained_motion()
     }

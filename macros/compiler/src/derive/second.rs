@@ -5,7 +5,7 @@ use super::specialisation::Specialisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
-use crate::mechanics::derivatives::second::{self, Hessian, InputHessian};
+use crate::mechanics::derivatives::second::{self, ConstraintHessian, Hessian, InputHessian};
 use crate::mechanism::Model;
 
 /// Those of inverse dynamics: by recursion, also in up to so many lanes each, or by differentiation.
@@ -37,6 +37,14 @@ pub(super) fn inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>], specialisation: Sp
     let [qq, qv, vv, _] = state(&by_state);
     let blocks = [qq, qv, vv, columns(&qu), columns(&vu), columns(&uu)];
     specialisation.program(&blocks.concat())
+}
+
+/// Those of what constraints add to the equations of motion.
+pub(super) fn constraints(model: &Model<'_>, specialisation: Specialisation) -> Program {
+    let ConstraintHessian { state: by_state, q_lambda } = second::of_constraints(model);
+    let mut outputs = state(&by_state).concat();
+    outputs.extend(columns(&q_lambda));
+    specialisation.program(&outputs)
 }
 
 fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {

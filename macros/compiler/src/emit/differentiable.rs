@@ -62,13 +62,31 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
     );
 }
 
-/// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations.
+/// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations, and with the multipliers of
+/// constraints.
 pub fn write_second(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    if i.facts.kinematic || !i.facts.requests.second_derivatives || i.facts.constraints.is_some() {
+    if !has_second(i) {
         return;
     }
     let (square, pass) = (s.shape(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
     let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
+    let (source, body) = if i.facts.constraints.is_some() {
+        let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
+        let t = if s.time { "t" } else { &zero };
+        (
+            "Those of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, along with how accelerations and multipliers change.",
+            format!("::linkwork::__private::constrained_second_derivatives(self, {t}, q, v, tau, lambda)"),
+        )
+    } else {
+        (
+            "With `μ = M⁻¹ λ` they are those of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations change with `q` and `v` as [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) says.",
+            format!(
+                "let first = self.forward_dynamics_derivatives({pass}q, v, tau);
+            let a = self.forward_dynamics({pass}q, v, tau);
+            ::linkwork::__private::forward_second_derivatives(&first, lambda, |mu| self.inverse_dynamics_second_derivatives({pass}q, v, &a, mu))"
+            ),
+        )
+    };
     let _ = writeln!(
         out,
         "/// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`, with `v̇` by [`forward_dynamics`](Self::forward_dynamics): the Hessians of
@@ -77,15 +95,32 @@ pub fn write_second(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and
         /// free joints `dq` is a motion in body axes.
         ///
-        /// With `μ = M⁻¹ λ` they are those of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations change with
-        /// `q` and `v` as [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) says.
+        /// {source}
         #[inline]\n#[must_use]
         pub fn forward_dynamics_second_derivatives({}) -> ({square}, {square}, {square}, {square}) {{
-            let first = self.forward_dynamics_derivatives({pass}q, v, tau);
-            let a = self.forward_dynamics({pass}q, v, tau);
-            ::linkwork::__private::forward_second_derivatives(&first, lambda, |mu| self.inverse_dynamics_second_derivatives({pass}q, v, &a, mu))
+            {body}
         }}",
         s.parameters(&arguments),
+    );
+}
+
+/// True if there are second derivatives of forward dynamics: forces of contacts that slip have none.
+pub fn has_second(i: &Interface<'_>) -> bool {
+    let slips = i.facts.constraints.is_some_and(|c| c.slipping > 0);
+    !i.facts.kinematic && i.facts.requests.second_derivatives && !slips
+}
+
+/// The trait of second derivatives of constrained mechanisms.
+pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
+    let (scalar, nv) = (s.scalar.name(), s.nv);
+    let (q, v, multipliers) = (s.vector(s.nq), s.vector(nv), s.vector(nc));
+    let (t, pass) = (Argument::T.name(), if s.time { "t, " } else { "" });
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn equation_second_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: &{multipliers}, w: &{v}, z: &{multipliers}, y: &{multipliers}) -> ::linkwork::constraint::EquationSecondDerivatives<{scalar}, {nv}, {nc}> {{
+            let found = self.__constraint_curvature({pass}q, v, a, &lambda.data.0[0], &w.data.0[0], &z.data.0[0], &y.data.0[0]);
+            ::linkwork::__private::with_curvature(self.inverse_dynamics_second_derivatives({pass}q, v, a, w), found)
+        }}"
     );
 }
 
@@ -117,8 +152,20 @@ fn write_blocks(out: &mut String, name: &str, first: &str, charts: &[Chart], squ
 }
 
 /// The functions of the trait of second derivatives, in terms of the inherent ones.
-pub fn write_second_trait(out: &mut String, s: &Signature<'_>) {
+pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
+    if i.facts.constraints.is_some() {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn visit_constraint_curvature<V: ::linkwork::constraint::CurvatureVisitor<{}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+                ::core::option::Option::Some(::linkwork::constraint::CurvatureVisitor::visit(visitor, self))
+            }}",
+            s.scalar.name(),
+            s.nq,
+            s.nv,
+            s.nu
+        );
+    }
     let n = s.nv;
     for (name, third, shape) in [
         ("inverse_dynamics_second_derivatives", A, Shape::Hessian(n)),

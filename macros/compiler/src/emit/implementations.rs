@@ -43,9 +43,9 @@ pub fn write_impls(
         constraints::write_visit(out, &i.constraints, s);
         out.push_str("}\n");
     }
-    if i.facts.requests.second_derivatives && i.facts.constraints.is_none() {
+    if differentiable::has_second(i) {
         begin(out, if s.time { "RheonomicSecondDerivatives" } else { "SecondDerivatives" });
-        differentiable::write_second_trait(out, s);
+        differentiable::write_second_trait(out, i, s);
         out.push_str("}\n");
     }
     if i.facts.requests.batch {
@@ -86,6 +86,14 @@ pub fn write_impls(
                 "{ALLOW}impl{generics} ::linkwork::ConstrainedDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
             );
             constraints::write_derivatives_trait(out, &i.constraints, s);
+            out.push_str("}\n");
+        }
+        if differentiable::has_second(i) {
+            let _ = writeln!(
+                out,
+                "{ALLOW}impl{generics} ::linkwork::ConstrainedSecondDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
+            );
+            differentiable::write_constrained_second_trait(out, i.constraints.names.len(), s);
             out.push_str("}\n");
         }
     }

@@ -156,6 +156,7 @@ impl<'a> Chosen<'a> {
                 | Id::ContactDerivatives
                 | Id::Figures
                 | Id::MotionDerivatives
+                | Id::ConstraintCurvature
                 | Id::InputDerivatives
                 | Id::ConstraintResponse => {}
                 Id::SlippingResponse => {}

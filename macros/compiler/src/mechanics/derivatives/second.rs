@@ -19,7 +19,7 @@
 //! `γ · (I β′ + B α′) + γ′ · (I β + B α) + α · Q α′ + P · (α × α′)`, and what the outer direction itself changes by.
 
 use super::super::crba::{Matrix, momentum};
-use super::super::{accelerations, rnea, velocities};
+use super::super::{accelerations, constraints, rnea, velocities};
 use super::columns::{Column, columns, cross, motions};
 use super::subtree::{Subtree, of_body, subtrees};
 use super::{analytic, is_analytic, symbolic};
@@ -137,6 +137,33 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
         vu: transposed(mixed.by_v),
         uu: symbolic::by_input(model, &by_u),
     }
+}
+
+/// Second derivatives of what constraints add to the equations of motion.
+pub struct ConstraintHessian<'g> {
+    /// By the state and the accelerations.
+    pub state: Hessian<'g>,
+    /// By configuration (rows) and multiplier.
+    pub q_lambda: Matrix<'g>,
+}
+
+/// Those of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)` at given accelerations `a`, with given numbers for the multipliers `λ`, then `w`,
+/// `z` and `y`.
+pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
+    let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
+    let given = |first: usize, n: usize| -> Vec<Expr<'g>> {
+        (first..first + n).map(|k| Quantity::Given(k).expr(model.graph)).collect()
+    };
+    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
+    let (lambda, w, z, y) = (given(0, nc), given(nc, nv), given(nc + nv, nc), given(2 * nc + nv, nc));
+    let (rows, a) = (constraints::jacobian(model), accelerations(model));
+    let along: Vec<Expr<'g>> = rows.iter().map(|row| dot(row, &w)).collect();
+    let biases = constraints::biases(model);
+    let accelerated: Vec<Expr<'g>> = rows.iter().zip(biases).map(|(row, bias)| dot(row, &a) + bias).collect();
+    let sum = dot(&z, &accelerated) + dot(&y, &constraints::rates(model)) - dot(&lambda, &along);
+    let by_q = symbolic::by_configuration(model, &along);
+    let q_lambda = (0..nv).map(|i| by_q.iter().map(|row| -row[i]).collect()).collect();
+    ConstraintHessian { state: of_power(model, &[sum], &[model.graph.one()]), q_lambda }
 }
 
 /// One displacement after another depends on their order where axes turn; of both orders the mean is along their sum.

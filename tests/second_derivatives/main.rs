@@ -1,5 +1,9 @@
 //! Second derivatives of the dynamics: against differences of first ones along the tangent space, on mechanisms with turning
-//! axes, driven motion, and inputs in body axes.
+//! axes, driven motion, and inputs in body axes; constrained ones stand in `constrained`.
+
+mod constrained;
+mod hyper;
+mod reference;
 
 use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives, discrete};
@@ -184,6 +188,22 @@ where
 {
     let mut random = Random::new(11);
     let (q, v) = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    check_steps_from(name, m, method, push, q, v);
+}
+
+/// The same from a state at the time 0.3 s.
+fn check_steps_from<M, S, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    method: &S,
+    push: f64,
+    q: SVector<f64, NV>,
+    v: SVector<f64, NV>,
+) where
+    M: RheonomicSecondDerivatives<NV, NV, NU, Scalar = f64>,
+    S: discrete::TwiceDifferentiableStep<f64>,
+{
+    let mut random = Random::new(12);
     let (u, t) = (random.vector::<NU>(push), 0.3);
     let factors = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
     let (qq, qv, vv, qu, vu, uu) =

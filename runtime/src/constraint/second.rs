@@ -1,0 +1,196 @@
+//! Second derivatives of constrained motion, contracted with factors, for generic code.
+
+use super::ConstrainedDerivatives;
+use super::differentiable::{multipliers, solved_derivatives};
+use super::layout::ConstraintCurvature;
+use crate::blocks::{add_multiple, add_product, product, transposed};
+use crate::{At, Real, RheonomicSecondDerivatives, SecondOrder};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+/// Second derivatives of a mechanism's constrained equations. `#[mechanism(…, second_derivatives)]` implements it for mechanisms
+/// with constraints whose contacts do not slip.
+///
+/// Displacements of the configuration are as for [`ConstrainedDerivatives`], whether the constraints allow them or not; along
+/// `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order. Time `t` as for [`Constrained`](super::Constrained).
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no second derivatives of constrained motion",
+    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
+)]
+pub trait ConstrainedSecondDerivatives<
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>: ConstrainedDerivatives<NQ, NV, NU, NH, NC> + RheonomicSecondDerivatives<NQ, NV, NU>
+{
+    /// Second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` at any `a` and `λ`: of the equations of motion, of
+    /// those of the constraints and of the constraints' rates, contracted with `w`, `z` and `y`.
+    #[allow(clippy::too_many_arguments, reason = "three factors stand beside the state")]
+    fn equation_second_derivatives(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        lambda: &SVector<Self::Scalar, NC>,
+        w: &SVector<Self::Scalar, NV>,
+        z: &SVector<Self::Scalar, NC>,
+        y: &SVector<Self::Scalar, NC>,
+    ) -> EquationSecondDerivatives<Self::Scalar, NV, NC>;
+}
+
+/// Second derivatives of the equations of constrained motion, contracted
+/// ([`equation_second_derivatives`](ConstrainedSecondDerivatives::equation_second_derivatives)). Those by velocity and acceleration, by
+/// velocity and multipliers, and by accelerations and multipliers are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquationSecondDerivatives<T, const NV: usize, const NC: usize> {
+    /// By configuration twice.
+    pub qq: SMatrix<T, NV, NV>,
+    /// By configuration (rows) and velocity.
+    pub qv: SMatrix<T, NV, NV>,
+    /// By velocity twice.
+    pub vv: SMatrix<T, NV, NV>,
+    /// By configuration (rows) and acceleration.
+    pub qa: SMatrix<T, NV, NV>,
+    /// By configuration (rows) and multipliers.
+    pub q_lambda: SMatrix<T, NV, NC>,
+}
+
+/// Those of inverse dynamics with what constraints add.
+pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
+    (qq, qv, vv, qa): SecondOrder<T, NV>,
+    found: ConstraintCurvature<T, NV, NC>,
+) -> EquationSecondDerivatives<T, NV, NC> {
+    let square = |columns| SMatrix::from_array_storage(ArrayStorage(columns));
+    EquationSecondDerivatives {
+        qq: qq + square(found.qq),
+        qv: qv + square(found.qv),
+        vv: vv + square(found.vv),
+        qa: qa + square(found.qa),
+        q_lambda: SMatrix::from_array_storage(ArrayStorage(found.q_lambda)),
+    }
+}
+
+/// What factors `f` of accelerations are for the equations that these solve: `w` and `z` with `M w + Jᵀ z = f`, `J w = 0`.
+pub(crate) fn adjoint<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    f: &SVector<T, NV>,
+) -> (SVector<T, NV>, SVector<T, NC>)
+where
+    T: Real,
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let w = m.constraint_response(t, q, f, &SVector::zeros());
+    (w, multipliers(m, t, q, &(f - m.mass_matrix(t, q) * w)))
+}
+
+/// The second derivatives of `fᵀ v̇` under constraints. `M v̇ + h − Jᵀ λ = τ` and `J v̇ + b = 0` hold along all changes of the state;
+/// they are differentiated twice and contracted with the [`adjoint`] of `f`.
+pub fn constrained_second_derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    tau: &SVector<T, NV>,
+    factors: &SVector<T, NV>,
+) -> SecondOrder<T, NV>
+where
+    T: Real,
+    M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let solved = solved_derivatives(m, t, q, v, tau);
+    let (w, z) = adjoint(m, t, q, factors);
+    let none = SVector::zeros();
+    let found = m.equation_second_derivatives(t, q, v, &solved.a, &solved.lambda, &-w, &-z, &none);
+    let along = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {
+        let mut sum = product(&found.qa, a);
+        add_product(&mut sum, &found.q_lambda, lambda);
+        sum
+    };
+    let [by_q, by_v, by_tau] = solved.by.each_ref().map(along);
+    (with_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
+}
+
+/// `A + B + Bᵀ`.
+pub(crate) fn with_transpose<T: Real, const N: usize>(
+    mut a: SMatrix<T, N, N>,
+    b: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    add_multiple(&mut a, T::one(), b);
+    add_multiple(&mut a, T::one(), &transposed(b));
+    a
+}
+
+/// What is done with a mechanism whose constraints are of any number and have second derivatives, by
+/// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature).
+pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
+    where
+        M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
+}
+
+/// A visitor of a mechanism at an instant.
+pub(crate) struct FrozenCurvature<V, T> {
+    pub(crate) visitor: V,
+    pub(crate) t: T,
+}
+
+impl<V, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
+    for FrozenCurvature<V, T>
+where
+    T: Real,
+    V: CurvatureVisitor<T, NQ, NV, NU>,
+{
+    type Output = V::Output;
+
+    fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> V::Output
+    where
+        M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        self.visitor.visit(&crate::at(mechanism, self.t))
+    }
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC> for At<'_, M, T>
+where
+    T: Real,
+    M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    fn equation_second_derivatives(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        a: &SVector<T, NV>,
+        lambda: &SVector<T, NC>,
+        w: &SVector<T, NV>,
+        z: &SVector<T, NC>,
+        y: &SVector<T, NC>,
+    ) -> EquationSecondDerivatives<T, NV, NC> {
+        self.mechanism.equation_second_derivatives(self.t, q, v, a, lambda, w, z, y)
+    }
+}

@@ -1,0 +1,166 @@
+//! Second derivatives of the projection onto constraints that ends a step, in plain coordinates.
+
+use super::projected::{Correction, MOST_CORRECTIONS, Stop, balance, check_regular, correction, stop};
+use crate::Real;
+use crate::blocks::product;
+use crate::constraint::{
+    ConstrainedSecondDerivatives, EquationSecondDerivatives, adjoint, column, multipliers, set_column,
+    with_transpose,
+};
+use crate::integrate::Error;
+use crate::private::to_f64;
+use nalgebra::{SMatrix, SVector};
+
+/// What factors of the configuration and of the velocity after a projection make of it, by those before.
+pub(super) struct Curvature<T, const NV: usize> {
+    /// The gradient.
+    pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
+    /// Second derivatives by configuration twice.
+    pub(super) qq: SMatrix<T, NV, NV>,
+    /// Those by configuration (rows) and velocity; by velocity twice there are none.
+    pub(super) qv: SMatrix<T, NV, NV>,
+}
+
+/// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) + zᵀ J x + yᵀ (J v + …)`.
+struct Contracted<'a, T, const NV: usize, const NC: usize> {
+    x: &'a SVector<T, NV>,
+    lambda: &'a SVector<T, NC>,
+    w: &'a SVector<T, NV>,
+    z: &'a SVector<T, NC>,
+    y: &'a SVector<T, NC>,
+}
+
+impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
+    /// Their second derivatives: what the equations of motion say of `x` as an acceleration, less what they say at rest.
+    fn curvature<M, const NQ: usize, const NU: usize, const NH: usize>(
+        &self,
+        m: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> EquationSecondDerivatives<T, NV, NC>
+    where
+        M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+    {
+        let Self { x, lambda, w, z, y } = self;
+        let (still, none) = (SVector::zeros(), SVector::zeros());
+        let with = m.equation_second_derivatives(t, q, v, x, lambda, w, z, y);
+        let without = m.equation_second_derivatives(t, q, v, &still, &none, w, z, &none);
+        let (qq, qv, vv) = (with.qq - without.qq, with.qv - without.qv, with.vv - without.vv);
+        EquationSecondDerivatives { qq, qv, vv, ..with }
+    }
+}
+
+/// How multipliers change with a correction whose changes are given, where `M x − Jᵀ λ` changes by `forces` besides.
+fn multiplier_changes<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    change: &SMatrix<T, NV, NV>,
+    forces: &SMatrix<T, NV, NV>,
+) -> SMatrix<T, NC, NV>
+where
+    T: Real,
+    M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let all = product(&m.mass_matrix(t, q), change) + forces;
+    let mut changes = SMatrix::zeros();
+    for j in 0..NV {
+        set_column(&mut changes, j, &multipliers(m, t, q, &column(&all, j)));
+    }
+    changes
+}
+
+/// The second derivatives of `factorsᵀ x` for a correction `x` of the configuration.
+fn of_correction<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    found: &Correction<T, NV, NC>,
+    factors: &SVector<T, NV>,
+) -> SMatrix<T, NV, NV>
+where
+    T: Real,
+    M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let (w, z) = adjoint(m, t, q, factors);
+    let Correction { x, own, forces, change, .. } = found;
+    let (still, none) = (SVector::zeros(), SVector::zeros());
+    let equations = Contracted { x, lambda: own, w: &-w, z: &-z, y: &none }.curvature(m, t, q, &still);
+    // Those of the residuals are derivatives of the Jacobian's rows.
+    let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
+    let holonomic = SVector::from_fn(|k, _| of_residual(k));
+    let residuals = balance(m, t, q, &still, &holonomic).0;
+    let multipliers = multiplier_changes(m, t, q, change, forces);
+    let mixed = product(&equations.qa, change) + product(&equations.q_lambda, &multipliers);
+    with_transpose(equations.qq + residuals, &mixed)
+}
+
+/// The projection of a state, contracted with factors of the state after it.
+pub(super) fn curvature<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: T,
+    (q_free, v_free): (&SVector<T, NQ>, &SVector<T, NV>),
+    (of_q, of_v): (&SVector<T, NV>, &SVector<T, NV>),
+) -> Result<Curvature<T, NV>, Error>
+where
+    T: Real,
+    M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
+{
+    let failed = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, q_free, v_free).map_err(failed)?;
+    check_regular(m, t, &q)?;
+    // The configurations on the way, with how they move with the first.
+    let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
+    let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
+    for stage in &mut way {
+        *stage = (near, moved);
+        count += 1;
+        let found = correction(m, t, &near);
+        moved += product(&found.change, &moved);
+        near = m.integrate(&near, &found.x);
+        if found.done {
+            break;
+        }
+    }
+
+    let x = v - v_free;
+    let Stop { own, forces, turned, kept } = stop(m, t, (&q, &v), &x);
+    let (w, z) = adjoint(m, t, &q, of_v);
+    let none = SVector::zeros();
+    let equations = Contracted { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }.curvature(m, t, &q, &v);
+    let by_x = equations.qa + equations.qv;
+    let identity = SMatrix::<T, NV, NV>::identity();
+    let mixed = product(&by_x, &turned)
+        + product(&equations.q_lambda, &multiplier_changes(m, t, &q, &turned, &forces));
+    let change = kept - identity;
+    let by_v = equations.qv
+        + product(&by_x, &change)
+        + product(&equations.q_lambda, &multiplier_changes(m, t, &q, &change, &SMatrix::zeros()));
+    let mut qq = moved.tr_mul(&product(&with_transpose(equations.qq, &mixed), &moved));
+    let qv = moved.tr_mul(&by_v);
+
+    let mut gradient = of_q + turned.tr_mul(of_v);
+    for (near, moved) in way.iter().take(count).rev() {
+        let found = correction(m, t, near);
+        qq += moved.tr_mul(&product(&of_correction(m, t, near, &found, &gradient), moved));
+        gradient += found.change.tr_mul(&gradient);
+    }
+    Ok(Curvature { gradient: (gradient, kept.tr_mul(of_v)), qq, qv })
+}

@@ -1,0 +1,88 @@
+//! Hyper-dual numbers: a value with its derivatives along two directions and the mixed second one, exact to rounding (Fike and
+//! Alonso, *The development of hyper-dual numbers for exact second-derivative calculations*, 2011).
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// `x + a ε₁ + b ε₂ + c ε₁ ε₂`.
+#[derive(Clone, Copy, Debug)]
+pub struct Hyper {
+    pub value: f64,
+    pub first: [f64; 2],
+    pub second: f64,
+}
+
+impl Hyper {
+    /// A constant.
+    pub fn of(value: f64) -> Hyper {
+        Hyper { value, first: [0.0; 2], second: 0.0 }
+    }
+
+    /// A function by its value and its first two derivatives.
+    fn map(self, [value, first, second]: [f64; 3]) -> Hyper {
+        let [a, b] = self.first;
+        Hyper { value, first: [first * a, first * b], second: first * self.second + second * a * b }
+    }
+
+    pub fn sin_cos(self) -> (Hyper, Hyper) {
+        let (s, c) = self.value.sin_cos();
+        (self.map([s, c, -s]), self.map([c, -s, -c]))
+    }
+}
+
+impl Add for Hyper {
+    type Output = Hyper;
+    fn add(self, other: Hyper) -> Hyper {
+        let ([a, b], [c, d]) = (self.first, other.first);
+        Hyper { value: self.value + other.value, first: [a + c, b + d], second: self.second + other.second }
+    }
+}
+
+impl Neg for Hyper {
+    type Output = Hyper;
+    fn neg(self) -> Hyper {
+        Hyper { value: -self.value, first: self.first.map(|x| -x), second: -self.second }
+    }
+}
+
+impl Sub for Hyper {
+    type Output = Hyper;
+    fn sub(self, other: Hyper) -> Hyper {
+        self + -other
+    }
+}
+
+impl Mul for Hyper {
+    type Output = Hyper;
+    fn mul(self, other: Hyper) -> Hyper {
+        let ([a, b], [c, d], x, y) = (self.first, other.first, self.value, other.value);
+        let second = x * other.second + y * self.second + a * d + b * c;
+        Hyper { value: x * y, first: [a * y + x * c, b * y + x * d], second }
+    }
+}
+
+impl Div for Hyper {
+    type Output = Hyper;
+    fn div(self, other: Hyper) -> Hyper {
+        let y = other.value;
+        self * other.map([1.0 / y, -1.0 / (y * y), 2.0 / (y * y * y)])
+    }
+}
+
+/// `A x = b`, by elimination with interchanges.
+pub fn solve<const N: usize>(mut a: [[Hyper; N]; N], mut b: [Hyper; N]) -> [Hyper; N] {
+    for k in 0..N {
+        let best = (k..N).max_by(|i, j| a[*i][k].value.abs().total_cmp(&a[*j][k].value.abs()));
+        let best = best.unwrap_or(k);
+        a.swap(k, best);
+        b.swap(k, best);
+        let (pivot, side) = (a[k], b[k]);
+        for i in (0..N).filter(|i| *i != k) {
+            let factor = a[i][k] / pivot[k];
+            for (entry, other) in a[i].iter_mut().zip(pivot) {
+                *entry = *entry - factor * other;
+            }
+            b[i] = b[i] - factor * side;
+        }
+    }
+    std::array::from_fn(|k| b[k] / a[k][k])
+}

@@ -1,0 +1,40 @@
+//! Second derivatives of inverse dynamics against Pinocchio's.
+
+use linkwork::prelude::*;
+use support::compare::assert_similar;
+use support::table::Record;
+
+#[mechanism(urdf = "../models/urdf/ur5.urdf", second_derivatives)]
+struct Ur5;
+
+#[mechanism(urdf = "../models/urdf/gen3.urdf", second_derivatives)]
+struct Gen3;
+
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
+struct Solo;
+
+/// Relative to the largest entry of a reference.
+const REFERENCE: f64 = 1e-9;
+
+macro_rules! robot {
+    ($robot:ident, $file:literal) => {
+        let table = Record::load(concat!("robots/second_order/", $file, ".json"));
+        for (i, case) in table.records("cases").iter().enumerate() {
+            let (q, v, a, lambda) =
+                (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("lambda"));
+            let (qq, qv, vv, qa) = $robot.inverse_dynamics_second_derivatives(q, v, a, lambda);
+            for (key, found) in [("qq", qq), ("qv", qv), ("vv", vv), ("qa", qa)] {
+                let expected: SMatrix<f64, { $robot::NV }, { $robot::NV }> = case.matrix(key);
+                let what = format!("{}, case {i}: {key}", $file);
+                assert_similar(&what, found.as_slice(), expected.as_slice(), REFERENCE);
+            }
+        }
+    };
+}
+
+#[test]
+fn second_derivatives_of_robots_are_those_of_pinocchio() {
+    robot!(Ur5, "ur5");
+    robot!(Gen3, "gen3");
+    robot!(Solo, "solo12");
+}
