@@ -1,7 +1,9 @@
 //! Derivatives of the dynamics by parameters: against differences of the functions that they are the derivatives of.
 
-use linkwork::mechanism;
+use linkwork::discrete::{self, StepByParameters};
 use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::{Rk4, SemiImplicitEuler};
+use linkwork::{RheonomicDerivatives, Sensitivities, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
@@ -55,7 +57,7 @@ struct Quadruped {
 }
 
 /// A bead on a hoop that is driven about the vertical.
-#[mechanism(gravity = -g * z, sensitivities)]
+#[mechanism(gravity = -g * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
 struct Hoop {
     g: f64,
@@ -161,4 +163,70 @@ fn driven_in_time() {
         2.0 * hoop.spin * sin * cos,
     ];
     assert_similar("∂v̇/∂p", by.as_slice(), &expected, 1e-12);
+}
+
+/// A flying body with a pendulum, pushed along an arm whose length is a parameter.
+#[mechanism(gravity = -g * z, derivatives, sensitivities)]
+#[derive(Clone, Copy)]
+struct Flyer {
+    g: f64,
+    m: f64,
+    l: f64,
+    #[body(mass = m, com = l / 9 * z, inertia = cuboid(m, l, 0.7 * l, 0.2 * l))]
+    frame: Body,
+    #[body(mass = m / 3, com = -l * z, inertia = cuboid(m / 3, l / 5, l / 4, l))]
+    load: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[joint(frame.at(-l / 5 * z) -> load)]
+    hook: Ball,
+    #[acts(on = frame.at(l * x), along = frame.z)]
+    rotor: Force,
+}
+
+/// Derivatives of a step against differences, along displacements of its end.
+fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+    what: &str,
+    m: M,
+    method: &S,
+    parameters: [fn(&mut M) -> &mut f64; NP],
+) where
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64> + Sensitivities<NQ, NV, NU, NP, Scalar = f64> + Copy,
+    S: StepByParameters<f64>,
+{
+    let mut random = Random::new(37);
+    for _ in 0..3 {
+        let q = m.integrate(&m.neutral(), &random.vector(1.0));
+        let (v, u, t) = (random.vector(1.5), random.vector(4.0), random.uniform(1.0));
+        let step = |m: &M| discrete::step(m, method, t, &q, &v, &u).expect("it moves");
+        let end = step(&m);
+        let (by_q, by_v) = discrete::by_parameters(&m, method, t, &q, &v, &u).expect("it moves");
+        let expected = slopes(m, parameters, |other| m.difference(&end.0, &step(other).0));
+        assert_similar(&format!("{what}: ∂q/∂p"), by_q.as_slice(), expected.as_slice(), TOLERANCE);
+        let expected = slopes(m, parameters, |other| step(other).1);
+        assert_similar(&format!("{what}: ∂v/∂p"), by_v.as_slice(), expected.as_slice(), TOLERANCE);
+    }
+}
+
+#[test]
+fn steps() {
+    let flyer = Flyer { g: 9.7, m: 1.3, l: 0.6 };
+    let of_flyer: [fn(&mut Flyer) -> &mut f64; 3] = [|m| &mut m.g, |m| &mut m.m, |m| &mut m.l];
+    assert_eq!(<Flyer as Sensitivities<_, _, _, _>>::PARAMETERS, Flyer::PARAMETERS);
+    check_step("flyer, Rk4", flyer, &Rk4::step(0.1), of_flyer);
+    check_step("flyer, Euler", flyer, &SemiImplicitEuler::step(0.1), of_flyer);
+    let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
+    let of_hoop: [fn(&mut Hoop) -> &mut f64; 4] =
+        [|m| &mut m.g, |m| &mut m.m, |m| &mut m.radius, |m| &mut m.spin];
+    check_step("hoop, Rk4", hoop, &Rk4::step(0.05), of_hoop);
+}
+
+#[test]
+fn a_period_that_is_none_is_an_error() {
+    let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
+    for period in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let found =
+            discrete::by_parameters(&hoop, &Rk4::step(period), 0.0, &[0.1].into(), &[0.0].into(), &[].into());
+        assert!(found.is_err(), "{period}: {found:?}");
+    }
 }

@@ -43,10 +43,12 @@ use nalgebra::{SMatrix, SVector};
 
 mod explicit;
 mod implicit;
+mod parameters;
 mod projected;
 mod second;
 mod projection;
 
+pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
 
 /// The state after one step of a method under inputs `u` that are held: configuration and velocity.

@@ -96,6 +96,7 @@ pub use outputs::{OutputDerivatives, OutputJacobians, Outputs};
 pub use parameters::{Fault, ParameterError};
 pub use rheonomic::{At, Rheonomic, at};
 pub use second::{InputSecondOrder, RheonomicSecondDerivatives, SecondDerivatives, SecondOrder};
+pub use sensitivities::Sensitivities;
 #[doc(inline)]
 pub use simulate::simulate;
 pub use table::{Table, TableError};
@@ -133,6 +134,7 @@ mod product;
 mod rheonomic;
 pub mod rotation;
 mod second;
+mod sensitivities;
 pub mod simulate;
 mod table;
 mod trigonometry;

@@ -16,7 +16,7 @@ use super::prepared::{Content, write_prepared};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
 use super::{constraints, contacts};
-use super::{file, lanes, measurements, reactions, states, validate};
+use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
 use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
 use crate::expr::print::Written;
@@ -109,6 +109,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         interface,
         &s,
     );
+    sensitivities::write_impl(&mut emitted.text, &interface.shell.ident.to_string(), interface, &s);
     states::write_impls(&mut emitted.text, &output.functions, interface, &s);
     if let Some(prepared) = &output.prepared {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
@@ -166,6 +167,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         interface,
         &s,
     );
+    sensitivities::write_impl(&mut emitted.text, &interface.shell.ident.to_string(), interface, &s);
     states::write_impls(&mut emitted.text, functions, interface, &s);
     if interface.facts.requests.prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());

@@ -26,6 +26,7 @@ mod pieces;
 mod prepared;
 mod reactions;
 mod scalar;
+mod sensitivities;
 mod signature;
 mod states;
 mod stores;

@@ -1,0 +1,42 @@
+//! The runtime's trait of derivatives by parameters.
+
+use super::interface::{ALLOW, Head, Interface};
+use super::signature::Signature;
+use crate::catalogue::{Argument, Shape};
+use std::fmt::Write;
+
+/// Implements it for the type of this name, if it has them.
+pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+    use Argument::{A, Q, Tau, U, V};
+    let facts = &i.facts;
+    if !facts.requests.sensitivities
+        || facts.kinematic
+        || facts.constraints.is_some()
+        || facts.parameters == 0
+    {
+        return;
+    }
+    let Head { generics, arguments, bounds } = &Head::new(i, s);
+    let np = facts.parameters;
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::Sensitivities<{}, {}, {}, {np}> for {name}{arguments} {bounds} {{
+        const PARAMETERS: [&'static str; {np}] = Self::PARAMETERS;",
+        s.nq, s.nv, s.nu
+    );
+    for (function, third) in [
+        ("inverse_dynamics_by_parameters", A),
+        ("forward_dynamics_by_parameters", Tau),
+        ("generalized_forces_by_parameters", U),
+    ] {
+        let own: Vec<&str> = s.timed(&[Q, V, third]).iter().map(|a| a.name()).collect();
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn {function}({}) -> {} {{ Self::{function}(self, {}) }}",
+            s.parameters(&[Argument::T, Q, V, third]),
+            s.shape(Shape::Matrix(s.nv, np)),
+            own.join(", ")
+        );
+    }
+    out.push_str("}\n");
+}

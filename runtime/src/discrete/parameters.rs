@@ -1,0 +1,201 @@
+//! How steps change with the parameters of a mechanism.
+
+use super::FixedStep;
+use crate::blocks::{add_product, product};
+use crate::integrate::{Error, Rk4, SemiImplicitEuler};
+use crate::private::{constant, to_f64};
+use crate::{Derivatives, Real, RheonomicDerivatives, Sensitivities, at};
+use nalgebra::{SMatrix, SVector};
+
+/// How configuration and velocity after a step change with the parameters: `(∂q⁺/∂p, ∂v⁺/∂p)`, a column for each of
+/// [`PARAMETERS`](Sensitivities::PARAMETERS), exact to rounding. The step is that of [`transition`](super::transition), whose
+/// Jacobians by state and inputs stand beside these; changes of the configuration are displacements, in body axes for ball and free
+/// joints. Estimators of parameters, and designs over many steps, add up `x_p⁺ = A x_p + ∂x⁺/∂p`.
+///
+/// The mechanism has the words `derivatives` and `sensitivities`, and no constraints.
+///
+/// ```
+/// use linkwork::discrete;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y, derivatives, sensitivities)]
+/// struct Pendulum {
+///     length: f64,
+///     #[body(mass = 2, com = -length * y)]
+///     bob: Body,
+///     #[joint(ground -> bob, about = z)]
+///     hinge: Pin,
+///     #[acts(on = hinge)]
+///     motor: Torque,
+/// }
+///
+/// # fn main() -> Result<(), Error> {
+/// let (method, q, v, u) = (SemiImplicitEuler::step(0.01), [0.3].into(), [0.0].into(), [0.0].into());
+/// let (_, by_length) = discrete::by_parameters(&Pendulum { length: 0.5 }, &method, 0.0, &q, &v, &u)?;
+/// // v⁺ = −h g / l sin q.
+/// assert!((by_length[0] - 0.01 * 9.81 / 0.25 * 0.3_f64.sin()).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state that is not.
+#[allow(clippy::type_complexity, reason = "two matrices")]
+pub fn by_parameters<M, T, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    S: StepByParameters<T>,
+{
+    const {
+        assert!(
+            !M::CONSTRAINED,
+            "a step with derivatives by parameters is one of a mechanism without constraints"
+        );
+        assert!(
+            !M::CONTACTING,
+            "a step with derivatives by parameters is one of a mechanism whose contacts do not open and close"
+        );
+    }
+    method.check()?;
+    let (by_q, by_v) = method.differentiate_by_parameters(mechanism, t, (q, v), u);
+    let finite = by_q.iter().chain(by_v.iter()).all(|x| x.is_finite());
+    if finite { Ok((by_q, by_v)) } else { Err(Error::NotFinite { t: to_f64(t) }) }
+}
+
+/// A method whose steps have derivatives by parameters.
+pub trait StepByParameters<T: Real>: FixedStep<T> {
+    /// Those of a step of a mechanism without constraints; what [`by_parameters`] calls.
+    #[allow(clippy::type_complexity, reason = "two matrices")]
+    fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        state: (&SVector<T, NQ>, &SVector<T, NV>),
+        u: &SVector<T, NU>,
+    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>;
+}
+
+/// A vector of the tangent space with how it changes with the parameters.
+#[derive(Clone, Copy)]
+struct Changing<T, const NV: usize, const NP: usize> {
+    value: SVector<T, NV>,
+    by: SMatrix<T, NV, NP>,
+}
+
+impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
+    fn fixed(value: &SVector<T, NV>) -> Self {
+        Self { value: *value, by: SMatrix::zeros() }
+    }
+
+    /// `self + s other`.
+    fn plus(&self, s: T, other: &Self) -> Self {
+        Self { value: self.value + other.value * s, by: self.by + other.by * s }
+    }
+
+    fn scaled(&self, s: T) -> Self {
+        Self { value: self.value * s, by: self.by * s }
+    }
+}
+
+/// The rates at a stage of a step that starts with `q` at the time `t`: after `h` seconds, displaced and with a velocity.
+fn acceleration<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+    m: &M,
+    t: T,
+    (q, displacement): (&SVector<T, NQ>, &Changing<T, NV, NP>),
+    v: &Changing<T, NV, NP>,
+    u: &SVector<T, NU>,
+) -> Changing<T, NV, NP>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+{
+    let here = m.integrate(q, &displacement.value);
+    let moved = moved(m, displacement);
+    let motion = at(m, t).linear_motion(&here, &v.value, u);
+    let tau = m.generalized_forces(t, &here, &v.value, u);
+    let mut by = m.forward_dynamics_by_parameters(t, &here, &v.value, &tau);
+    let pushes = m.generalized_forces_by_parameters(t, &here, &v.value, u);
+    if pushes.iter().any(|x| *x != T::zero()) {
+        let (.., inverse) = m.forward_dynamics_derivatives(t, &here, &v.value, &tau);
+        add_product(&mut by, &inverse, &pushes);
+    }
+    add_product(&mut by, &motion.by_q, &moved);
+    add_product(&mut by, &motion.by_v, &v.by);
+    Changing { value: motion.acceleration, by }
+}
+
+/// How the configuration after a displacement moves.
+fn moved<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+    m: &M,
+    displacement: &Changing<T, NV, NP>,
+) -> SMatrix<T, NV, NP>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    if NQ == NV {
+        displacement.by
+    } else {
+        product(&m.integrate_derivatives(&displacement.value).1, &displacement.by)
+    }
+}
+
+impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
+    fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+        &self,
+        m: &M,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        u: &SVector<T, NU>,
+    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    {
+        let (h, v) = (self.length(), Changing::fixed(v));
+        let after = v.plus(h, &acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
+        (moved(m, &after.scaled(h)), after.by)
+    }
+}
+
+impl<T: Real> StepByParameters<T> for Rk4<T> {
+    fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+        &self,
+        m: &M,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        u: &SVector<T, NU>,
+    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    {
+        let (h, v) = (self.length(), Changing::fixed(v));
+        let half = h * constant(0.5);
+        let stage = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
+            let (displacement, v) = (rate.scaled(after), v.plus(after, change));
+            let (by_dv, by_v) = m.tangent_rate_derivatives(&displacement.value, &v.value);
+            let value = m.tangent_rate(&displacement.value, &v.value);
+            let mut by = product(&by_v, &v.by);
+            add_product(&mut by, &by_dv, &displacement.by);
+            (Changing { value, by }, acceleration(m, t + after, (q, &displacement), &v, u))
+        };
+        let k1 = (v, acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
+        let k2 = stage(half, &k1);
+        let k3 = stage(half, &k2);
+        let k4 = stage(h, &k3);
+        let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
+        let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
+        let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
+        (moved(m, &displacement), change.by)
+    }
+}

@@ -1,0 +1,83 @@
+//! Derivatives of the dynamics by the parameters of the struct, for generic code: identification, design, robust control.
+
+use crate::{At, Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// Derivatives of a mechanism's functions by its `NP` parameters, a column for each. `#[mechanism(…, sensitivities)]` implements it
+/// for mechanisms with parameters and without constraints. Time `t`, s, matters where a function depends on it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no derivatives by parameters",
+    note = "the word asks for them: `#[mechanism(…, sensitivities)]`; mechanisms without parameters and those with constraints have none"
+)]
+pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
+    Rheonomic<NQ, NV, NU>
+{
+    /// The name of every parameter.
+    const PARAMETERS: [&'static str; NP];
+
+    /// `∂τ/∂p` of [`inverse_dynamics`](Rheonomic::inverse_dynamics), N and N·m per unit of the parameter.
+    fn inverse_dynamics_by_parameters(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> SMatrix<Self::Scalar, NV, NP>;
+
+    /// `∂v̇/∂p` of [`forward_dynamics`](Rheonomic::forward_dynamics), m/s² and rad/s² per unit of the parameter.
+    fn forward_dynamics_by_parameters(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> SMatrix<Self::Scalar, NV, NP>;
+
+    /// `∂τ/∂p` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces), N and N·m per unit of the parameter.
+    fn generalized_forces_by_parameters(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SMatrix<Self::Scalar, NV, NP>;
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize> Sensitivities<NQ, NV, NU, NP>
+    for At<'_, M, T>
+where
+    T: Real,
+    M: Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+{
+    const PARAMETERS: [&'static str; NP] = M::PARAMETERS;
+
+    fn inverse_dynamics_by_parameters(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        a: &SVector<T, NV>,
+    ) -> SMatrix<T, NV, NP> {
+        self.mechanism.inverse_dynamics_by_parameters(self.t, q, v, a)
+    }
+
+    fn forward_dynamics_by_parameters(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> SMatrix<T, NV, NP> {
+        self.mechanism.forward_dynamics_by_parameters(self.t, q, v, tau)
+    }
+
+    fn generalized_forces_by_parameters(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> SMatrix<T, NV, NP> {
+        self.mechanism.generalized_forces_by_parameters(self.t, q, v, u)
+    }
+}
