@@ -88,11 +88,20 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     text
 }
 
-/// A table of what the functions cost.
+/// A table of what the functions cost, and of what a worst case is reckoned from.
 pub fn operations(functions: &[Function]) -> String {
     let mut text = String::from(
-        "\n# Operations\n\n| method | multiplications | additions | divisions | functions |\n| --- | ---: | ---: | ---: | ---: |\n",
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | held | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
+    let mut row = |name: &str, program: &Program| {
+        let c = program.counts;
+        let (held, branches) = (program.most_live(), program.branches());
+        let _ = writeln!(
+            text,
+            "| {name} | {} | {} | {} | {} | {held} | {branches} |",
+            c.mul, c.add, c.div, c.calls
+        );
+    };
     for f in functions {
         let name = match f.id {
             Id::PassiveForces => "passive forces, which others call".to_string(),
@@ -101,15 +110,16 @@ pub fn operations(functions: &[Function]) -> String {
             _ if f.is_hidden() => continue,
             _ => format!("`{}`", f.name),
         };
-        let c = f.program.counts;
-        if c.total() + c.calls > 0 {
-            let _ = writeln!(text, "| {name} | {} | {} | {} | {} |", c.mul, c.add, c.div, c.calls);
+        if f.program.counts.total() + f.program.counts.calls > 0 {
+            row(&name, &f.program);
         }
         if let Some(program) = &f.program.simd {
-            let c = program.counts;
-            let _ = writeln!(text, "| the same in lanes | {} | {} | {} | {} |", c.mul, c.add, c.div, c.calls);
+            row("the same in lanes", program);
         }
     }
+    text.push_str(
+        "\nStraight lines without loops and recursion. *Held* are the most numbers at once beside the arguments, those that are returned among them; with 8 bytes each (`f64`) they are what an optimised build needs of the stack, apart from copies of what is returned. *Branches* are taken for angles beyond 10⁵ rad (one for all of them), in tables and in functions of the library; none where it says 0. The chapter `speed` of the guide says how a worst case is reckoned.\n",
+    );
     text
 }
 

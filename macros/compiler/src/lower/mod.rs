@@ -10,6 +10,7 @@ mod factor;
 mod fuse;
 mod hoist;
 mod lanes;
+mod live;
 mod negations;
 pub mod pipeline;
 mod program;
