@@ -47,8 +47,10 @@ fn blocks_obey_riccatis_equation() {
     let m = Flyer {};
     let q = m.integrate(&Flyer::neutral(&m), &random.vector(1.0));
     let (v, u) = (random.vector(1.0), random.vector(3.0));
-    let step = discrete::transition(&m, &Rk4::step(0.1), 0.0, &q, &v, &u).expect("it moves");
-    let (a, b) = (step.a::<12>(), step.b::<12>());
+    let steps = [
+        discrete::transition(&m, &Rk4::step(0.1), 0.0, &q, &v, &u).expect("it moves"),
+        discrete::transition(&m, &SemiImplicitEuler::step(0.1), 0.0, &q, &v, &u).expect("it moves"),
+    ];
     let (s, c, r) = (positive::<12>(&mut random), positive::<14>(&mut random), 0.3);
     let (g, w) = (random.vector::<14>(1.0), random.vector::<12>(1.0));
     let block =
@@ -73,8 +75,9 @@ fn blocks_obey_riccatis_equation() {
         qv: part(0, 1),
         vv: part(1, 1),
     };
-    for r in [0.0, r] {
-        let (policy, found) = backward(&step, &cost, &after, r).expect("it is convex");
+    for (step, r) in steps.iter().flat_map(|step| [(step, 0.0), (step, r)]) {
+        let (a, b) = (step.a::<12>(), step.b::<12>());
+        let (policy, found) = backward(step, &cost, &after, r).expect("it is convex");
         let xx = c.fixed_view::<12, 12>(0, 0) + a.transpose() * s * a;
         let ux = c.fixed_view::<2, 12>(12, 0) + b.transpose() * s * a;
         let uu = c.fixed_view::<2, 2>(12, 12) + b.transpose() * s * b;
@@ -96,6 +99,52 @@ fn blocks_obey_riccatis_equation() {
         assert!((found.q - slope.fixed_rows::<6>(0)).amax() < 1e-12 * scale);
         assert!((found.v - slope.fixed_rows::<6>(6)).amax() < 1e-12 * scale);
     }
+}
+
+/// A flying body with an arm: some coordinates turn axes, others are plain.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Flapper {
+    #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
+    frame: Body,
+    #[body(mass = 0.4, com = 0.2 * x, inertia = diagonal(0.001, 0.004, 0.004))]
+    arm: Body,
+    #[joint(ground -> frame)]
+    flight: Free,
+    #[joint(frame.at(0.1 * x) -> arm, about = y)]
+    hinge: Pin,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = frame.at(-0.2 * x), along = frame.z)]
+    rotor: Force,
+}
+
+/// What is known of a step whose configuration follows from its velocity changes the work, not the result.
+#[test]
+fn steps_that_are_chained_are_steps() {
+    let (mut random, m) = (Random::new(3), Flapper {});
+    let q = m.integrate(&Flapper::neutral(&m), &random.vector(1.0));
+    let (v, u) = (random.vector(1.0), random.vector(3.0));
+    let step = discrete::transition(&m, &SemiImplicitEuler::step(0.1), 0.0, &q, &v, &u).expect("it moves");
+    assert!(step.chained.is_some());
+    let s = positive::<14>(&mut random);
+    let part = |i: usize, j: usize| s.fixed_view::<7, 7>(7 * i, 7 * j).into_owned();
+    let after = Value {
+        q: random.vector(1.0),
+        v: random.vector(1.0),
+        qq: part(0, 0),
+        qv: part(0, 1),
+        vv: part(1, 1),
+    };
+    let cost = Quadratic { uu: SMatrix::identity(), qq: SMatrix::identity() * 0.3, ..Quadratic::zeros() };
+    let (policy, value) = backward(&step, &cost, &after, 0.2).expect("it is convex");
+    let plain = discrete::Transition { chained: None, ..step };
+    let (expected, to_go) = backward(&plain, &cost, &after, 0.2).expect("it is convex");
+    let scale = to_go.hessian::<14>().amax();
+    assert!((value.hessian::<14>() - to_go.hessian::<14>()).amax() < 1e-12 * scale);
+    assert!((value.q - to_go.q).amax() < 1e-12 * scale && (value.v - to_go.v).amax() < 1e-12 * scale);
+    assert!((policy.change - expected.change).amax() < 1e-12 * expected.change.amax());
+    assert!((policy.by_q - expected.by_q).amax() < 1e-12 * expected.by_q.amax());
+    assert!((policy.by_v - expected.by_v).amax() < 1e-12 * expected.by_v.amax());
 }
 
 #[test]

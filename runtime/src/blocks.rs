@@ -136,6 +136,50 @@ pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
     SMatrix::from_array_storage(ArrayStorage(turned))
 }
 
+/// Whether a column is that of the identity.
+fn is_unit<T: Real, const N: usize>(column: &[T; N], j: usize) -> bool {
+    column.iter().enumerate().all(|(i, x)| *x == if i == j { T::one() } else { T::zero() })
+}
+
+/// `A D`, where most columns of `D` are those of the identity.
+pub fn times_nearly_identity<T: Real, const R: usize, const N: usize>(
+    a: &SMatrix<T, R, N>,
+    d: &SMatrix<T, N, N>,
+) -> SMatrix<T, R, N> {
+    let mut out = *a;
+    for (j, (to, factors)) in out.data.0.iter_mut().zip(&d.data.0).enumerate() {
+        if is_unit(factors, j) {
+            continue;
+        }
+        *to = [T::zero(); R];
+        for (factor, from) in factors.iter().zip(&a.data.0).filter(|(factor, _)| **factor != T::zero()) {
+            for (sum, x) in to.iter_mut().zip(from) {
+                *sum = Compiled::mul_add(*x, *factor, *sum);
+            }
+        }
+    }
+    out
+}
+
+/// `D A`, where most columns of `D` are those of the identity.
+pub fn nearly_identity_times<T: Real, const N: usize, const C: usize>(
+    d: &SMatrix<T, N, N>,
+    a: &SMatrix<T, N, C>,
+) -> SMatrix<T, N, C> {
+    let mut out = *a;
+    for (j, column) in d.data.0.iter().enumerate().filter(|(j, column)| !is_unit(column, *j)) {
+        let mut beyond = *column;
+        beyond.iter_mut().skip(j).take(1).for_each(|x| *x -= T::one());
+        for (to, from) in out.data.0.iter_mut().zip(&a.data.0) {
+            let factor = from.get(j).copied().unwrap_or(T::zero());
+            for (sum, x) in to.iter_mut().zip(&beyond) {
+                *sum = Compiled::mul_add(*x, factor, *sum);
+            }
+        }
+    }
+    out
+}
+
 /// `A += s B`.
 #[inline]
 pub fn add_multiple<T: Real, const R: usize, const C: usize>(

@@ -45,8 +45,8 @@ mod explicit;
 mod implicit;
 mod parameters;
 mod projected;
-mod second;
 mod projection;
+mod second;
 
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
@@ -289,9 +289,20 @@ pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub v_by_v: SMatrix<T, NV, NV>,
     /// How the velocity changes with the inputs.
     pub v_by_u: SMatrix<T, NV, NU>,
-    /// The period `h`, s, of a step with `q⁺ = q + h v⁺` ([`SemiImplicitEuler`] in plain coordinates): its derivatives follow from
-    /// those of the velocity, which halves what [`backward`](crate::optimal::backward) has to do.
-    pub chained: Option<T>,
+    /// Of a step with `q⁺ = q ⊕ h v⁺` ([`SemiImplicitEuler`] without constraints) how the configuration follows from the velocity: the
+    /// derivatives of the former follow, too, which halves what [`backward`](crate::optimal::backward) has to do.
+    pub chained: Option<Chained<T, NV>>,
+}
+
+/// How the configuration of a step follows from its velocity: `δq⁺ = by_q δq + h by_displacement δv⁺`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chained<T, const NV: usize> {
+    /// The period `h`, s.
+    pub period: T,
+    /// How `q ⊕ h v⁺` moves with `q`: the identity but for ball and free joints.
+    pub by_q: SMatrix<T, NV, NV>,
+    /// How it moves with the displacement `h v⁺`: the identity but for ball and free joints.
+    pub by_displacement: SMatrix<T, NV, NV>,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {

@@ -52,9 +52,11 @@
 //! # }
 //! ```
 
-use crate::blocks::{add_multiple, add_product, factors, make_symmetric, product, solve, transposed};
+use crate::blocks::{
+    add_multiple, add_product, factors, make_symmetric, product, solve, times_nearly_identity, transposed,
+};
 use crate::derivatives::entry;
-use crate::discrete::Transition;
+use crate::discrete::{Chained, Transition};
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
 use nalgebra::{SMatrix, SVector};
@@ -206,8 +208,8 @@ pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     after: &Value<T, NV>,
     regularisation: T,
 ) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-    let before = match step.chained {
-        Some(h) => chained(step, cost, after, h),
+    let before = match &step.chained {
+        Some(chain) => chained(step, cost, after, chain),
         None => general(step, cost, after),
     };
     before.minimised(regularisation)
@@ -278,27 +280,22 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
     add_product(sum, v, of_v);
 }
 
-/// For a step with `q⁺ = q + h v⁺`: with `G` the derivatives of `v⁺`, `A = [1 0; 0 0] + H G_x` and `B = H G_u`, `H = [h; 1]`, so that
-/// `W = Hᵀ S H` takes the place of `S`.
+/// For a step with `q⁺ = q ⊕ h v⁺`: with `G` the derivatives of `v⁺`, and those `E` and `D` of `⊕`, `A = [E 0; 0 0] + H G_x` and
+/// `B = H G_u`, `H = [h D; 1]`, so that `W = Hᵀ S H` takes the place of `S`.
 fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
     after: &Value<T, NV>,
-    h: T,
+    chain: &Chained<T, NV>,
 ) -> Before<T, NV, NU> {
     let mut before = Before::of(cost);
-    let vq = transposed(&after.qv);
-    // Z = h S_qq + S_qv, W = h (Z + S_vq) + S_vv.
-    let (mut z, mut w) = (after.qv, after.vv);
-    add_multiple(&mut z, h, &after.qq);
-    add_multiple(&mut w, h, &z);
-    add_multiple(&mut w, h, &vq);
+    let Link { own, z, w, back } = Link::of::<NQ>(after, chain);
+    add_multiple(&mut before.qq, T::one(), &own);
     let (by_q, by_v, by_u) = (&step.v_by_q, &step.v_by_v, &step.v_by_u);
     let (q_rows, v_rows, u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
     // W G_q + Zᵀ, W G_v, W G_u.
     let mut of_q = transposed(&z);
     add_product(&mut of_q, &w, by_q);
-    add_multiple(&mut before.qq, T::one(), &after.qq);
     add_product(&mut before.qq, &z, by_q);
     add_product(&mut before.qq, &q_rows, &of_q);
     add_product(&mut before.uq, &u_rows, &of_q);
@@ -308,13 +305,47 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     add_product(&mut before.vv, &v_rows, &of_v);
     add_product(&mut before.uv, &u_rows, &of_v);
     add_product(&mut before.uu, &u_rows, &product(&w, by_u));
-    let mut gradient = after.v;
-    add_multiple(&mut gradient, h, &after.q);
-    add_multiple(&mut before.q, T::one(), &after.q);
-    add_product(&mut before.q, &q_rows, &gradient);
-    add_product(&mut before.v, &v_rows, &gradient);
-    add_product(&mut before.u, &u_rows, &gradient);
+    let [of_q, gradient] = &back;
+    add_multiple(&mut before.q, T::one(), of_q);
+    add_product(&mut before.q, &q_rows, gradient);
+    add_product(&mut before.v, &v_rows, gradient);
+    add_product(&mut before.u, &u_rows, gradient);
     before
+}
+
+/// The costs to go by the configuration before a step and by the velocity after it, which the configuration after it follows.
+struct Link<T, const NV: usize> {
+    /// `Eᵀ S_qq E`.
+    own: SMatrix<T, NV, NV>,
+    /// `Eᵀ (h S_qq D + S_qv)`.
+    z: SMatrix<T, NV, NV>,
+    /// `Hᵀ S H`.
+    w: SMatrix<T, NV, NV>,
+    /// `Eᵀ s_q` and `Hᵀ s`.
+    back: [SVector<T, NV>; 2],
+}
+
+impl<T: Real, const NV: usize> Link<T, NV> {
+    fn of<const NQ: usize>(after: &Value<T, NV>, chain: &Chained<T, NV>) -> Self {
+        let (h, vq) = (chain.period, transposed(&after.qv));
+        let (mut z, mut w) = (after.qv, after.vv);
+        if NQ == NV {
+            add_multiple(&mut z, h, &after.qq);
+            add_multiple(&mut w, h, &z);
+            add_multiple(&mut w, h, &vq);
+            let back = [after.q, after.v + after.q * h];
+            return Self { own: after.qq, z, w, back };
+        }
+        let (e, d) = (&chain.by_q, &chain.by_displacement);
+        // `Xᵀ A` by way of `Aᵀ X`.
+        let turned = |x: &_, a: &_| transposed(&times_nearly_identity(&transposed(a), x));
+        add_multiple(&mut z, h, &times_nearly_identity(&after.qq, d));
+        add_multiple(&mut w, h, &turned(d, &z));
+        add_multiple(&mut w, h, &times_nearly_identity(&vq, d));
+        let own = turned(e, &times_nearly_identity(&after.qq, e));
+        let back = [e.tr_mul(&after.q), after.v + d.tr_mul(&after.q) * h];
+        Self { own, z: turned(e, &z), w, back }
+    }
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {

@@ -1,7 +1,7 @@
 //! Explicit steps, whose derivatives are carried forwards through their stages.
 
-use super::{DifferentiableStep, Transition, implicit, projected};
-use crate::blocks::{add_product, product, zeros};
+use super::{Chained, DifferentiableStep, Transition, implicit, projected};
+use crate::blocks::{add_product, nearly_identity_times, product, zeros};
 use crate::constraint::ConstrainedDerivatives;
 use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -153,20 +153,26 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
             by_u: motion.by_u * h,
         };
         let displacement = after.scaled(h);
+        let (mut q_by_q, mut q_by_v, mut q_by_u) = (displacement.by_q, displacement.by_v, displacement.by_u);
+        let (mut by_q, mut by_displacement) = (SMatrix::identity(), SMatrix::identity());
+        // q ⊕ h v⁺; in plain coordinates a displacement is added.
         if NQ != NV {
-            return Ok(Start { mechanism, t, q, u }.end(&displacement, &after));
+            (by_q, by_displacement) = mechanism.integrate_derivatives(&displacement.value);
+            q_by_q = nearly_identity_times(&by_displacement, &q_by_q);
+            q_by_v = nearly_identity_times(&by_displacement, &q_by_v);
+            q_by_u = nearly_identity_times(&by_displacement, &q_by_u);
         }
-        // q + h v⁺.
+        q_by_q += by_q;
         Ok(Transition {
             q: mechanism.integrate(q, &displacement.value),
             v: after.value,
-            q_by_q: SMatrix::identity() + displacement.by_q,
-            q_by_v: displacement.by_v,
-            q_by_u: displacement.by_u,
+            q_by_q,
+            q_by_v,
+            q_by_u,
             v_by_q: after.by_q,
             v_by_v: after.by_v,
             v_by_u: after.by_u,
-            chained: Some(h),
+            chained: Some(Chained { period: h, by_q, by_displacement }),
         })
     }
 
