@@ -220,3 +220,27 @@ fn a_bead_on_a_spinning_hoop() {
         }
     });
 }
+
+/// A skate between springs: its edge lets no velocity across it, and keeps no place.
+#[test]
+fn a_skate_keeps_its_place_across() {
+    let item = "struct Skate { m: f64, k: f64, c: f64,
+        #[body(mass = m, inertia = diagonal(1, 1, 2))] skate: Body,
+        #[joint(ground -> skate, about = z)] pose: Planar,
+        #[energy(k / 2 * pose.x * pose.x)] spring: Potential,
+        #[energy(c / 2 * pose.angle * pose.angle)] coil: Potential,
+        #[constraint(rate(pose.x) * sin(pose.angle) - rate(pose.y) * cos(pose.angle) = 0)] edge: Nonholonomic,
+        #[equilibrium] rest: Equilibrium }";
+    with_linear("0 * x", item, |_, _, plain, _| {
+        for line in [
+            "m pose.x'' + k pose.x = 0\n",
+            "m pose.y'' = -lambda1\n",
+            "2 pose.angle'' + c pose.angle = 0\n",
+            "-pose.y' = 0\n",
+            "One root is s = 0",
+            "lambda1 is the multiplier of the constraint edge.",
+        ] {
+            assert!(plain.contains(line), "{line} in {plain}");
+        }
+    });
+}
