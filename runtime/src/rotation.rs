@@ -53,6 +53,7 @@ mod eigenaxis;
 mod euler_angles;
 mod euler_parameters;
 mod euler_rates;
+mod frames;
 mod gibbs;
 mod matrix;
 mod mrp;
@@ -68,6 +69,7 @@ pub use euler_parameters::{
     antipode, quaternion_of_rotation, quaternion_omega_body, quaternion_omega_space,
     quaternion_rate_from_body, quaternion_rate_from_space, shorter,
 };
+pub use frames::{reciprocal, unvectorized, vectorized, wedge};
 pub use gibbs::{Gibbs, cayley, inverse_cayley};
 pub use matrix::{
     axial, rotation_omega_body, rotation_omega_space, rotation_rate_from_body, rotation_rate_from_space,
