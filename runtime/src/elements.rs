@@ -18,7 +18,7 @@
 //! | states of first order | [`State`] |
 //! | configurations at rest | [`Equilibrium`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
-//! | expressions | [`Scalar`], [`Vector`], [`Potential`], [`Rayleigh`] |
+//! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`Potential`], [`Rayleigh`] |
 //!
 //! # Vectors and places
 //!
@@ -54,6 +54,9 @@
 ///   `plate(m, a, b)` (in the plane of x and y), `ellipsoid(m, a, b, c)`;
 /// - `diagonal(a, b, c)`, or a symmetric matrix `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`;
 /// - any of these `.rotated(z(angle), …)`.
+///
+/// `about = vector` beside a matrix or `diagonal(…)` says that the inertia is about another point of the body than the centre of
+/// mass, m, `about = 0` its origin: from it `m (|d|² 1 − d dᵀ)` is subtracted, of the vector `d` from there to the centre of mass.
 ///
 /// The body's frame is placed by the joint that carries it; without one by `at = vector` and `frame = f`, expressions of
 /// coordinates and time; `massive` beside them says that it moves so whatever its mass, which is not asked for.
@@ -175,13 +178,15 @@ pub enum Free {}
 #[doc(alias = "fixed")]
 pub enum Weld {}
 
-/// Spring, linear or by any law, on a coordinate or between two points.
+/// Spring, linear or by any law, on a coordinate, between two points, or on a length.
 ///
 /// `#[acts(on = joint, stiffness = k, free_length = l0)]` on one coordinate of a joint: force `−k (q − l0)`. The
 /// stiffness is in N/m along a [`Sleeve`], in N·m/rad about a [`Pin`], where the free length is `free_angle = a0`;
 /// both are zero if not given. One coordinate of a larger joint is named: `on = collar.slide`.
 /// `#[acts(between = (a, b), stiffness = k, free_length = l0)]` between two points of bodies: a pull `k (l − l0)` along
 /// their distance `l`, m. Instead of a stiffness any law: `energy = …`, J, or a polynomial `force = …`, N, of `stretch`.
+/// `on = expression` acts on any length or angle that an expression of coordinates gives, `q` in the formulas above: a rope
+/// by way of a third point, `norm(r(a / b)) + norm(r(b / c))`, a `cable` around a drum.
 /// Its energy adds to the potential energy. Where points meet that do not move along one line, the pull has no
 /// direction and is zero. Conservative.
 pub enum Spring {}
@@ -215,6 +220,8 @@ pub enum Inerter {}
 ///   unit vector.
 /// - `#[acts(between = (p, q))]`: along the line of two points, equal and opposite on both; positive, it pushes them apart
 ///   (a hydraulic cylinder), negative, it pulls (a cable, a muscle). It has no direction where they meet.
+/// - `#[acts(on = expression)]`: on a length that an expression of coordinates gives, which it makes longer where it is positive:
+///   `on = cable(arm.at(x) / ground, drum.cylinder(radius, z))`.
 ///
 /// The input has the field's name; inputs are in the order of declaration. With `value = expression` it is no input: a
 /// scalar on a coordinate or between two points, a vector on a body or point.
@@ -297,6 +304,15 @@ pub enum Limit {}
 ///
 /// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or `ground`
 /// and turns about carried axes, by expressions of coordinates, parameters and time. `name.x` is one of its axes.
+///
+/// The first rotation may follow from a vector or a curve, in the axes of the start:
+/// - `cylindrical(vector)`: x along the vector across the z axis of the start, z that axis;
+/// - `spherical(vector)`: x along the vector, y across the z axis of the start, by the right hand about it, z towards its pole;
+/// - `frenet(curve, s)`: x along the tangent of a curve, a vector that depends on the coordinate `s`, y along its normal, z along
+///   its binormal (Frenet and Serret).
+///
+/// On the axis, and where a curve is straight, these directions do not exist, and values are not finite.
+///
 /// A body that three such coordinates turn is in gimbal lock where two of their axes are in line: the mass matrix is
 /// singular there, and accelerations are not finite.
 pub enum Frame {}
@@ -390,7 +406,7 @@ pub enum Rolling {}
 /// The equations of motion are `M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|`. Where they have no unique solution, friction jams
 /// (Painlevé's paradox): `try_constrained_dynamics` and `try_forward_dynamics` return `ConstraintError::Jammed`, with
 /// which a simulation ends; the functions without a `Result` return NaN. What friction takes out is not part of
-/// `dissipated_power`, which does not know the multipliers.
+/// `dissipated_power`, which does not know the multipliers; `power(contact)` in an output is it, negative.
 pub enum Slipping {}
 
 /// Two surfaces that may part, strike, slide, stick and roll.
@@ -482,6 +498,24 @@ pub enum Scalar {}
 /// `name_jacobian`.
 pub enum Vector {}
 
+/// Matrix expression with a name: what takes vectors to vectors.
+///
+/// `#[define(…)]`: for use in other expressions. `#[output(…, resolved_in = frame)]`: a generated function of that name, a 3×3
+/// matrix of its components in the axes of a body or frame (the ground's if not given). Matrices are
+/// - `projector(n)`, the projection onto the line along a vector, `n nᵀ / n·n`;
+/// - `skew(a)`, the cross product: `skew(a) * b` is `cross(a, b)`;
+/// - `outer(a, b)`, `a bᵀ`;
+/// - `rotation(B / A)`, which turns the axes of the frame A into those of B: `Σ bₖ aₖᵀ`;
+/// - `inertia(body / point)`, kg·m², of several bodies `inertia((first, second) / point)`;
+/// - `identity()`, rows in the axes at hand `[[a, b, c], …]`, sums, products, `transpose(M)`, and `rate(M / frame)`, the rate as seen
+///   from a frame.
+///
+/// `M * v` is a vector, `trace(M)` a scalar. Outputs of matrices have no `_jacobian` and no derivatives, and are not among
+/// [`Outputs`](crate::Outputs).
+#[doc(alias = "tensor")]
+#[doc(alias = "dyadic")]
+pub enum Matrix {}
+
 /// There are no values to clone, compare or show. A `#[derive(…)]` above `#[mechanism]` asks for that all the same: with
 /// these it is told that it stands in the wrong place, and nothing else.
 macro_rules! derivable {
@@ -514,5 +548,5 @@ macro_rules! derivable {
 derivable! {
     Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
     Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
-    State Equilibrium Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector
+    State Equilibrium Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector Matrix
 }

@@ -2,10 +2,13 @@
 //! outputs, each against its closed form. Those that the gallery of ready-made mechanisms has are taken from there.
 
 mod coordinates;
+mod curves;
 mod driven;
 mod elements;
 mod gravity;
 mod machines;
+mod matrices;
+mod motions;
 mod orientations;
 
 /// Identities.

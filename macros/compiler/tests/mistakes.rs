@@ -26,6 +26,8 @@ mod grammar;
 mod idle;
 #[path = "mistakes/joints.rs"]
 mod joints;
+#[path = "mistakes/motions.rs"]
+mod motions;
 #[path = "mistakes/options.rs"]
 mod options;
 #[path = "mistakes/rounds.rs"]

@@ -20,8 +20,15 @@ pub const DERIVATIVES: &str = "_derivatives";
 /// What stands after an output's name in that of its derivatives by the parameters.
 pub const BY_PARAMETERS: &str = "_by_parameters";
 
+/// Entries of a matrix.
+const MATRIX: usize = 9;
+
 fn of_size(size: usize) -> Shape {
-    if size == 1 { Shape::Scalar } else { Shape::Vector(size) }
+    match size {
+        1 => Shape::Scalar,
+        MATRIX => Shape::Matrix(3, 3),
+        _ => Shape::Vector(size),
+    }
 }
 
 fn declared(
@@ -36,7 +43,8 @@ fn declared(
     Declared { id, name, docs, arguments, shape }
 }
 
-/// The function of an output, its Jacobian unless it depends on accelerations, and the derivatives that are asked for.
+/// The function of an output, its Jacobian unless it depends on accelerations, and the derivatives that are asked for. Matrices
+/// have the function alone: what changes with them is measured by products with vectors.
 pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     let mut arguments = vec![Q];
     arguments.extend((uses.velocities || uses.accelerations).then_some(V));
@@ -50,6 +58,9 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     };
     let mut functions =
         vec![declared(Id::Output, name.to_string(), &arguments, of_size(size), vec![about], f)];
+    if size == MATRIX {
+        return functions;
+    }
     if !uses.accelerations {
         let what = match uses.velocities {
             true => "it changes with the velocities",

@@ -15,9 +15,12 @@ pub fn write_impls(
     i: &Interface<'_>,
     s: &Signature<'_>,
 ) {
-    // The rates of states are no measurements.
+    // The rates of states are no measurements, nor are matrices.
     let is_rate = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
-    let outputs: Vec<&Function> = functions.iter().filter(|f| f.id == Id::Output && !is_rate(f)).collect();
+    let outputs: Vec<&Function> = functions
+        .iter()
+        .filter(|f| f.id == Id::Output && !is_rate(f) && !matches!(f.shape, Shape::Matrix(..)))
+        .collect();
     let count: usize = outputs.iter().map(|f| rows(f)).sum();
     if count == 0 {
         return;

@@ -20,10 +20,20 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
 
 /// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let Some(released) = &model.released else { return e.to_vec() };
+    let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::of(s) {
+        Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
+        _ => None,
+    };
+    let Some(released) = &model.released else {
+        let all = constraints::multipliers(model);
+        return replace_all(e, &|s| multiplier(s, &all));
+    };
     let (held, multipliers) = on_released_coordinates(model, released);
     let of = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::of(s) else { return None };
+        if k >= Quantity::MULTIPLIERS {
+            return multiplier(s, &multipliers);
+        }
         let (joint, component) = (k / SIX, k % SIX);
         let at = || released.joints.iter().position(|j| *j == joint);
         of_multipliers(model, released, &multipliers, joint, component)

@@ -23,7 +23,8 @@ pub enum Quantity {
     Given(usize),
     /// A number that is computed from the parameters before.
     Prepared(usize),
-    /// A component of what a joint transmits: six for each, a force and then a torque.
+    /// A component of what a joint transmits: six for each, a force and then a torque; from [`Quantity::MULTIPLIERS`] on the
+    /// multiplier of a constraint.
     Reaction(usize),
     /// A passive force that a function of its own computes, by velocity.
     PassiveForce(usize),
@@ -35,6 +36,9 @@ pub enum Quantity {
 
 impl Quantity {
     const SHIFT: u32 = 20;
+
+    /// The first number of a multiplier among the reactions.
+    pub const MULTIPLIERS: usize = 1 << 19;
 
     /// The symbol that stands for it.
     pub fn symbol(self) -> Symbol {

@@ -1,52 +1,106 @@
 //! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear in them.
 
 use super::builder::Builder;
-use super::scope::{Allowed, Scope};
+use super::quantities::{in_links, vector};
+use super::resolved::Resolved;
+use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace;
-use crate::expr::{Expr, Vec3};
-use crate::kinematics::{symbols_in, time_derivative, velocity_gradient};
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
 use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
 use crate::syntax::{self, ExprKind, Name};
 
 impl<'g> Scope<'_, 'g> {
-    /// The rate of an expression along the motion; `None` also where a coordinate was meant, which is not told yet.
+    /// The rate of an expression along the motion.
     pub fn rate_of_value(
         &self,
         function: &Name,
         argument: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Expr<'g>> {
-        let value = self.scalar(argument, cx)?;
-        let of: Vec<Quantity> = symbols_in(&[value]).into_iter().map(Quantity::of).collect();
+        match self.value(argument, cx)? {
+            Value::Scalar(value) => Some(self.rates(function, &argument.place, &[value], cx)?[0]),
+            Value::Matrix(_) => {
+                cx.error(argument.place.clone(), "the rate of a matrix is one as seen from a frame")
+                    .help("write `rate(matrix / frame)`");
+                None
+            }
+            Value::Vector(_) => {
+                cx.error(argument.place.clone(), "the rate of a vector is one as seen from a frame")
+                    .help("write `rate(vector / frame)`; the rate of its length is `rate(norm(vector))`");
+                None
+            }
+        }
+    }
+
+    /// `rate(vector / frame)`: the rate of a vector or a matrix as seen from a frame, which is that of its components there.
+    pub fn rate_in(
+        &self,
+        function: &Name,
+        of: &syntax::Expr,
+        frame: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let terms = match self.value(of, cx)? {
+            Value::Vector(terms) => terms,
+            Value::Matrix(m) => {
+                let link = self.frame(frame, cx)?;
+                let entries = self.kinematics.borrow().matrix_in(m, link).entries;
+                let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
+                let rates = self.rates(function, &of.place, &all, cx)?;
+                return Some(Value::Matrix(Resolved {
+                    link,
+                    entries: Mat3::from_fn(|i, j| rates[3 * i + j]),
+                }));
+            }
+            Value::Scalar(_) => {
+                cx.error(of.place.clone(), "expected a vector, found a scalar")
+                    .help("the rate of a scalar needs no frame: `rate(scalar)`");
+                return None;
+            }
+        };
+        let link = self.frame(frame, cx)?;
+        let components = self.kinematics.borrow().resolve(&in_links(terms), link, Vec3::zero(self.graph));
+        let rates = self.rates(function, &of.place, &components.0, cx)?;
+        Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
+    }
+
+    /// The rates of several expressions along the motion.
+    fn rates(
+        &self,
+        function: &Name,
+        place: &Place,
+        values: &[Expr<'g>],
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Expr<'g>>> {
+        let of: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
         let has = |what: fn(&Quantity) -> bool| of.iter().any(what);
         let is_state = |k: &usize| {
             self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
         };
         let state = of.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
         if let Some(state) = state {
-            cx.error(argument.place.clone(), format!("this depends on the state `{}`", state.text)).help(
+            cx.error(place.clone(), format!("this depends on the state `{}`", state.text)).help(
                 "a rate is known of what depends on coordinates, velocities and time: write the state's own rate",
             );
             return None;
         }
         if has(|q| matches!(q, Quantity::Input(_))) {
-            cx.error(argument.place.clone(), "this depends on inputs, whose rates are not known")
+            cx.error(place.clone(), "this depends on inputs, whose rates are not known")
                 .help("a `State` that follows an input late has a rate");
             return None;
         }
         if has(|q| matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_)))
         {
-            cx.error(
-                argument.place.clone(),
-                "this depends on accelerations or forces, whose rates are not known",
-            )
-            .help("a rate is known of what depends on coordinates, velocities and time");
+            cx.error(place.clone(), "this depends on accelerations or forces, whose rates are not known")
+                .help("a rate is known of what depends on coordinates, velocities and time");
             return None;
         }
-        let gradient = velocity_gradient(value);
-        let needed = if gradient.is_empty() { Allowed::Motion } else { Allowed::Acceleration };
+        let gradients = velocity_gradients(values);
+        let needed =
+            if gradients.iter().all(Vec::is_empty) { Allowed::Motion } else { Allowed::Acceleration };
         let what = match needed {
             Allowed::Motion => "a rate",
             _ => "the rate of what depends on velocities",
@@ -55,9 +109,12 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let kinematics = self.kinematics.borrow();
-        let at_rest = time_derivative(Space { graph: self.graph, charts: &kinematics.charts }, value);
-        let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
-        Some(terms.fold(at_rest, |sum, term| sum + term))
+        let space = Space { graph: self.graph, charts: &kinematics.charts };
+        let rate = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
+            let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
+            terms.fold(time_derivative(space, *value), |sum, term| sum + term)
+        };
+        Some(values.iter().zip(gradients).map(rate).collect())
     }
 
     /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that moves.

@@ -4,18 +4,12 @@ use super::builder::Builder;
 use super::motion::{Moving, needs_motion};
 use super::power::{Counts, is_asked};
 use super::scope::{Allowed, Context, Placed, PlacedKind};
-use crate::diag::{Diagnostics, Place, one_of};
+use super::target::Target;
+use crate::diag::Diagnostics;
 use crate::expr::Vec3;
-use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Pose, Rule, Spring};
-use crate::syntax::{Action, ActionKind, Expr, ExprKind, GROUND, Law, Target as On};
-
-/// What an element acts on.
-enum Target<'g> {
-    /// A coordinate; true if it is an angle, nothing if it may be either.
-    Coordinate(Coordinate, Option<bool>),
-    /// A point of a body, a particle, a named point.
-    Point(Placed<'g>),
-}
+use crate::kinematics::symbols_in;
+use crate::mechanism::{Coordinate, Dashpot, Direction, Input, Load, Pose, Quantity, Rule, Spring};
+use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
 
 impl<'g> Builder<'_, 'g> {
     /// Resolves force elements on coordinates, which need no places.
@@ -88,6 +82,7 @@ impl<'g> Builder<'_, 'g> {
                     }
                     (self.coordinate_stretch(&c), angle)
                 }
+                Some(Target::Expression(stretch)) => (stretch, None),
                 Some(Target::Point(_)) => {
                     let what = kind_word(&action.kind);
                     cx.error(
@@ -288,6 +283,14 @@ impl<'g> Builder<'_, 'g> {
                 }
                 return;
             }
+            Some(Target::Expression(stretch)) => {
+                let ground = Some((None, Pose::identity(self.scope.graph)));
+                let context = Context::new(Allowed::Acceleration, ground);
+                if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
+                    self.add_value_load(stretch.rate, force, &value.place, cx);
+                }
+                return;
+            }
             None => return,
         };
         if torque && !turns(on, &place, cx) {
@@ -330,6 +333,16 @@ impl<'g> Builder<'_, 'g> {
                 }
                 Input::Coordinate(c)
             }
+            Target::Expression(stretch) => {
+                if let Some(direction) = direction {
+                    cx.error(direction.place.clone(), "the expression itself gives the direction")
+                        .help("remove this argument, or let it act on a body");
+                }
+                return self.add_input_load(&action.name.text, stretch.rate);
+            }
+            Target::Point(place) if is_moving(place.pose.translation) => {
+                return self.add_moving_input(action, on, &place, direction, torque, cx);
+            }
             Target::Point(place) => match self.point_input(action, on, &place, direction, torque, cx) {
                 Some(input) => input,
                 None => return,
@@ -343,6 +356,38 @@ impl<'g> Builder<'_, 'g> {
         if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
             *slot = input;
         }
+    }
+
+    /// An input whose force works on a rate.
+    pub fn add_input_load(&mut self, name: &str, rate: crate::expr::Expr<'g>) {
+        let input = self.model.inputs.iter().position(|(known, _)| known == name);
+        if let Some(k) = input {
+            let force = Quantity::Input(k).expr(self.scope.graph);
+            self.model.loads.push(Load { rate, force, dissipative: false });
+        }
+    }
+
+    /// An input at the point of a body that is somewhere at the moment.
+    fn add_moving_input(
+        &mut self,
+        action: &Action,
+        on: &Expr,
+        place: &Placed<'g>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        let Some(Input::Force { link, point, along }) =
+            self.point_input(action, on, place, direction, torque, cx)
+        else {
+            return;
+        };
+        let kinematics = self.scope.kinematics.borrow();
+        let Some(twist) = kinematics.twists.get(link.0) else { return };
+        let along = kinematics.resolve(&along, Some(link), Vec3::zero(self.scope.graph));
+        let rate = (twist.linear + twist.angular.cross(point)).dot(along);
+        drop(kinematics);
+        self.add_input_load(&action.name.text, rate);
     }
 
     fn point_input(
@@ -382,147 +427,12 @@ impl<'g> Builder<'_, 'g> {
             false => Input::Force { link, point: place.pose.translation, along: sum },
         })
     }
+}
 
-    /// The coordinate that a limit is on, and whether it is an angle, if that is known.
-    pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
-        let joint = on.name().and_then(|name| self.joint_coordinates(name));
-        if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.spelt()))
-                .help("limits are on joints with plain coordinates: not on a Ball, Free or Weld, and not on what closes a loop");
-            return None;
-        }
-        match self.target(on, cx)? {
-            Target::Coordinate(coordinate, angle) => Some((coordinate, angle)),
-            Target::Point(_) => {
-                cx.error(on.place.clone(), "a Limit is on the coordinate of a joint, but this is a place")
-                    .help("name a joint, as in `on = hinge`");
-                None
-            }
-        }
-    }
-
-    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
-    fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
-        match &on.kind {
-            ExprKind::Name(name) => {
-                if self.description.coordinates.iter().any(|c| c.name.text == *name) {
-                    let kinematics = self.scope.kinematics.borrow();
-                    let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
-                    return found.map(|(_, c, _)| Target::Coordinate(*c, None));
-                }
-                if let Some(joint) = self.joint_coordinates(name) {
-                    return match joint.as_slice() {
-                        [(_, c, angle)] => Some(Target::Coordinate(*c, Some(*angle))),
-                        _ => {
-                            let own: Vec<&str> = joint.iter().map(|(n, ..)| n.as_str()).collect();
-                            let list: Vec<String> = own.iter().map(|c| format!("`on = {c}`")).collect();
-                            if list.is_empty() {
-                                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
-                                    .help("a force or a torque can act on a body that it joins, with a direction");
-                            } else {
-                                cx.error(
-                                    on.place.clone(),
-                                    format!("`{name}` has {} coordinates", list.len()),
-                                )
-                                .help(format!("write {}", one_of(&list)));
-                            }
-                            None
-                        }
-                    };
-                }
-                if let Some(c) = self.free_coordinate(name) {
-                    return Some(Target::Coordinate(c, None));
-                }
-                if !self.placeable.contains(name) {
-                    self.report_target(name, &on.place, cx);
-                    return None;
-                }
-                self.scope.place(on, cx).map(Target::Point)
-            }
-            ExprKind::Field(inner, member) => {
-                let ExprKind::Name(joint) = &inner.kind else {
-                    cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
-                    return None;
-                };
-                let Some(coordinates) = self.joint_coordinates(joint) else {
-                    if self.jointed_index(joint).is_some() {
-                        cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
-                            .help(format!("write `on = {joint}` and give a direction, or name a joint"));
-                        return None;
-                    }
-                    if self.scope.is_news(joint, cx) {
-                        let known = self.joint_names();
-                        let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
-                        error.suggest(joint, known.iter().map(String::as_str));
-                        if error.is_bare() {
-                            error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
-                        }
-                    }
-                    return None;
-                };
-                let full = format!("{joint}.{}", member.text);
-                if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
-                    return Some(Target::Coordinate(*c, Some(*angle)));
-                }
-                let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
-                cx.error(
-                    member.place.clone(),
-                    format!("`{joint}` has no coordinate `{}` to act on", member.text),
-                )
-                .suggest(&full, own);
-                None
-            }
-            ExprKind::Method(inner, method, arguments) if method.text == "at" && arguments.len() == 1 => {
-                let ExprKind::Name(name) = &inner.kind else {
-                    cx.error(on.place.clone(), "expected a body");
-                    return None;
-                };
-                if !self.placeable.contains(name) {
-                    self.report_target(name, &inner.place, cx);
-                    return None;
-                }
-                self.scope.place(on, cx).map(Target::Point)
-            }
-            _ => {
-                cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
-                    .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
-                None
-            }
-        }
-    }
-
-    /// A coordinate of its own, by name.
-    fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
-        let free = self.description.coordinates.iter().any(|c| c.name.text == name);
-        let kinematics = self.scope.kinematics.borrow();
-        let known = kinematics.coordinates.iter().find(|(known, ..)| free && known == name);
-        known.map(|(_, c, _)| *c)
-    }
-
-    /// Says why nothing can act on a name.
-    fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
-        if name == GROUND {
-            cx.error(place.clone(), "nothing that acts on the ground has an effect");
-        } else if self.scope.what(name) == Some("a joint") {
-            cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
-                .help(format!("write `on = {name}`, or name a point of a body"));
-        } else if let Some(what) = self.scope.what(name) {
-            cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
-                .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
-        } else {
-            let mut known = self.joint_names();
-            known.extend(self.placeable.iter().cloned());
-            known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
-            if !self.scope.is_news(name, cx) {
-                return;
-            }
-            let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));
-            error.suggest(name, known.iter().map(String::as_str));
-            if error.is_bare() {
-                error.help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
-            }
-        }
-    }
+/// True for a vector that changes with the configuration or in time.
+fn is_moving(v: Vec3<'_>) -> bool {
+    let moves = |s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time);
+    symbols_in(&v.0).into_iter().any(moves)
 }
 
 /// Reports a torque on a particle or a point, which has nothing to turn.

@@ -9,7 +9,7 @@ use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
 use crate::mechanism::{Constraint, Gradients, Inertia, Model, Released, Rule, Units};
-use crate::syntax::{Description, GROUND, Inertias, ScalarType};
+use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -84,6 +84,7 @@ fn build<'g>(
             builder.add_limits(cx);
             let solved = builder.add_solved(cx);
             let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
+            builder.know_slipping();
             builder.add_contacts(moving, cx);
             builder.check_acceleration_forces(cx);
             builder.add_expressions(constrained, cx);
@@ -255,6 +256,9 @@ impl<'a, 'g> Builder<'a, 'g> {
         let unused = self.description.parameters.iter().zip(used.iter());
         let names = self.description.tables.iter().map(|table| &table.name);
         let unused = unused.chain(names.zip(tables.iter()));
+        // A state counts: what it adds up is seen by whoever integrates it.
+        let is_state = |p: &Name| self.description.states.iter().any(|(state, _)| state.text == p.text);
+        let unused = unused.filter(|(p, _)| !is_state(p));
         let unused: Vec<_> =
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
         // A whole attribute that says nothing of what was meant is one mistake.

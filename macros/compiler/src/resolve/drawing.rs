@@ -130,8 +130,8 @@ impl<'g> Builder<'_, 'g> {
             }
             let mut solids = Vec::new();
             let complete = match &body.inertia {
-                Some(e) => self.solids(e, &Rotation::identity(g), com, &mut solids),
-                None => false,
+                Some(e) if body.about.is_none() => self.solids(e, &Rotation::identity(g), com, &mut solids),
+                _ => false,
             };
             if !complete {
                 let tensor = inertia.diagonal.into_iter().chain(inertia.off);

@@ -19,6 +19,11 @@ impl<'a, 'g> Scope<'a, 'g> {
                     .help("its length is `norm(v)`, its component along a direction `dot(v, x)`");
                 None
             }
+            Value::Matrix(_) => {
+                cx.error(e.place.clone(), "expected a scalar, found a matrix")
+                    .help("an entry of it is `dot(x, M * y)`, the sum of those of its diagonal `trace(M)`");
+                None
+            }
         }
     }
 
@@ -67,6 +72,11 @@ impl<'a, 'g> Scope<'a, 'g> {
                 cx.error(e.place.clone(), "expected a vector, found a scalar").help(help);
                 None
             }
+            Value::Matrix(_) => {
+                cx.error(e.place.clone(), "expected a vector, found a matrix")
+                    .help("a matrix times a vector is one: `M * v`");
+                None
+            }
         }
     }
 
@@ -77,6 +87,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         let bad = match &value {
             Value::Scalar(s) => infinite(s),
             Value::Vector(terms) => terms.iter().any(|(_, v)| v.0.iter().any(infinite)),
+            Value::Matrix(m) => m.entries.0.iter().flatten().any(infinite),
         };
         if bad {
             cx.error(e.place.clone(), "the value of this is not a finite number")
@@ -103,12 +114,18 @@ impl<'a, 'g> Scope<'a, 'g> {
             ExprKind::Neg(inner) => Some(match self.value(inner, cx)? {
                 Value::Scalar(s) => Value::Scalar(-s),
                 Value::Vector(v) => Value::Vector(v.into_iter().map(|(a, v)| (a, -v)).collect()),
+                Value::Matrix(m) => Value::Matrix(m.map(|entry| -entry)),
             }),
             ExprKind::Binary(op, left, right, _) => {
                 let (left, right) = (self.value(left, cx), self.value(right, cx));
                 self.binary(*op, left?, right?, e, cx)
             }
             ExprKind::Call(function, arguments) => self.call(function, arguments, cx),
+            ExprKind::Array(items)
+                if !items.is_empty() && items.iter().all(|item| matches!(item.kind, ExprKind::Array(_))) =>
+            {
+                self.matrix_by_rows(e, cx)
+            }
             ExprKind::Array(items) if items.len() == 3 => {
                 let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.scalar(i, cx)).collect();
                 let vector = Vec3([parts[0]?, parts[1]?, parts[2]?]);
@@ -156,6 +173,9 @@ impl<'a, 'g> Scope<'a, 'g> {
                 cx.error(e.place.clone(), "division by zero")
                     .help("the divisor is the number zero, or cancels to it");
                 return None;
+            }
+            (op, left @ Value::Matrix(_), right) | (op, left, right @ Value::Matrix(_)) => {
+                return self.matrix_binary(op, left, right, e, cx);
             }
             (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
             (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum(a, b)),
@@ -264,6 +284,17 @@ impl<'a, 'g> Scope<'a, 'g> {
             "contact_force" => self.contact_force(function, arguments, cx),
             "momentum" | "angular_momentum" | "kinetic_energy" => self.momentum(function, arguments, cx),
             "moment_of_inertia" => self.moment_of_inertia(function, arguments, cx),
+            "center_of_mass" => self.center_of_mass(function, arguments, cx),
+            "center_of_percussion" => self.center_of_percussion(function, arguments, cx),
+            "instant_center" | "acceleration_center" | "screw_axis" | "screw_pitch" => {
+                self.center(function, arguments, cx)
+            }
+            "projector" | "skew" | "outer" | "transpose" | "trace" | "rotation" | "inertia" | "identity" => {
+                self.matrix_function(function, arguments, cx)
+            }
+            "curvature" | "torsion" => self.bend(function, arguments, cx),
+            "cable" => self.cable(function, arguments, cx),
+            "gradient" => self.gradient(function, arguments, cx),
             "power" => self.power(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
             _ if OF_HEIGHT.contains(&text) => self.air(function, arguments, cx),

@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 36] = [
+pub const FUNCTIONS: [&str; 54] = [
     "atan2",
     "degrees",
     "pow",
@@ -25,6 +25,24 @@ pub const FUNCTIONS: [&str; 36] = [
     "angular_momentum",
     "kinetic_energy",
     "moment_of_inertia",
+    "center_of_mass",
+    "center_of_percussion",
+    "instant_center",
+    "acceleration_center",
+    "screw_axis",
+    "screw_pitch",
+    "projector",
+    "skew",
+    "outer",
+    "rotation",
+    "inertia",
+    "identity",
+    "transpose",
+    "trace",
+    "curvature",
+    "torsion",
+    "cable",
+    "gradient",
     "power",
     "reaction_force",
     "reaction_torque",

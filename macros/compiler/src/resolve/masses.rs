@@ -2,12 +2,12 @@
 
 use super::builder::Builder;
 use super::figures::Range;
-use super::inertia::check_inertia;
+use super::inertia::{SOLIDS, check_inertia};
 use super::scope::{MassProperties, Placed};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::mechanism::{Inertia, LinkId, Pose, Rule};
-use crate::syntax::{Body, Inertias, Particle};
+use crate::syntax::{self, Body, ExprKind, Inertias, Particle};
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
@@ -42,6 +42,10 @@ impl<'g> Builder<'_, 'g> {
         }
         let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
         let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
+        let inertia = match &body.about {
+            Some(about) => self.about_center(body, about, (mass, com, inertia), cx),
+            None => inertia,
+        };
         if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
             && m < 0.0
         {
@@ -66,6 +70,9 @@ impl<'g> Builder<'_, 'g> {
             && self.description.inertias == Inertias::Check
         {
             let hint = match e.place.file {
+                None if body.about.is_some() => {
+                    "these are the moments about the centre of mass, to which it was moved from `about`; to take it as it is, write `#[mechanism(…, inertia = trust)]`"
+                }
                 Some(_) => {
                     "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
                 }
@@ -76,6 +83,33 @@ impl<'g> Builder<'_, 'g> {
         let found = (mass?, com?, inertia?);
         self.require_a_body(name, &found);
         Some(found)
+    }
+
+    /// An inertia that is given about another point, about the centre of mass: less by what the mass adds there at the distance
+    /// between them (the parallel-axis theorem).
+    fn about_center(
+        &self,
+        body: &Body,
+        about: &syntax::Expr,
+        (mass, com, inertia): (Option<Expr<'g>>, Option<Vec3<'g>>, Option<Sym3<'g>>),
+        cx: &mut Diagnostics,
+    ) -> Option<Sym3<'g>> {
+        let solid = body.inertia.as_ref().and_then(|e| {
+            e.parts().into_iter().find_map(|part| match &part.kind {
+                ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, _)| *solid == word.text) => Some(word),
+                _ => None,
+            })
+        });
+        if let Some(solid) = solid.filter(|solid| solid.text != "diagonal") {
+            cx.error(about.place.clone(), format!("the inertia of a `{}` is about its centre", solid.text))
+                .help("remove `about`, and say by `com` where the centre is; `about` goes with `diagonal(xx, yy, zz)` or a matrix");
+            return None;
+        }
+        let about = match about.literal() {
+            Some(0.0) => Some(Vec3::zero(self.scope.graph)),
+            _ => self.scope.own_vector(about, cx),
+        };
+        Some(inertia? - Sym3::point(mass?, com? - about?))
     }
 
     /// What can be said of a body's figures only where its parameters are known.

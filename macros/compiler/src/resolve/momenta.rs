@@ -1,16 +1,17 @@
-//! Momentum, kinetic energy and inertia of single bodies and particles: `momentum(body)`, `angular_momentum(body / point)`,
-//! `kinetic_energy(body)`, `moment_of_inertia(body / point, direction)`; of several they are sums.
+//! Momentum, kinetic energy, inertia and centre of mass of bodies and particles: `momentum(body)`,
+//! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`, `moment_of_inertia(body / point, direction)`,
+//! `center_of_mass((first, second) / point)`.
 
 use super::quantities::{flatten, vector};
-use super::scope::{Allowed, MassProperties, Placed, Scope, Value};
+use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
-use crate::expr::Vec3;
+use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, Name, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// What a body has by its motion with respect to the ground. With the velocity `v` of its centre of mass, the vector `r` there
-    /// from a point, and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
+    /// What bodies have by their motion with respect to the ground, each and in sum. With the velocity `v` of a centre of mass, the
+    /// vector `r` there from a point, and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
     pub fn momentum(
         &self,
         function: &Name,
@@ -26,34 +27,88 @@ impl<'g> Scope<'_, 'g> {
         };
         if parts.len() != count {
             let (what, help) = form.split_once(": ").unwrap_or((form, ""));
-            cx.error(function.place.clone(), format!("`{text}` takes {what}")).help(help);
+            let error = cx.error(function.place.clone(), format!("`{text}` takes {what}"));
+            match arguments.len() {
+                0 | 1 => error.help(help),
+                _ => error.help(format!(
+                    "several bodies stand in parentheses: `{text}((first, second){})`",
+                    match count {
+                        2 => " / point",
+                        _ => "",
+                    }
+                )),
+            };
             return None;
         }
         if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), &function.place, cx) {
             return None;
         }
-        let (placed, (mass, com, central)) = self.heavy(parts[0], cx)?;
-        let about = parts.get(1).map(|e| self.place(e, cx));
+        let bodies = self.heavy_ones(parts[0], cx)?;
+        let about = match parts.get(1) {
+            Some(e) => Some(self.place_now(e, cx)?),
+            None => None,
+        };
         let kinematics = self.kinematics.borrow();
         let zero = Vec3::zero(self.graph);
-        let link = placed.link;
-        let twist = link.and_then(|link| kinematics.twists.get(link.0));
-        let (linear, w) = twist.map_or((zero, zero), |twist| (twist.linear, twist.angular));
-        let center = placed.pose.point(com);
-        let v = linear + w.cross(center);
-        let spin = placed.pose.rotation.sym_to_parent(central) * w;
-        if text == "kinetic_energy" {
-            return Some(Value::Scalar((v.dot(v) * mass + w.dot(spin)) * 0.5));
+        let (mut energy, mut sum) = (self.graph.zero(), Vec::new());
+        for (placed, (mass, com, central)) in bodies {
+            let link = placed.link;
+            let twist = link.and_then(|link| kinematics.twists.get(link.0));
+            let (linear, w) = twist.map_or((zero, zero), |twist| (twist.linear, twist.angular));
+            let center = placed.pose.point(com);
+            let v = linear + w.cross(center);
+            let spin = placed.pose.rotation.sym_to_parent(central) * w;
+            energy += (v.dot(v) * mass + w.dot(spin)) * 0.5;
+            let Some(about) = &about else {
+                sum.push((link, v * mass));
+                continue;
+            };
+            let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
+            let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
+            let r = kinematics.resolve(&between, link, zero);
+            sum.push((link, spin + r.cross(v * mass)));
         }
-        let Some(about) = about else { return Some(vector(vec![(link, v * mass)])) };
-        let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about?);
-        let r = kinematics.resolve(&between, link, zero);
-        Some(vector(vec![(link, spin + r.cross(v * mass))]))
+        Some(if text == "kinetic_energy" { Value::Scalar(energy) } else { vector(sum) })
+    }
+
+    /// `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of bodies.
+    pub fn center_of_mass(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let parts = if let [one] = arguments { flatten(one) } else { Vec::new() };
+        let [of, from] = parts.as_slice() else {
+            cx.error(function.place.clone(), "`center_of_mass` takes bodies and a point")
+                .help("write `center_of_mass((first, second) / point)`");
+            return None;
+        };
+        if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", &function.place, cx) {
+            return None;
+        }
+        let bodies = self.heavy_ones(of, cx)?;
+        let from = self.place_now(from, cx)?;
+        let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
+        if total.is_zero() {
+            cx.error(of.place.clone(), "what has no mass has no centre of mass")
+                .help("name bodies with a `mass`");
+            return None;
+        }
+        let kinematics = self.kinematics.borrow();
+        let mut sum = Vec::new();
+        for (placed, (mass, com, _)) in bodies {
+            let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
+            let between = kinematics.between(&Placed { pose, ..placed }, &from);
+            let share = mass / total;
+            sum.extend(between.into_iter().map(|(link, r)| (link, r * share)));
+        }
+        Some(vector(sum))
     }
 
     /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical inertia matrix
-    /// `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the parallel-axis theorem).
+    /// `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the parallel-axis theorem); of several
+    /// bodies the sum.
     pub fn moment_of_inertia(
         &self,
         function: &Name,
@@ -65,7 +120,7 @@ impl<'g> Scope<'_, 'g> {
             [of, directions @ ..] => (flatten(of), directions),
             [] => (Vec::new(), arguments),
         };
-        let ([body, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
+        let ([of, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
             cx.error(function.place.clone(), format!("`{text}` takes a body, a point and a direction"))
                 .help("write `moment_of_inertia(body / point, direction)`, with a second direction for a product of inertia");
             return None;
@@ -78,22 +133,60 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), &function.place, cx) {
             return None;
         }
-        let (placed, (mass, com, central)) = self.heavy(body, cx)?;
-        let about = self.place(about, cx)?;
+        let bodies = self.heavy_ones(of, cx)?;
+        let about = self.place_now(about, cx)?;
         let a = self.terms(a, cx)?;
         let b = others.first().map_or_else(|| Some(a.clone()), |b| self.terms(b, cx))?;
+        let sum = bodies
+            .iter()
+            .fold(self.graph.zero(), |sum, body| sum + self.inertia_about(body, &about, [&a, &b]));
+        Some(Value::Scalar(sum))
+    }
+
+    /// `a·J b` of a body about a point.
+    pub fn inertia_about(
+        &self,
+        (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
+        about: &Placed<'g>,
+        [a, b]: [&Terms<'g>; 2],
+    ) -> Expr<'g> {
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
-        let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about);
-        let [a, b, r] = [&a, &b, &between].map(|parts| kinematics.resolve(parts, link, zero));
-        let central = placed.pose.rotation.sym_to_parent(central);
-        let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * mass;
-        Some(Value::Scalar(a.dot(central * b) + moved))
+        let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
+        let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
+        let [a, b, r] = [a, b, &between].map(|parts| kinematics.resolve(parts, link, zero));
+        let central = placed.pose.rotation.sym_to_parent(*central);
+        let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
+        a.dot(central * b) + moved
+    }
+
+    /// Bodies and particles, one by its name or several in parentheses.
+    pub fn heavy_ones(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<(Placed<'g>, MassProperties<'g>)>> {
+        let (ExprKind::Tuple(items) | ExprKind::Array(items)) = &e.kind else {
+            return Some(vec![self.heavy(e, cx)?]);
+        };
+        if items.is_empty() {
+            cx.error(e.place.clone(), "expected bodies, found none").help("write `(first, second)`");
+            return None;
+        }
+        let twice = |k: usize| {
+            items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
+        };
+        if let Some(k) = (0..items.len()).find(|k| twice(*k)) {
+            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].spelt()))
+                .help("name each body once");
+            return None;
+        }
+        let all: Vec<_> = items.iter().map(|item| self.heavy(item, cx)).collect();
+        all.into_iter().collect()
     }
 
     /// A body or particle with its mass, centre of mass and central inertia.
-    fn heavy(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<(Placed<'g>, MassProperties<'g>)> {
+    pub fn heavy(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<(Placed<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
             return None;

@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use crate::kinematics::{accelerations, twists};
 use crate::mechanism::Quantity;
-use crate::syntax::{Action, ActionKind, Law, Target};
+use crate::syntax::{Action, ActionKind, ExprKind, Law, Target};
 
 /// That it is known how the links move, so that what names velocities can be read. Comes of [`Builder::know_motion`] alone.
 #[derive(Clone, Copy)]
@@ -36,7 +36,7 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// True for force elements that are not on a coordinate, or have a law or a value.
+/// True for force elements that are not on a coordinate or a body as a whole, or have a law or a value.
 pub fn needs_motion(action: &Action) -> bool {
     let own = match &action.kind {
         ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
@@ -44,5 +44,7 @@ pub fn needs_motion(action: &Action) -> bool {
         ActionKind::Dashpot { law } => !matches!(law, Law::Linear(_)),
         _ => false,
     };
-    own || matches!(action.on, Target::Between(..))
+    // A point that a vector says may move on its body.
+    own || matches!(&action.on, Target::Between(..))
+        || matches!(&action.on, Target::On(e) if matches!(e.kind, ExprKind::Method(..)))
 }

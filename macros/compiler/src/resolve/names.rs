@@ -250,16 +250,13 @@ impl<'g> Scope<'_, 'g> {
         context.locals.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
         let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
-        match (&value, d.vector) {
-            (Value::Scalar(_), false) | (Value::Vector(_), true) => Some(value),
-            (_, vector) => {
-                let (is, said) = if vector { ("a scalar", "Vector") } else { ("a vector", "Scalar") };
-                let other = if vector { "Scalar" } else { "Vector" };
-                cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {said}"))
-                    .help(format!("declare it as a `{other}`"));
-                None
-            }
+        if value.rank() == d.rank {
+            return Some(value);
         }
+        let (is, meant) = (value.word(), value.rank().kind());
+        cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {}", d.rank.kind()))
+            .help(format!("declare it as a `{meant}`"));
+        None
     }
 
     /// `joint.coordinate`; `None` if there is no such coordinate and no joint of that name.

@@ -7,7 +7,7 @@ use crate::diag::Diagnostics;
 use crate::mechanism::Uses;
 use crate::syntax::{
     Action, ActionKind, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind,
-    Law,
+    Law, Rank,
 };
 use std::collections::BTreeSet;
 
@@ -115,7 +115,11 @@ fn bodies(d: &Description) -> Vec<String> {
 fn outlined(d: &Description, output: &Definition) -> OutlinedOutput {
     OutlinedOutput {
         name: output.name.text.clone(),
-        size: if output.vector { 3 } else { 1 },
+        size: match output.rank {
+            Rank::Scalar => 1,
+            Rank::Vector => 3,
+            Rank::Matrix => 9,
+        },
         uses: uses(d, &output.value),
     }
 }

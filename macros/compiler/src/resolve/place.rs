@@ -3,6 +3,7 @@
 
 use super::builder::Builder;
 use super::carriers::carries;
+use super::curves::FRAMES;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
 use crate::diag::{Diagnostics, all_of};
@@ -233,9 +234,20 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
+        // Axes that follow from a vector or a curve come before those that are turned from them.
+        let is_natural =
+            |e: &Expr| matches!(&e.kind, ExprKind::Call(word, _) if FRAMES.contains(&word.text.as_str()));
+        let (natural, turned) = match frame.rotations.as_slice() {
+            [first, rest @ ..] if is_natural(first) => (Some(first), rest),
+            all => (None, all),
+        };
+        let first = match (natural, &start) {
+            (Some(step), Some(start)) => self.scope.natural_axes(step, start, cx),
+            _ => Some(Rotation::identity(self.scope.graph)),
+        };
         let context = Context::new(Allowed::Placement, None);
-        let rotation = self.scope.in_context(context, |scope| scope.rotation(&frame.rotations, cx));
-        let (start, rotation) = (start?, rotation?);
+        let rotation = self.scope.in_context(context, |scope| scope.rotation(turned, cx));
+        let (start, rotation) = (start?, first?.then(&rotation?));
         let pose =
             Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
         Some((start.link, pose))

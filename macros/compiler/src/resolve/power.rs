@@ -86,6 +86,22 @@ impl<'g> Builder<'_, 'g> {
         Ok(power + self.power_of_input(element))
     }
 
+    /// The power of contacts that slip, for the outputs that name them: of friction, which follows from the normal force.
+    pub fn know_slipping(&mut self) {
+        let g = self.model.graph;
+        for (k, constraint) in self.model.constraints.iter().enumerate() {
+            if constraint.friction.is_empty() {
+                continue;
+            }
+            let by_force =
+                constraint.friction.iter().fold(g.zero(), |sum, term| sum + term.share * term.rate);
+            let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).call(Function::Abs);
+            let mut kinematics = self.scope.kinematics.borrow_mut();
+            let contact = constraint.name.split('.').next().unwrap_or(&constraint.name);
+            kinematics.powers.insert(contact.to_string(), Ok(normal * by_force));
+        }
+    }
+
     /// The power of an input that acts on a coordinate or a body.
     fn power_of_input(&self, element: &str) -> Expr<'g> {
         let m = &self.model;
@@ -117,7 +133,8 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `power(element)`: what a force element or an input delivers to the bodies, W; negative where it takes energy out.
+    /// `power(element)`: what a force element, an input or a contact that slips delivers to the bodies, W; negative where it takes
+    /// energy out.
     pub fn power(
         &self,
         function: &Name,

@@ -1,18 +1,17 @@
 //! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and the
 //! kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
 
-use super::scope::{Allowed, Axes, Context, Placed, PlacedKind, Scope, Terms, Value};
+use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::Vec3;
-use crate::kinematics::{Spatial, unit};
+use crate::expr::{Graph, Vec3};
+use crate::kinematics::unit;
 use crate::mechanism::{LinkId, Pose, Quantity};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
     /// A vector as a sum over the axes of links. Only where the links are known.
     pub fn terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
-        let terms = self.vector(e, cx)?;
-        Some(terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect())
+        self.vector(e, cx).map(in_links)
     }
 
     /// Several vectors in common axes.
@@ -31,10 +30,7 @@ impl<'g> Scope<'_, 'g> {
             let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
-        let links = |terms: Vec<(Axes, Vec3<'g>)>| -> Terms<'g> {
-            terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
-        };
-        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| links(terms)).collect();
+        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| in_links(terms)).collect();
         let link = all.iter().flatten().next().and_then(|(link, _)| *link);
         let kinematics = self.kinematics.borrow();
         let zero = Vec3::zero(self.graph);
@@ -62,6 +58,12 @@ impl<'g> Scope<'_, 'g> {
             },
             _ => String::new(),
         };
+        if let ExprKind::Binary(BinaryOp::Div, of, frame, _) = &argument.kind
+            && let Some(name) = frame.name()
+            && (name == GROUND || self.bodies.iter().any(|body| body == name))
+        {
+            return self.rate_in(function, of, frame, cx);
+        }
         let kinematics = self.kinematics.borrow();
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
             if self.is_moving(argument) {
@@ -162,8 +164,25 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
+    /// Something with a place, or the point of a body that is somewhere at the moment: `body.at(vector)` with a vector of any axes
+    /// and coordinates. Its velocity and acceleration are those of the body there.
+    pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+        match &e.kind {
+            ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+                let base = self.place_now(base, cx)?;
+                let axes = Some((base.link, base.pose.clone()));
+                let context = Context::new(Allowed::Placement, axes);
+                let at = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
+                let at = self.kinematics.borrow().resolve(&at, base.link, Vec3::zero(self.graph));
+                let pose = Pose { translation: base.pose.translation + at, rotation: base.pose.rotation };
+                Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
+            }
+            _ => self.place(e, cx),
+        }
+    }
+
     /// Something with axes: a body or a frame.
-    fn frame(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
+    pub fn frame(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a frame").help("name a body or a frame");
             return None;
@@ -240,60 +259,105 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Relative angular velocity and acceleration. With `α` of each frame taken in the ground,
-    /// `alpha(B / A / C) = α_B − α_A − ω_C × (ω_B − ω_A)`.
+    /// Relative angular velocity and acceleration.
     fn turning(&self, text: &str, parts: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: Vec<_> = parts.iter().map(|e| self.frame(e, cx)).collect();
         let frames = frames.into_iter().collect::<Option<Vec<_>>>()?;
         let kinematics = self.kinematics.borrow();
-        let zero = Vec3::zero(self.graph);
-        let of = |all: &[Spatial<'g>], link: Option<LinkId>| link.map_or(zero, |l| all[l.0].angular);
-        let difference =
-            |all: &[Spatial<'g>]| vec![(frames[0], of(all, frames[0])), (frames[1], -of(all, frames[1]))];
-        if text == "omega" {
-            return Some(vector(difference(&kinematics.twists)));
-        }
-        let mut terms = difference(&kinematics.accelerations);
-        let w = kinematics.resolve(&difference(&kinematics.twists), frames[2], zero);
-        terms.push((frames[2], -of(&kinematics.twists, frames[2]).cross(w)));
-        Some(vector(terms))
+        Some(vector(match text {
+            "omega" => kinematics.turning_in(frames[0], frames[1], self.graph),
+            _ => kinematics.turning_rate(frames[0], frames[1], frames[2], self.graph),
+        }))
     }
 
     /// Relative position, velocity and acceleration. Seen from a frame A that turns with `ω` and `α`:
     /// `v_A = v − ω × r`, `a_A = a − α × r − ω × (ω × r) − 2 ω × v_A`.
     fn moving(&self, text: &str, parts: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let (y, x) = (self.place(parts[0], cx), self.place(parts[1], cx));
+        let (y, x) = (self.place_now(parts[0], cx), self.place_now(parts[1], cx));
         let frame = parts.get(2).map(|e| self.frame(e, cx));
         let (y, x) = (y?, x?);
         let kinematics = self.kinematics.borrow();
-        let r = kinematics.between(&y, &x);
-        let Some(frame) = frame else { return Some(vector(r)) };
+        let Some(frame) = frame else { return Some(vector(kinematics.between(&y, &x))) };
         let frame = frame?;
-        let zero = Vec3::zero(self.graph);
-        let minus = |terms: Terms<'g>| terms.into_iter().map(|(l, v)| (l, -v)).collect::<Terms<'g>>();
-        let mut v = kinematics.velocity(&y);
-        v.extend(minus(kinematics.velocity(&x)));
+        Some(vector(match text {
+            "v" => kinematics.velocity_in(&y, &x, frame, self.graph),
+            _ => kinematics.acceleration_in(&y, &x, frame, self.graph),
+        }))
+    }
+}
+
+impl<'g> Kinematics<'g> {
+    /// `v(y / x / frame)`.
+    pub fn velocity_in(
+        &self,
+        y: &Placed<'g>,
+        x: &Placed<'g>,
+        frame: Option<LinkId>,
+        graph: &'g Graph,
+    ) -> Terms<'g> {
+        let mut v = self.velocity(y);
+        v.extend(minus(self.velocity(x)));
         if let Some(l) = frame {
-            let w = kinematics.twists[l.0].angular;
-            v.push((frame, -w.cross(kinematics.resolve(&r, frame, zero))));
+            let r = self.resolve(&self.between(y, x), frame, Vec3::zero(graph));
+            v.push((frame, -self.twists[l.0].angular.cross(r)));
         }
-        if text == "v" {
-            return Some(vector(v));
-        }
-        let mut a = kinematics.acceleration(&y);
-        a.extend(minus(kinematics.acceleration(&x)));
+        v
+    }
+
+    /// `a(y / x / frame)`.
+    pub fn acceleration_in(
+        &self,
+        y: &Placed<'g>,
+        x: &Placed<'g>,
+        frame: Option<LinkId>,
+        graph: &'g Graph,
+    ) -> Terms<'g> {
+        let mut a = self.acceleration(y);
+        a.extend(minus(self.acceleration(x)));
         if let Some(l) = frame {
-            let (w, dw) = (kinematics.twists[l.0].angular, kinematics.accelerations[l.0].angular);
-            let (r, v) = (kinematics.resolve(&r, frame, zero), kinematics.resolve(&v, frame, zero));
+            let zero = Vec3::zero(graph);
+            let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
+            let r = self.resolve(&self.between(y, x), frame, zero);
+            let v = self.resolve(&self.velocity_in(y, x, frame, graph), frame, zero);
             let coriolis = w.cross(v);
             a.push((frame, -(dw.cross(r) + w.cross(w.cross(r)) + coriolis + coriolis)));
         }
-        Some(vector(a))
+        a
     }
+
+    /// `omega(of / frame)`.
+    pub fn turning_in(&self, of: Option<LinkId>, frame: Option<LinkId>, graph: &'g Graph) -> Terms<'g> {
+        let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
+        vec![(of, w(of)), (frame, -w(frame))]
+    }
+
+    /// `alpha(b / a / c)`, with `α` of each frame taken in the ground: `α_b − α_a − ω_c × (ω_b − ω_a)`.
+    pub fn turning_rate(
+        &self,
+        b: Option<LinkId>,
+        a: Option<LinkId>,
+        c: Option<LinkId>,
+        graph: &'g Graph,
+    ) -> Terms<'g> {
+        let zero = Vec3::zero(graph);
+        let rate = |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
+        let w = self.resolve(&self.turning_in(b, a, graph), c, zero);
+        let turns = c.map_or(zero, |l| self.twists[l.0].angular);
+        vec![(b, rate(b)), (a, -rate(a)), (c, -turns.cross(w))]
+    }
+}
+
+fn minus<'g>(terms: Terms<'g>) -> Terms<'g> {
+    terms.into_iter().map(|(l, v)| (l, -v)).collect()
 }
 
 pub(super) fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
+}
+
+/// A vector as a sum over the axes of links.
+pub(super) fn in_links<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
+    terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
 }
 
 /// The link of axes; what is not resolved to one belongs to the ground.

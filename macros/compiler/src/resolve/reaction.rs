@@ -22,7 +22,7 @@ pub fn to_release(model: &Model<'_>) -> Vec<usize> {
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
         .filter_map(|s| match Quantity::of(s) {
-            Quantity::Reaction(k) => Some(k / RELEASED),
+            Quantity::Reaction(k) if k < Quantity::MULTIPLIERS => Some(k / RELEASED),
             _ => None,
         })
         .collect();

@@ -1,5 +1,6 @@
 //! Rotations and matrices as written.
 
+use super::curves::FRAMES;
 use super::scope::Scope;
 use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
 use crate::diag::{Diagnostics, Place};
@@ -47,6 +48,16 @@ impl<'g> Scope<'_, 'g> {
                         }
                         self.require(Rule::Unit, || "a quaternion".to_string(), &[square]);
                         return Some(Rotation::quaternion(q));
+                    }
+                    (_, word, _) if FRAMES.contains(&word) => {
+                        cx.error(
+                            step.place.clone(),
+                            format!("`{word}` stands first among the rotations of a `Frame`"),
+                        )
+                        .help(format!(
+                            "write `#[frame(ground, {word}(…))]`, and further rotations behind it"
+                        ));
+                        return None;
                     }
                     _ => {}
                 }

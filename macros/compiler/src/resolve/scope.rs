@@ -1,10 +1,11 @@
 //! What names mean where an expression stands: what is declared, what is placed so far and how it moves, what an expression
 //! may depend on.
 
+use super::resolved::Resolved;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes};
 use crate::mechanism::{Chart, Coordinate, LinkId, Pose, Requirement};
-use crate::syntax::{self, Name};
+use crate::syntax::{self, Name, Rank};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -69,21 +70,33 @@ pub enum Axes {
     Link(Option<LinkId>),
 }
 
-/// A value: a scalar, or a vector as a sum over axes.
+/// A value: a scalar, a vector as a sum over axes, or a matrix.
 #[derive(Clone, Debug)]
 pub enum Value<'g> {
     /// A number.
     Scalar(Expr<'g>),
     /// A physical vector.
     Vector(Vec<(Axes, Vec3<'g>)>),
+    /// A physical matrix.
+    Matrix(Resolved<'g>),
 }
 
 impl Value<'_> {
+    /// What it is declared as.
+    pub fn rank(&self) -> Rank {
+        match self {
+            Value::Scalar(_) => Rank::Scalar,
+            Value::Vector(_) => Rank::Vector,
+            Value::Matrix(_) => Rank::Matrix,
+        }
+    }
+
     /// It in a word, with its article.
     pub fn word(&self) -> &'static str {
         match self {
             Value::Scalar(_) => "a scalar",
             Value::Vector(_) => "a vector",
+            Value::Matrix(_) => "a matrix",
         }
     }
 }

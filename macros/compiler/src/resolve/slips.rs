@@ -1,6 +1,7 @@
 //! What is most likely meant by an expression that has no value: angles in degrees, members and methods of other
 //! languages, arrays that are no matrices.
 
+use super::curves::FRAMES;
 use super::functions::is_function;
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -117,7 +118,7 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
             "x" | "y" | "z" => arguments.len() == 1,
             "eigenaxis" => arguments.len() == 2,
             "quaternion" => arguments.len() == 4,
-            _ => false,
+            word => FRAMES.contains(&word),
         },
         ExprKind::Array(_) => true,
         _ => false,

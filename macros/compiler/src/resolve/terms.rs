@@ -11,9 +11,9 @@ use crate::expr::eval::eval;
 use crate::expr::replace::replace;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Function, Node, Symbol, Vec3};
-use crate::kinematics::{position_in, symbols_in, velocity_gradient};
-use crate::mechanism::{Coordinate, Inertance, Load, OutputValue, Pose, Quantity, Rule};
-use crate::syntax::{self, Definition, ExprKind, Law};
+use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
+use crate::mechanism::{Coordinate, Inertance, LinkId, Load, OutputValue, Pose, Quantity, Rule};
+use crate::syntax::{self, Definition, ExprKind, Law, Rank};
 use std::collections::BTreeSet;
 
 /// Regularisation speed of friction, unless given.
@@ -45,6 +45,20 @@ impl<'g> Builder<'_, 'g> {
             rate: Quantity::Velocity(c.v).expr(g) * g.num(c.ratio),
             signed: false,
         }
+    }
+
+    /// A length or an angle given by an expression of the coordinates, such as that of a cable.
+    pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+        let g = self.scope.graph;
+        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g))));
+        let value = self.scope.in_context(context, |scope| scope.scalar(e, cx))?;
+        let rate = time_derivative(self.model.space(), value);
+        if velocity_gradient(rate).is_empty() {
+            cx.error(e.place.clone(), "this contains no coordinate: nothing that acts on it has an effect")
+                .help("an element acts on a length or an angle that changes with the motion, such as `norm(r(a / b))`");
+            return None;
+        }
+        Some(Stretch { value, rate, square: value.square(), signed: false })
     }
 
     /// The distance between two points. Where they move along one line, it is the coordinate along that line, so that
@@ -101,10 +115,7 @@ impl<'g> Builder<'_, 'g> {
         };
         let g = self.scope.graph;
         let Some(value) = value else {
-            let input = self.model.inputs.iter().position(|(name, _)| *name == action.name.text);
-            if let Some(force) = input.map(|k| Quantity::Input(k).expr(g)) {
-                self.model.loads.push(Load { rate, force, dissipative: false });
-            }
+            self.add_input_load(&action.name.text, rate);
             return;
         };
         let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(g))));
@@ -309,42 +320,54 @@ impl<'g> Builder<'_, 'g> {
 
     fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let home = Some((None, Pose::identity(self.scope.graph)));
-        let context = Context::new(Allowed::Reaction, home);
-        if !output.vector {
+        let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
+        let context = Context::new(allowed, home);
+        if output.rank == Rank::Scalar {
             return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
                 Value::Scalar(s) => Some(vec![s]),
-                Value::Vector(_) => {
-                    cx.error(output.value.place.clone(), "expected a scalar, found a vector")
-                        .help("declare it as a `Vector`, or take a component, `dot(v, x)`");
+                other => {
+                    let what = other.word();
+                    cx.error(output.value.place.clone(), format!("expected a scalar, found {what}")).help(
+                        match other {
+                            Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
+                            _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
+                        },
+                    );
                     None
                 }
             };
         }
+        if output.rank == Rank::Matrix {
+            let found = self.scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
+            let (link, pose) = self.output_axes(output, cx)?;
+            return Some(self.scope.kinematics.borrow().matrix_entries(found?, link, &pose.rotation));
+        }
         let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
-        let axes = match &output.resolved_in {
-            None => Some((None, Pose::identity(self.scope.graph))),
-            Some(e) => match &e.kind {
-                ExprKind::Name(name) if name == super::tree::GROUND => {
-                    Some((None, Pose::identity(self.scope.graph)))
-                }
-                ExprKind::Name(name) => {
-                    let kinematics = self.scope.kinematics.borrow();
-                    let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
-                    if found.is_none() {
-                        let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
-                        cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
-                    }
-                    found
-                }
-                _ => {
-                    cx.error(e.place.clone(), "expected a body or a frame");
-                    None
-                }
-            },
-        };
-        let (link, pose) = axes?;
+        let (link, pose) = self.output_axes(output, cx)?;
         let v = self.scope.kinematics.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
         Some(pose.rotation.to_child(v).0.to_vec())
+    }
+
+    /// The axes of the components of an output.
+    fn output_axes(&self, output: &Definition, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let ground = Some((None, Pose::identity(self.scope.graph)));
+        let Some(e) = &output.resolved_in else { return ground };
+        match &e.kind {
+            ExprKind::Name(name) if name == super::tree::GROUND => ground,
+            ExprKind::Name(name) => {
+                let kinematics = self.scope.kinematics.borrow();
+                let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
+                if found.is_none() {
+                    let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
+                    cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
+                }
+                found
+            }
+            _ => {
+                cx.error(e.place.clone(), "expected a body or a frame");
+                None
+            }
+        }
     }
 
     /// Sets what the signatures of the generated functions depend on.

@@ -10,7 +10,7 @@ use super::joint_kind;
 use super::limit::read_limit;
 use super::{
     ActionKind, Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate,
-    Name, Particle, Point, words,
+    Name, Particle, Point, Rank, words,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of, syn_error};
 use proc_macro2::{Span, TokenStream};
@@ -43,7 +43,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 16] = [
+const OTHERS: [(&str, &[&str]); 17] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -60,6 +60,7 @@ const OTHERS: [(&str, &[&str]); 16] = [
     ("Equilibrium", &["equilibrium"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
+    ("Matrix", &["define", "output"]),
 ];
 
 /// Types of Rust that are no parameter.
@@ -318,10 +319,18 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         mass: arguments.take_expr("mass", cx),
         com: arguments.take_expr("com", cx),
         inertia: arguments.take_expr("inertia", cx),
+        about: arguments.take_expr("about", cx),
         at: arguments.take_expr("at", cx),
         frame: arguments.take_expr("frame", cx),
     };
-    arguments.finish("a Body", &["mass", "com", "inertia", "at", "frame"], cx);
+    arguments.finish("a Body", &["mass", "com", "inertia", "about", "at", "frame"], cx);
+    if let (Some(about), None) = (&body.about, &body.inertia) {
+        cx.error(
+            about.place.clone(),
+            "`about` says which point the inertia is about, and there is no inertia",
+        )
+        .help("write `inertia = …` beside it, or remove it");
+    }
     if let Some(place) = massive {
         if body.at.is_none() && body.frame.is_none() {
             cx.error(place, "the motion of a massive body is prescribed").help(
@@ -438,7 +447,8 @@ fn read_expression(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let resolved_in = if kind == "Vector" { arguments.take_expr("resolved_in", cx) } else { None };
+    let has_axes = matches!(kind, "Vector" | "Matrix");
+    let resolved_in = if has_axes { arguments.take_expr("resolved_in", cx) } else { None };
     let mut plain = arguments.take_plain();
     let value = plain.pop();
     let word = attribute.unwrap_or("define");
@@ -452,7 +462,7 @@ fn read_expression(
         return;
     }
     let is_empty = arguments.is_empty();
-    let keys: &[&str] = if kind == "Vector" { &["resolved_in"] } else { &[] };
+    let keys: &[&str] = if has_axes { &["resolved_in"] } else { &[] };
     arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
     let Some(value) = value else {
         if is_empty {
@@ -465,8 +475,8 @@ fn read_expression(
         ("Potential", _) => description.energies.push((name, value)),
         ("Rayleigh", _) => description.dissipations.push((name, value)),
         (_, "output") => {
-            description.outputs.push(Definition { name, vector: kind == "Vector", value, resolved_in });
+            description.outputs.push(Definition { name, rank: Rank::of(kind), value, resolved_in });
         }
-        _ => description.definitions.push(Definition { name, vector: kind == "Vector", value, resolved_in }),
+        _ => description.definitions.push(Definition { name, rank: Rank::of(kind), value, resolved_in }),
     }
 }

@@ -409,16 +409,47 @@ pub struct Point {
     pub at: Option<Expr>,
 }
 
+/// What an expression stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rank {
+    /// A number.
+    Scalar,
+    /// A physical vector.
+    Vector,
+    /// A physical matrix, which takes vectors to vectors.
+    Matrix,
+}
+
+impl Rank {
+    /// That of an element's type.
+    fn of(kind: &str) -> Rank {
+        match kind {
+            "Vector" => Rank::Vector,
+            "Matrix" => Rank::Matrix,
+            _ => Rank::Scalar,
+        }
+    }
+
+    /// The element's type.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Rank::Scalar => "Scalar",
+            Rank::Vector => "Vector",
+            Rank::Matrix => "Matrix",
+        }
+    }
+}
+
 /// A name for an expression.
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// The name.
     pub name: Name,
-    /// It stands for a vector, not for a scalar.
-    pub vector: bool,
+    /// What it stands for.
+    pub rank: Rank,
     /// The expression.
     pub value: Expr,
-    /// An output vector's axes.
+    /// The axes of an output's components.
     pub resolved_in: Option<Expr>,
 }
 
@@ -431,8 +462,10 @@ pub struct Body {
     pub mass: Option<Expr>,
     /// Centre of mass, in body axes from the body's origin; the origin if absent.
     pub com: Option<Expr>,
-    /// Inertia about the centre of mass, in body axes; zero if absent.
+    /// Inertia in body axes; zero if absent.
     pub inertia: Option<Expr>,
+    /// The point that the inertia is about, in body axes from the body's origin; the centre of mass if absent.
+    pub about: Option<Expr>,
     /// Where its origin is, for a body placed by expressions.
     pub at: Option<Expr>,
     /// The frame whose axes it has, for a body placed by expressions.

@@ -129,7 +129,7 @@ impl Reading {
 
 /// A body of which nothing but its name is known.
 fn massless(name: &Name) -> Body {
-    Body { name: name.clone(), mass: None, com: None, inertia: None, at: None, frame: None }
+    Body { name: name.clone(), mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }
 
 /// All words among tokens.

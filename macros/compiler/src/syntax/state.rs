@@ -2,7 +2,7 @@
 
 use super::attribute::span_of;
 use super::mechanism::Shell;
-use super::{Definition, Description, Name, RATE_OF_STATE, ScalarType, element};
+use super::{Definition, Description, Name, RATE_OF_STATE, Rank, ScalarType, element};
 use crate::diag::Diagnostics;
 use proc_macro2::Span;
 use syn::{Field, Ident};
@@ -35,7 +35,7 @@ pub fn read_state(
     if let Some(value) = rate {
         let text = format!("{}{RATE_OF_STATE}", name.text);
         let name = Name { text, place: name.place.clone() };
-        description.outputs.push(Definition { name, vector: false, value, resolved_in: None });
+        description.outputs.push(Definition { name, rank: Rank::Scalar, value, resolved_in: None });
     }
 }
 

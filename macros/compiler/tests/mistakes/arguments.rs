@@ -27,7 +27,7 @@ const BODIES: &[Row] = &[
         "a Body has no argument `geometry`",
         "did you mean `inertia`?",
     ),
-    ("1", "expected `name = value`", "expected `mass`, `com`, `inertia`, `at` or `frame`"),
+    ("1", "expected `name = value`", "expected `mass`, `com`, `inertia`, `about`, `at` or `frame`"),
 ];
 
 #[test]

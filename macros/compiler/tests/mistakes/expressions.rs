@@ -121,7 +121,7 @@ const SCALARS: &[Row] = &[
     ("moment_of_inertia(arms / ground, z)", "unknown body `arms`", "did you mean `arm`?"),
     ("moment_of_inertia(arm / ground, 2)", "expected a vector, found a scalar", "multiply it by a direction"),
     ("rate(l)", "`rate` takes a coordinate", "expected `hinge`"),
-    ("rate(r(arm / ground))", "expected a scalar, found a vector", "`norm(v)`"),
+    ("rate(r(arm / ground))", "the rate of a vector is one as seen from a frame", "`rate(norm(vector))`"),
     (
         "rate(rate(rate(hinge)))",
         "this depends on accelerations or forces, whose rates are not known",

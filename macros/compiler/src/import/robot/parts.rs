@@ -42,5 +42,5 @@ pub(in crate::import) struct Robot {
 
 /// A body without mass.
 pub(in crate::import) fn bare_link(name: Name) -> Body {
-    Body { name, mass: None, com: None, inertia: None, at: None, frame: None }
+    Body { name, mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }

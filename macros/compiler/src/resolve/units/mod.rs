@@ -15,7 +15,7 @@ mod walk;
 use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
 use crate::syntax::RATE_OF_STATE;
-use crate::syntax::{Definition, Description, Expr, ExprKind};
+use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
 use std::collections::BTreeSet;
@@ -75,7 +75,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
         let unit = shown(&mut inference, &Dimension::variable(v), v);
-        let energy = !output.vector && unit == "N·m";
+        let energy = output.rank == Rank::Scalar && unit == "N·m";
         units.outputs.push(if energy { "J".to_string() } else { unit });
     }
     units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();

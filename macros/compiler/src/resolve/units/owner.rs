@@ -36,7 +36,13 @@ fn fields(d: &Description) -> Found<'_> {
     }
     for body in &d.bodies {
         let name = body.name.text.as_str();
-        let parts = [("mass", &body.mass), ("com", &body.com), ("inertia", &body.inertia), ("at", &body.at)];
+        let parts = [
+            ("mass", &body.mass),
+            ("com", &body.com),
+            ("inertia", &body.inertia),
+            ("about", &body.about),
+            ("at", &body.at),
+        ];
         all.extend(parts.into_iter().filter_map(|(word, e)| Some((word, name, e.as_ref()?))));
     }
     for particle in &d.particles {

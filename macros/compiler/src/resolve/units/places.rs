@@ -8,6 +8,7 @@ use super::si::{
 };
 use super::unify::Dimension;
 use crate::resolve::contact::{PLACE, arguments_of};
+use crate::resolve::curves::FRAMES;
 use crate::resolve::inertia::SOLIDS;
 use crate::syntax::contact::collision;
 use crate::syntax::{
@@ -115,7 +116,7 @@ impl<'a> Places<'a> {
 
     fn body(&mut self, body: &'a Body) {
         self.all(&body.mass, &MASS, "kg");
-        self.all(&body.com, &LENGTH, "m");
+        self.all(body.com.iter().chain(&body.about), &LENGTH, "m");
         body.inertia.iter().for_each(|e| self.inertia(e));
         body.at.iter().for_each(|e| self.spot(e));
     }
@@ -157,6 +158,10 @@ impl<'a> Places<'a> {
     fn rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
+                ExprKind::Call(word, arguments) if FRAMES.contains(&word.text.as_str()) => {
+                    let curve = (word.text == "frenet").then(|| arguments.first()).flatten();
+                    self.all(curve, &LENGTH, "m");
+                }
                 ExprKind::Call(_, arguments) => {
                     let (angle, axis) =
                         arguments.split_last().map_or((None, arguments.as_slice()), |(a, n)| (Some(a), n));
@@ -205,10 +210,18 @@ impl<'a> Places<'a> {
             }
             Target::On(e) => {
                 let coordinate = coordinate(e, inference);
-                if coordinate.is_none() {
-                    self.points.push(e);
+                match &e.kind {
+                    _ if coordinate.is_some() => coordinate,
+                    ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
+                        let unknown = Dimension::variable(inference.system.variable());
+                        self.add(e, &unknown, "");
+                        Some(unknown)
+                    }
+                    _ => {
+                        self.points.push(e);
+                        None
+                    }
                 }
-                coordinate
             }
         };
         let on_point = on.is_none();
@@ -396,6 +409,7 @@ fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
     };
     match meaning {
         Some(Meaning::Moving(dimension)) => Some(dimension.clone()),
-        _ => None,
+        Some(Meaning::Named(v, _)) => Some(Dimension::variable(*v)),
+        None => None,
     }
 }

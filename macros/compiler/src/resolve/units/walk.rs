@@ -189,6 +189,19 @@ impl<'a> Inference<'a> {
                 arguments.iter().for_each(|a| drop(self.value(a)));
                 Value::quantity(PLAIN)
             }
+            // Of a vector, as seen from a frame, whose name has no dimension.
+            ("rate", [Expr { kind: ExprKind::Binary(BinaryOp::Div, of, frame, _), .. }])
+                if self.is_frame(frame) =>
+            {
+                match self.value(of) {
+                    Value::Quantity { dimension, named } => match dimension.over(&TIME) {
+                        Some(dimension) => Value::Quantity { dimension, named },
+                        None => Value::Unknown,
+                    },
+                    Value::Direction => Value::quantity(RATE),
+                    other => other,
+                }
+            }
             ("rate", [a]) => match self.value(a) {
                 Value::Quantity { dimension, named } => match dimension.over(&TIME) {
                     Some(dimension) => Value::Quantity { dimension, named },
@@ -206,6 +219,44 @@ impl<'a> Inference<'a> {
                 })
             }
             ("power", _) => Value::quantity(POWER),
+            ("skew" | "transpose" | "trace", [a]) => self.value(a),
+            ("outer", [a, b]) => {
+                let factors = [(false, self.value(a)), (false, self.value(b))];
+                self.multiply(&factors)
+            }
+            ("projector", [a]) => {
+                self.value(a);
+                Value::quantity(PLAIN)
+            }
+            ("rotation", _) | ("identity", _) => Value::quantity(PLAIN),
+            ("inertia", [of]) => {
+                self.slash("r", of);
+                Value::quantity(INERTIA)
+            }
+            (
+                "center_of_mass" | "instant_center" | "acceleration_center" | "screw_axis" | "screw_pitch",
+                [of],
+            ) => self.slash("r", of),
+            ("center_of_percussion", [of, axis]) => {
+                self.value(axis);
+                self.slash("r", of)
+            }
+            ("cable", [of, surface]) => {
+                self.slash("r", of);
+                let ExprKind::Method(home, _, arguments) = &surface.kind else { return Value::Unknown };
+                self.point(home);
+                let radius =
+                    arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
+                Value::Quantity { dimension: LENGTH, named: radius.is_some_and(|radius| radius.is_named()) }
+            }
+            ("curvature" | "torsion", [curve, _]) => self.value(curve).power(Some(Ratio::integer(-1))),
+            ("gradient", [Expr { kind: ExprKind::Binary(_, field, ..), .. }]) => match self.value(field) {
+                Value::Quantity { dimension, named } => match dimension.over(&LENGTH) {
+                    Some(dimension) => Value::Quantity { dimension, named },
+                    None => Value::Unknown,
+                },
+                _ => Value::Unknown,
+            },
             ("moment_of_inertia", [of, directions @ ..]) => {
                 self.slash("r", of);
                 let directions: Vec<Value> = directions.iter().map(|a| self.value(a)).collect();
@@ -237,6 +288,16 @@ impl<'a> Inference<'a> {
             (_, [a]) => self.elementary(text, a),
             _ => Value::Unknown,
         }
+    }
+
+    /// True for the name of a body or a frame, which is no quantity.
+    fn is_frame(&self, e: &Expr) -> bool {
+        let is_value = |name: &str| {
+            self.names.contains_key(name)
+                || matches!(name, "x" | "y" | "z" | "pi" | "t")
+                || self.locals.iter().any(|(local, _)| *local == name)
+        };
+        e.name().is_some_and(|name| !is_value(name))
     }
 
     /// The value of a table, whose variables have the units of their axes wherever it is called.

@@ -354,7 +354,7 @@ pub const FUNCTIONS: Words = &[
     ("length magnitude mag len modulus", "norm"),
     ("normalize normalise normalized normalised unitvector hat direction", "unit"),
     ("inner scalarproduct inp", "dot"),
-    ("outer wedge vectorproduct crossproduct", "cross"),
+    ("wedge vectorproduct crossproduct", "cross"),
     ("proj projection", "project"),
     ("anglebetween", "angle"),
     ("radians deg2rad rad2deg degtorad deg degree torad rad radian", "degrees"),

@@ -1,0 +1,122 @@
+//! Cables that run around spheres and cylinders.
+
+use super::quantities::flatten;
+use super::scope::{Allowed, Context, Placed, Scope, Value};
+use super::slips::wrong_count;
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Extreme, Function, Vec3};
+use crate::mechanism::Rule;
+use crate::syntax::{self, ExprKind, Name};
+use std::f64::consts::PI;
+
+impl<'g> Scope<'_, 'g> {
+    /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut cable between two points,
+    /// laid around a surface where that stands in its way.
+    ///
+    /// Around a cylinder it turns about the axis from `a` to `b`, by less than a full turn. Across the axis the points have distances `d`, and lie at an angle `θ`
+    /// from each other; what touches is `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents
+    /// and a helix, which is straight on the unrolled cylinder; elsewhere it is straight.
+    pub fn cable(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let (parts, surface) = match arguments {
+            [of, surface] => (flatten(of), Some(surface)),
+            _ => (Vec::new(), None),
+        };
+        let ([a, b], Some(surface)) = (parts.as_slice(), surface) else {
+            cx.error(function.place.clone(), "`cable` takes two points and a surface").help(
+                "write `cable(a / b, drum.cylinder(radius, axis))` or `cable(a / b, ball.sphere(radius))`",
+            );
+            return None;
+        };
+        if !self.check_allowed(Allowed::Placement, "`cable(…)`", &function.place, cx) {
+            return None;
+        }
+        let (home, radius, axis) = self.round(surface, cx)?;
+        let (a, b) = (self.place_now(a, cx), self.place_now(b, cx));
+        let (a, b) = (a?, b?);
+        let kinematics = self.kinematics.borrow();
+        let from = |p: &Placed<'g>| {
+            kinematics.resolve(&kinematics.between(p, &home), home.link, Vec3::zero(self.graph))
+        };
+        let (a, b) = (from(&a), from(&b));
+        let (across, rise) = match axis {
+            None => ([a, b], self.graph.zero()),
+            Some(n) => {
+                let n = home.pose.rotation.to_parent(n);
+                let across = [a, b].map(|p| p + -(n * p.dot(n)));
+                (across, a.dot(n) - b.dot(n))
+            }
+        };
+        let [a, b] = across;
+        let (sine, cosine) = match axis {
+            None => (a.cross(b).length(), a.dot(b)),
+            Some(n) => (home.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
+        };
+        // Around a cylinder from zero to a full turn.
+        let angle = match axis {
+            None => sine.atan2(cosine),
+            Some(_) => (-sine).atan2(-cosine) + self.graph.num(PI),
+        };
+        let square = radius.square();
+        let tangents = [a, b].map(|p| (p.dot(p) - square).sqrt());
+        let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
+        let wound = tangents[0] + tangents[1] + radius * touched;
+        let straight = (a - b).length();
+        // One where it touches, zero elsewhere; its derivative is zero.
+        let touches = touched.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
+        let flat = straight + touches * (wound - straight);
+        let length = if rise.is_zero() { flat } else { (flat.square() + rise.square()).sqrt() };
+        Some(Value::Scalar(length))
+    }
+
+    /// A sphere or a cylinder of a body: its place, its radius and its axis.
+    fn round(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<(Placed<'g>, Expr<'g>, Option<Vec3<'g>>)> {
+        let ExprKind::Method(base, word, arguments) = &e.kind else {
+            cx.error(e.place.clone(), "expected a sphere or a cylinder")
+                .help("write `drum.cylinder(radius, axis)` or `ball.sphere(radius)`");
+            return None;
+        };
+        let (radius, axis) = match (word.text.as_str(), arguments.as_slice()) {
+            ("sphere", [radius]) => (radius, None),
+            ("cylinder", [radius, axis]) => (radius, Some(axis)),
+            ("sphere", _) => return wrong_count(word, 1, cx),
+            ("cylinder", _) => {
+                cx.error(
+                    word.place.clone(),
+                    "a cylinder that a cable runs around is written `cylinder(radius, axis)`",
+                )
+                .help(
+                    "the cable turns about the axis, by the right hand, from the first point to the second",
+                );
+                return None;
+            }
+            (text, _) => {
+                cx.error(word.place.clone(), format!("a cable does not run around a `{text}`"))
+                    .help("it runs around a `sphere(radius)` or a `cylinder(radius, axis)`");
+                return None;
+            }
+        };
+        let home = self.place(base, cx);
+        let constant = || Context::new(Allowed::Constant, None);
+        let value = self.in_context(constant(), |s| s.scalar(radius, cx))?;
+        if let Some(n) = value.value().filter(|n| *n <= 0.0) {
+            cx.error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
+                .help("the side that a cable runs on is said by the direction of the axis");
+            return None;
+        }
+        self.require(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);
+        let axis = match axis {
+            Some(axis) => Some(self.in_context(constant(), |s| s.unit_vector(axis, false, cx))?),
+            None => None,
+        };
+        Some((home?, value, axis))
+    }
+}

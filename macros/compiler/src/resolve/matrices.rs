@@ -1,0 +1,238 @@
+//! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with their products,
+//! transposes and rates.
+
+use super::quantities::{flatten, in_links, vector};
+use super::resolved::Resolved;
+use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
+use super::slips::wrong_count;
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Mat3, Rotation, Vec3};
+use crate::kinematics::change_axes;
+use crate::mechanism::LinkId;
+use crate::syntax::{self, BinaryOp, GROUND, Name};
+
+impl<'g> Kinematics<'g> {
+    /// A matrix in the axes of another link.
+    pub fn matrix_in(&self, m: Resolved<'g>, link: Option<LinkId>) -> Resolved<'g> {
+        if m.link == link { m } else { m.turned(link, |v| change_axes(&self.joints, v, m.link, link)) }
+    }
+
+    /// The entries of a matrix in the axes of a frame on a link, column by column.
+    pub fn matrix_entries(
+        &self,
+        m: Resolved<'g>,
+        link: Option<LinkId>,
+        axes: &Rotation<'g>,
+    ) -> Vec<Expr<'g>> {
+        let here = self.matrix_in(m, link).turned(link, |v| axes.to_child(v));
+        (0..3).flat_map(|k| here.entries.column(k).0).collect()
+    }
+}
+
+impl<'g> Scope<'_, 'g> {
+    /// A matrix.
+    pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Resolved<'g>> {
+        match self.value(e, cx)? {
+            Value::Matrix(m) => Some(m),
+            other => {
+                cx.error(e.place.clone(), format!("expected a matrix, found {}", other.word()))
+                    .help("a matrix is `projector(n)`, `skew(v)`, `outer(a, b)`, `rotation(B / A)`, `inertia(body / point)` or made of these");
+                None
+            }
+        }
+    }
+
+    /// A matrix by its rows, in the axes at hand.
+    pub fn matrix_by_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let entries = self.matrix(e, cx)?;
+        let Some((link, pose)) = self.context.borrow().axes.clone() else { return self.no_matrix(e, cx) };
+        let own = Resolved { link, entries };
+        Some(Value::Matrix(own.turned(link, |v| pose.rotation.to_parent(v))))
+    }
+
+    fn no_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        cx.error(e.place.clone(), "a matrix cannot stand here")
+            .help("matrices stand in definitions, outputs and forces: `#[define(projector(n))]`");
+        None
+    }
+
+    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line; `skew(a)`, with `skew(a) * b = cross(a, b)`; `outer(a, b)`: `a bᵀ`;
+    /// `rotation(B / A)`: `Σ bₖ aₖᵀ`, which turns the axes of A into those of B; `inertia(body / point)`: the physical inertia matrix;
+    /// `identity()`, `transpose(M)`, `trace(M)`.
+    pub fn matrix_function(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let text = function.text.as_str();
+        if self.context.borrow().axes.is_none() {
+            let e = syntax::Expr {
+                kind: syntax::ExprKind::Name(text.to_string()),
+                place: function.place.clone(),
+            };
+            return self.no_matrix(&e, cx);
+        }
+        match (text, arguments) {
+            ("identity", []) => {
+                Some(Value::Matrix(Resolved { link: None, entries: Mat3::identity(self.graph) }))
+            }
+            ("projector" | "skew", [a]) => {
+                let (link, [a]) = self.vectors([a], cx)?;
+                Some(Value::Matrix(Resolved {
+                    link,
+                    entries: match text {
+                        "skew" => Mat3::skew(a),
+                        _ => {
+                            let square = a.dot(a);
+                            Mat3::from_fn(|i, j| a[i] * a[j] / square)
+                        }
+                    },
+                }))
+            }
+            ("outer", [a, b]) => {
+                let (link, [a, b]) = self.vectors([a, b], cx)?;
+                Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
+            }
+            ("transpose", [m]) => {
+                let m = self.physical_matrix(m, cx)?;
+                Some(Value::Matrix(Resolved { entries: m.entries.transpose(), ..m }))
+            }
+            ("trace", [m]) => {
+                let m = self.physical_matrix(m, cx)?.entries.0;
+                Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
+            }
+            ("rotation", [of]) => self.physical_rotation(function, of, cx),
+            ("inertia", [of]) => self.inertia_matrix(function, of, cx),
+            ("outer", _) => wrong_count(function, 2, cx),
+            ("identity", _) => {
+                cx.error(function.place.clone(), "`identity` takes no argument").help("write `identity()`");
+                None
+            }
+            _ => wrong_count(function, 1, cx),
+        }
+    }
+
+    /// Vectors in the axes of one link.
+    fn vectors<const N: usize>(
+        &self,
+        vectors: [&syntax::Expr; N],
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, [Vec3<'g>; N])> {
+        let (axes, v) = self.common_axes(&vectors, cx)?;
+        let link = if let Axes::Link(link) = axes { link } else { None };
+        Some((link, v.try_into().ok()?))
+    }
+
+    fn physical_rotation(
+        &self,
+        function: &Name,
+        of: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let parts = flatten(of);
+        let [b, a] = parts.as_slice() else {
+            cx.error(function.place.clone(), "`rotation` takes two frames")
+                .help("write `rotation(B / A)`, which turns the axes of A into those of B");
+            return None;
+        };
+        if !self.check_allowed(Allowed::Placement, "`rotation(…)`", &function.place, cx) {
+            return None;
+        }
+        let (link, _) = (self.frame(a, cx), self.frame(b, cx));
+        let link = link?;
+        let (a, b) = (self.axes_of(a)?, self.axes_of(b)?);
+        let kinematics = self.kinematics.borrow();
+        let zero = Vec3::zero(self.graph);
+        let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
+        let entry = |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
+        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(entry) }))
+    }
+
+    /// The axes of a body or a frame whose name is known.
+    fn axes_of(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
+        let axis = |k: usize| Vec3::axis(self.graph, k);
+        match e.name()? {
+            GROUND => Some([0, 1, 2].map(|k| vec![(None, axis(k))])),
+            name => {
+                let kinematics = self.kinematics.borrow();
+                let Placed { link, pose, .. } = kinematics.places.get(name)?;
+                Some([0, 1, 2].map(|k| vec![(*link, pose.rotation.to_parent(axis(k)))]))
+            }
+        }
+    }
+
+    /// The physical inertia matrix of bodies about a point.
+    fn inertia_matrix(&self, function: &Name, of: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let parts = flatten(of);
+        let [of, about] = parts.as_slice() else {
+            cx.error(function.place.clone(), "`inertia` takes bodies and a point")
+                .help("write `inertia(body / point)` or `inertia((first, second) / point)`");
+            return None;
+        };
+        if !self.check_allowed(Allowed::Placement, "`inertia(…)`", &function.place, cx) {
+            return None;
+        }
+        let bodies = self.heavy_ones(of, cx)?;
+        let about = self.place_now(about, cx)?;
+        let link = bodies.first().and_then(|(placed, _)| placed.link);
+        let axis = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
+        let entries = Mat3::from_fn(|i, j| {
+            let (i, j) = (i.min(j), i.max(j));
+            bodies.iter().fold(self.graph.zero(), |sum, body| {
+                sum + self.inertia_about(body, &about, [&axis(i), &axis(j)])
+            })
+        });
+        Some(Value::Matrix(Resolved { link, entries }))
+    }
+
+    /// Sums, differences and products with a matrix.
+    pub fn matrix_binary(
+        &self,
+        op: BinaryOp,
+        left: Value<'g>,
+        right: Value<'g>,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let kinematics = self.kinematics.borrow();
+        Some(match (op, left, right) {
+            (BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul, Value::Matrix(a), Value::Matrix(b)) => {
+                let b = kinematics.matrix_in(b, a.link).entries;
+                let entries = match op {
+                    BinaryOp::Add => a.entries + b,
+                    BinaryOp::Sub => a.entries - b,
+                    _ => a.entries * b,
+                };
+                Value::Matrix(Resolved { entries, ..a })
+            }
+            (BinaryOp::Mul, Value::Matrix(m), Value::Vector(v)) => {
+                let v = kinematics.resolve(&in_links(v), m.link, Vec3::zero(self.graph));
+                vector(vec![(m.link, m.entries * v)])
+            }
+            (BinaryOp::Mul, Value::Scalar(s), Value::Matrix(m))
+            | (BinaryOp::Mul, Value::Matrix(m), Value::Scalar(s)) => Value::Matrix(m.map(|entry| entry * s)),
+            (BinaryOp::Div, Value::Matrix(m), Value::Scalar(s)) => Value::Matrix(m.map(|entry| entry / s)),
+            (op, left, right) => {
+                let (what, help) = match op {
+                    BinaryOp::Mul => (
+                        "multiplied by",
+                        "a matrix stands before what it takes: `M * v`; of a row, write `transpose(M) * v`",
+                    ),
+                    BinaryOp::Div => {
+                        ("divided by", "divide by a scalar, or multiply by `transpose(M)` of a rotation")
+                    }
+                    BinaryOp::Add => ("added to", "a scalar times `identity()` is a matrix"),
+                    BinaryOp::Sub => ("subtracted from", "a scalar times `identity()` is a matrix"),
+                };
+                let (first, second) = match op {
+                    BinaryOp::Sub => (&right, &left),
+                    _ => (&left, &right),
+                };
+                cx.error(e.place.clone(), format!("{} cannot be {what} {}", first.word(), second.word()))
+                    .help(help);
+                return None;
+            }
+        })
+    }
+}

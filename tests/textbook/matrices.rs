@@ -1,0 +1,137 @@
+//! Physical matrices: projectors, rotations, cross products and inertias as expressions and outputs.
+
+use linkwork::nalgebra::{Matrix3, Rotation3, Vector3};
+use linkwork::prelude::*;
+use linkwork::rotation::{reciprocal, unvectorized, vectorized, wedge};
+use support::random::Random;
+
+/// A carrier in space with a wheel on an axle that stands askew.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Carrier {
+    mass: f64,
+    #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
+    hull: Body,
+    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, 0.15 * mass))]
+    wheel: Body,
+    #[joint(ground -> hull)]
+    flight: Free,
+    #[joint(hull.at(0.3 * x).rotated(y(0.4)) -> wheel, about = z)]
+    axle: Pin,
+    #[frame(wheel, x(0.3))]
+    askew: Frame,
+    #[point(on = wheel, at = 0.2 * z)]
+    middle: Point,
+    #[define(rotation(wheel / hull))]
+    turned: Matrix,
+    #[define(inertia(wheel / middle))]
+    central: Matrix,
+    #[output(turned, resolved_in = hull)]
+    relative: Matrix,
+    #[output(rate(turned / hull), resolved_in = hull)]
+    relative_rate: Matrix,
+    #[output(skew(omega(wheel / hull)) * turned, resolved_in = hull)]
+    poisson: Matrix,
+    #[output(rotation(askew / ground) * transpose(rotation(askew / ground)) - identity())]
+    nothing: Matrix,
+    #[output(rotation(askew / ground))]
+    orientation: Matrix,
+    #[output(central, resolved_in = wheel)]
+    moments: Matrix,
+    #[output(rate(central / ground), resolved_in = hull)]
+    moments_rate: Matrix,
+    #[output(skew(omega(wheel / ground)) * central - central * skew(omega(wheel / ground)), resolved_in = hull)]
+    turning: Matrix,
+    #[output(inertia((hull, wheel) / ground) * z)]
+    column: Vector,
+    #[output(central * omega(wheel / ground), resolved_in = hull)]
+    spin: Vector,
+    #[output(angular_momentum(wheel / middle), resolved_in = hull)]
+    angular: Vector,
+    #[output(projector(askew.y) * r(wheel / ground) - project(r(wheel / ground), askew.y))]
+    along: Vector,
+    #[output((identity() - projector(askew.y)) * r(wheel / ground), resolved_in = askew)]
+    across: Vector,
+    #[output(r(wheel / ground), resolved_in = askew)]
+    place: Vector,
+    #[output(trace(2 * turned / 4 + outer(hull.x, hull.y) - -skew(hull.z)))]
+    cosine: Scalar,
+    #[output([[1, 2, 0], [0, 1, 0], [0, 0, 3]] * x + transpose([[1, 2, 0], [0, 1, 0], [0, 0, 3]]) * x)]
+    rows: Vector,
+}
+
+#[test]
+fn matrices_are_what_their_vectors_say() {
+    let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(31));
+    for _ in 0..4 {
+        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) = (random.configuration(&m), random.vector(2.0));
+        let hull = m.frame_placement(frame!(Carrier, "hull"), &q).rotation;
+        let wheel = m.frame_placement(frame!(Carrier, "wheel"), &q).rotation;
+        // A rotation has the same entries in both of its frames.
+        assert!((m.relative(&q) - (hull.inverse() * wheel).matrix()).amax() < 1e-14);
+        let askew = wheel * Rotation3::from_axis_angle(&Vector3::x_axis(), 0.3);
+        assert!((m.orientation(&q) - askew.matrix()).amax() < 1e-14);
+        assert!(m.nothing(&q).amax() < 1e-14);
+        // Poisson's equation, by differences along the motion too.
+        let h = 1e-6;
+        let difference =
+            (m.relative(&m.integrate(&q, &(v * h))) - m.relative(&m.integrate(&q, &(v * -h)))) / (2.0 * h);
+        assert!((m.relative_rate(&q, &v) - m.poisson(&q, &v)).amax() < 1e-13);
+        assert!((m.relative_rate(&q, &v) - difference).amax() < 1e-8);
+        // An inertia stays in its body, and changes elsewhere as the body turns: by Ω J − J Ω.
+        assert!((m.moments(&q) - Matrix3::from_diagonal(&Vector3::new(0.1, 0.2, 0.255))).amax() < 1e-14);
+        assert!((m.moments_rate(&q, &v) - m.turning(&q, &v)).amax() < 1e-12);
+        assert!(m.moments_rate(&q, &v).amax() > 1e-3);
+        assert!((m.spin(&q, &v) - m.angular(&q, &v)).amax() < 1e-13);
+        // Projections.
+        assert!(m.along(&q).amax() < 1e-13);
+        let place = m.place(&q);
+        assert!((m.across(&q) - SVector::from([place[0], 0.0, place[2]])).amax() < 1e-13);
+        // The angle between the frames: 2 cos θ + 1 is the trace of their rotation.
+        let angle = (hull.inverse() * wheel).angle();
+        assert!((m.cosine(&q) - (2.0 * angle.cos() + 1.0) / 2.0).abs() < 1e-13);
+        assert!((m.rows(&q) - SVector::from([2.0, 2.0, 0.0])).amax() < 1e-15);
+        // Of all bodies, the moment about z is twice the energy of turning about it.
+        let z = Vector3::z();
+        let turn = |w: Vector3<f64>| {
+            let at = m.frame_placement(frame!(Carrier, "hull"), &q);
+            let (w, v) = (hull.inverse() * w, hull.inverse() * w.cross(&at.translation.vector));
+            m.kinetic_energy(&q, &SVector::from([v.x, v.y, v.z, w.x, w.y, w.z, 0.0]))
+        };
+        assert!((m.column(&q)[2] - 2.0 * turn(z)).abs() < 1e-12);
+    }
+}
+
+/// With vectors that are not perpendicular: `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on, and Cramer's rule for the components.
+#[test]
+fn components_in_oblique_frames() {
+    let mut random = Random::new(6);
+    for _ in 0..5 {
+        let f = [0, 1, 2].map(|_| random.vector::<3>(2.0));
+        let volume = f[0].dot(&f[1].cross(&f[2]));
+        let g = reciprocal(&Matrix3::from_columns(&f)).unwrap();
+        let scale = 1.0 + g.amax();
+        for k in 0..3 {
+            let (next, last) = (f[(k + 1) % 3], f[(k + 2) % 3]);
+            assert!((g.column(k) - next.cross(&last) / volume).amax() < 1e-12 * scale);
+            let v: Vector3<f64> = random.vector(1.0);
+            let cramer = v.dot(&next.cross(&last)) / volume;
+            assert!((g.column(k).dot(&v) - cramer).abs() < 1e-12 * scale);
+        }
+    }
+}
+
+/// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the cross product's matrix, `(a ∧ b) v = (a × b) × v`.
+#[test]
+fn kronecker_products_solve_sylvester_s_equation() {
+    let mut random = Random::new(7);
+    let mut matrix = || Matrix3::from_columns(&[0, 1, 2].map(|_| random.vector::<3>(1.0)));
+    let (one, shift) = (Matrix3::<f64>::identity(), Matrix3::identity() * 4.0);
+    for _ in 0..5 {
+        let (a, b, c) = (matrix() + shift, matrix() + shift, matrix());
+        let system = one.kronecker(&a) + b.transpose().kronecker(&one);
+        let x = unvectorized(&system.lu().solve(&vectorized(&c)).unwrap());
+        assert!((a * x + x * b - c).amax() < 1e-13);
+        let [p, q, v] = [0, 1, 2].map(|k| c.column(k).into_owned());
+        assert!((wedge(&p, &q) * v - p.cross(&q).cross(&v)).amax() < 1e-14);
+    }
+}

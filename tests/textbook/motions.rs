@@ -1,0 +1,389 @@
+//! Points that a motion singles out, momenta of several bodies, rates of vectors, points of a body along other axes.
+
+use linkwork::prelude::*;
+use support::random::Random;
+
+/// A ladder that slides down a wall: its ends are on the floor and on the wall.
+#[mechanism(gravity = -9.81 * y)]
+struct Ladder {
+    l: f64,
+    theta: Coordinate,
+    #[frame(ground, z(-theta))]
+    along: Frame,
+    #[body(mass = 7, com = l / 2 * x, inertia = rod(7, l, x), at = l * sin(theta) * y, frame = along)]
+    ladder: Body,
+    #[output(r(ladder / ground) + instant_center(ladder / ground))]
+    rests: Vector,
+    #[output(r(ladder / ground) + acceleration_center(ladder / ground))]
+    unmoved: Vector,
+    #[output(r(ladder / ground) + screw_axis(ladder / ground))]
+    axis: Vector,
+}
+
+/// The centre of velocity is where the normals of wall and floor meet; so is that of acceleration at the moment when it is let go,
+/// and the acceleration there is zero in any state.
+#[test]
+fn a_ladder_turns_about_its_instantaneous_centre() {
+    let (m, mut random) = (Ladder { l: 3.0 }, Random::new(8));
+    for _ in 0..5 {
+        let (q, v, a): (SVector<f64, 1>, _, _) = (random.vector(1.0), random.vector(2.0), random.vector(3.0));
+        let corner = SVector::from([m.l * q[0].cos(), m.l * q[0].sin(), 0.0]);
+        assert!((m.rests(&q, &v) - corner).amax() < 1e-12);
+        assert!((m.axis(&q, &v) - corner).amax() < 1e-12);
+        assert!((m.unmoved(&q, &[0.0].into(), &a) - corner).amax() < 1e-12);
+        let frame = frame!(Ladder, "ladder");
+        let (twist, rates) = (m.frame_velocity(frame, &q, &v), m.frame_acceleration(frame, &q, &v, &a));
+        let of = |t: &SVector<f64, 6>| (t.fixed_rows::<3>(0).into_owned(), t.fixed_rows::<3>(3).into_owned());
+        let ((_, w), (linear, angular)) = (of(&twist), of(&rates));
+        let p = m.unmoved(&q, &v, &a) - m.frame_placement(frame, &q).translation.vector;
+        assert!((linear + angular.cross(&p) + w.cross(&w.cross(&p))).amax() < 1e-10);
+    }
+}
+
+/// A wheel that rolls along a line.
+#[mechanism]
+struct Wheel {
+    radius: f64,
+    turned: Coordinate,
+    #[frame(ground, z(-turned))]
+    spokes: Frame,
+    #[body(mass = 1, inertia = disk(1, radius, z), at = radius * turned * x + radius * y, frame = spokes)]
+    wheel: Body,
+    #[output(r(wheel / ground) + instant_center(wheel / ground))]
+    rests: Vector,
+    #[output(acceleration_center(wheel / ground))]
+    unmoved: Vector,
+}
+
+#[test]
+fn a_wheel_turns_about_its_contact_and_accelerates_about_its_hub() {
+    let (m, q, v) = (Wheel { radius: 0.3 }, [2.0].into(), [5.0].into());
+    assert!((m.rests(&q, &v) - SVector::from([0.6, 0.0, 0.0])).amax() < 1e-14);
+    assert!(m.unmoved(&q, &v, &[0.0].into()).amax() < 1e-14);
+}
+
+/// Two turns about axes that are skew, at a distance along z.
+#[mechanism]
+struct Cylindroid {
+    d: f64,
+    #[body(mass = 1, inertia = sphere(1, 0.1))]
+    first: Body,
+    #[body(mass = 1, inertia = sphere(1, 0.1))]
+    second: Body,
+    #[joint(ground -> first, about = x)]
+    low: Pin,
+    #[joint(first.at(d * z) -> second, about = y)]
+    high: Pin,
+    #[output(r(second / ground) + screw_axis(second / ground))]
+    axis: Vector,
+    #[output(screw_pitch(second / ground))]
+    pitch: Scalar,
+    #[output(screw_pitch(second / first))]
+    of_pin: Scalar,
+}
+
+/// The screw of two turns lies on Plücker's conoid: at the height `d w₂² / (w₁² + w₂²)`, with the pitch
+/// `−d w₁ w₂ / (w₁² + w₂²)` (Ball, *A Treatise on the Theory of Screws*, 1900, § 13).
+#[test]
+fn two_turns_make_a_screw_of_the_cylindroid() {
+    let (m, q) = (Cylindroid { d: 0.4 }, SVector::zeros());
+    for (w1, w2) in [(1.0, 2.0), (-3.0, 0.5), (0.7, -0.7)] {
+        let (v, square) = ([w1, w2].into(), w1 * w1 + w2 * w2);
+        assert!((m.axis(&q, &v) - SVector::from([0.0, 0.0, 0.4 * w2 * w2 / square])).amax() < 1e-14);
+        assert!((m.pitch(&q, &v) + 0.4 * w1 * w2 / square).abs() < 1e-14);
+        assert_eq!(m.of_pin(&q), 0.0);
+    }
+}
+
+/// A nut on a screw beside the origin.
+#[mechanism]
+struct Nut {
+    #[body(mass = 1, inertia = sphere(1, 0.1))]
+    nut: Body,
+    #[joint(ground.at(0.5 * x) -> nut.at(-0.2 * y), about = z, pitch = 0.03)]
+    thread: Screw,
+    #[output(screw_pitch(nut / ground))]
+    pitch: Scalar,
+    #[output(r(nut / ground) + screw_axis(nut / ground))]
+    axis: Vector,
+}
+
+#[test]
+fn a_nut_has_the_pitch_and_the_axis_of_its_thread() {
+    let (q, v) = ([0.8].into(), [3.0].into());
+    assert!((Nut {}.pitch(&q, &v) - 0.03).abs() < 1e-16);
+    assert!((Nut {}.axis(&q, &v) - SVector::from([0.5, 0.0, 0.03 * 0.8])).amax() < 1e-15);
+}
+
+/// A bat, free in its plane, that is struck at its centre of percussion for the grip.
+#[mechanism]
+struct Bat {
+    l: f64,
+    #[body(mass = 2, com = l / 2 * x, inertia = rod(2, l, x))]
+    bat: Body,
+    #[joint(ground -> bat, about = z)]
+    plane: Planar,
+    #[point(on = bat, at = 2 * l / 3 * x)]
+    sweet: Point,
+    #[acts(on = bat.at(2 * l / 3 * x), along = y)]
+    blow: Force,
+    #[output(center_of_percussion(bat / bat, ground.z), resolved_in = bat)]
+    found: Vector,
+    #[output(center_of_percussion(bat / bat.at(0.1 * x), z), resolved_in = bat)]
+    further: Vector,
+}
+
+/// Of a rod that is held at its end it is at two thirds of the length, and a blow there leaves the end at rest.
+#[test]
+fn a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
+    let (m, q, v) = (Bat { l: 0.9 }, [0.3, 0.1, 0.7].into(), SVector::zeros());
+    assert!((m.found(&q) - SVector::from([0.6, 0.0, 0.0])).amax() < 1e-15);
+    let sweet = m.frame_placement(frame!(Bat, "sweet"), &q) * linkwork::nalgebra::Point3::origin();
+    let grip = m.frame_placement(frame!(Bat, "bat"), &q);
+    assert!((grip.rotation * m.found(&q) + grip.translation.vector - sweet.coords).amax() < 1e-15);
+    let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &[10.0].into()));
+    let rate = m.frame_acceleration(frame!(Bat, "bat"), &q, &v, &a);
+    assert!(rate.fixed_rows::<3>(0).amax() < 1e-13 && rate[5] > 1.0);
+    // Held elsewhere: I + m d² over m d.
+    let d: f64 = 0.45 - 0.1;
+    assert!((m.further(&q)[0] - (0.9_f64.powi(2) / 12.0 + d * d) / d).abs() < 1e-14);
+}
+
+/// A carrier with an arm and a bead, and a torque on the carrier.
+#[mechanism(derivatives)]
+struct Carrier {
+    mass: f64,
+    #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
+    hull: Body,
+    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, 0.15 * mass))]
+    arm: Body,
+    #[joint(ground -> hull)]
+    flight: Free,
+    #[joint(hull.at(0.3 * x) -> arm, about = y)]
+    axle: Pin,
+    #[particle(mass = 0.5, at = arm.at(0.1 * x + 0.2 * y))]
+    bead: Particle,
+    #[acts(on = hull, about = hull.z)]
+    jet: Torque,
+    #[define(angular_momentum((hull, arm, bead) / ground))]
+    whole: Vector,
+    #[define(momentum((hull, arm, bead)))]
+    linear: Vector,
+    #[output(whole)]
+    angular: Vector,
+    #[output(rate(whole / ground))]
+    torque: Vector,
+    #[output(rate(whole / arm) + cross(omega(arm / ground), whole))]
+    transported: Vector,
+    #[output(rate(linear / ground))]
+    force: Vector,
+    #[output(center_of_mass((hull, arm, bead) / ground))]
+    center: Vector,
+    #[output(center_of_mass((arm, bead) / hull), resolved_in = hull)]
+    part: Vector,
+    #[output(kinetic_energy((hull, arm, bead)))]
+    energy: Scalar,
+    #[output(moment_of_inertia((hull, arm) / bead, arm.x, hull.z))]
+    product: Scalar,
+    #[output(moment_of_inertia(hull / bead, arm.x, hull.z) + moment_of_inertia(arm / bead, arm.x, hull.z))]
+    parts: Scalar,
+}
+
+/// What several bodies have is what the whole has, and changes by forces and torques from outside alone (Euler's laws); seen from
+/// a frame that turns, a vector changes by less than `ω × h` (the transport theorem).
+#[test]
+fn euler_s_laws_hold_for_a_set_of_bodies() {
+    let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
+    for _ in 0..5 {
+        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) = (random.configuration(&m), random.vector(2.0));
+        let u = random.vector(1.0);
+        let whole = m.momentum(&q, &v);
+        let (linear, spin) = (whole.fixed_rows::<3>(0).into_owned(), whole.fixed_rows::<3>(3).into_owned());
+        assert!((m.center(&q) - m.center_of_mass(&q)).amax() < 1e-14);
+        assert!((m.angular(&q, &v) - spin - m.center_of_mass(&q).cross(&linear)).amax() < 1e-12);
+        assert!((m.energy(&q, &v) - m.kinetic_energy(&q, &v)).abs() < 1e-12);
+        assert!((m.product(&q) - m.parts(&q)).abs() < 1e-13);
+        let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
+        let hull = m.frame_placement(frame!(Carrier, "hull"), &q);
+        let torque = hull.rotation * linkwork::nalgebra::Vector3::z() * u[0];
+        assert!((m.torque(&q, &v, &a) - torque).amax() < 1e-11);
+        assert!((m.transported(&q, &v, &a) - torque).amax() < 1e-11);
+        assert!(m.force(&q, &v, &a).amax() < 1e-11);
+        let (arm, bead) = (frame!(Carrier, "arm"), frame!(Carrier, "bead"));
+        let arm = m.frame_placement(arm, &q) * linkwork::nalgebra::Point3::new(0.0, 0.0, 0.2);
+        let bead = m.frame_placement(bead, &q).translation.vector;
+        let both = (arm.coords * 1.7 + bead * 0.5) / 2.2 - hull.translation.vector;
+        assert!((m.part(&q) - hull.rotation.inverse() * both).amax() < 1e-14);
+    }
+}
+
+/// A wheel on three axes that rolls by a pair of surfaces.
+#[mechanism(gravity = -9.81 * z)]
+struct Rolls {
+    radius: f64,
+    #[body]
+    hub: Body,
+    #[body]
+    fork: Body,
+    #[body(mass = 2, inertia = disk(2, radius, y))]
+    wheel: Body,
+    #[joint(ground -> hub, along = (x, y, z))]
+    place: Stage,
+    #[joint(hub -> fork, about = (z, x))]
+    lean: Universal,
+    #[joint(fork -> wheel, about = y)]
+    spin: Pin,
+    #[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]
+    contact: Rolling,
+}
+
+/// The wheel of [`Rolls`], whose lowest point is said in the axes of the fork: it is on the ground, and at rest.
+#[mechanism(gravity = -9.81 * z)]
+struct Written {
+    radius: f64,
+    #[body]
+    hub: Body,
+    #[body]
+    fork: Body,
+    #[body(mass = 2, inertia = disk(2, radius, y))]
+    wheel: Body,
+    #[joint(ground -> hub, along = (x, y, z))]
+    place: Stage,
+    #[joint(hub -> fork, about = (z, x))]
+    lean: Universal,
+    #[joint(fork -> wheel, about = y)]
+    spin: Pin,
+    #[constraint(dot(r(wheel.at(-radius * fork.z) / ground), z))]
+    height: Holonomic,
+    #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), x))]
+    forth: Nonholonomic,
+    #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), y))]
+    across: Nonholonomic,
+    #[acts(on = wheel.at(-radius * fork.z), along = fork.x)]
+    rubs: Force,
+    #[acts(on = wheel.at(-radius * fork.z), value = 3 * fork.x)]
+    pushes: Force,
+    #[output(v(wheel.at(-radius * fork.z) / ground / ground))]
+    slides: Vector,
+    #[output(dot(v(wheel.at(-radius * fork.z) / ground / ground), fork.x))]
+    forward: Scalar,
+}
+
+#[test]
+fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
+    let (pair, written, mut random) = (Rolls { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
+    for _ in 0..4 {
+        let mut q: SVector<f64, 6> = random.vector(0.8);
+        q[2] = 0.4 * q[4].cos();
+        let mut v: SVector<f64, 6> = random.vector(2.0);
+        v.fixed_rows_mut::<3>(0).fill(0.0);
+        let slides = written.slides(&q, &v);
+        v.fixed_rows_mut::<3>(0).copy_from(&-slides);
+        assert!(written.slides(&q, &v).amax() < 1e-14);
+        let tau = random.vector(1.0);
+        // Forces at a point that rests do no work: they leave the motion as it is.
+        let a = written.forward_dynamics(&q, &v, &tau);
+        let expected = pair.forward_dynamics(&q, &v, &tau);
+        assert!((a - expected).amax() < 1e-9 * (1.0 + expected.amax()), "{a} {expected}");
+        // Where it slides they have the power of a force at that point of the wheel.
+        let any: SVector<f64, 6> = random.vector(2.0);
+        let power = written.generalized_forces(&q, &[2.0].into()).dot(&any);
+        assert!((power - 2.0 * written.forward(&q, &any)).abs() < 1e-13);
+        assert!((written.disturbance_power(&q, &any) - 3.0 * written.forward(&q, &any)).abs() < 1e-13);
+    }
+}
+
+/// A pendulum whose inertia is that about its pivot, and one whose inertia is about its centre of mass.
+#[mechanism(gravity = -9.81 * y)]
+struct AboutPivot {
+    j: f64,
+    #[body(mass = 2, com = 0.1 * x - 0.5 * y, inertia = [[j, 0.1, 0], [0.1, 0.3, 0], [0, 0, j]], about = 0)]
+    rod: Body,
+    #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.3, 0.1, 0.3), about = 0.1 * x - 0.3 * y)]
+    other: Body,
+    #[joint(ground -> rod, about = z)]
+    hinge: Pin,
+    #[joint(ground -> other, about = z)]
+    second: Pin,
+}
+
+#[test]
+fn inertias_about_another_point_are_moved_to_the_centre_of_mass() {
+    let m = AboutPivot { j: 0.7 };
+    let mass = m.mass_matrix(&[0.3, 0.2].into());
+    // About the pivot it is what was said.
+    assert!((mass[(0, 0)] - 0.7).abs() < 1e-15);
+    // 0.3 − 2 · 0.3² about the centre of mass, and 2 · 0.1² more about the pivot.
+    assert!((mass[(1, 1)] - (0.3 - 0.18 + 0.02)).abs() < 1e-15);
+}
+
+/// A motor that drives a flywheel with drag, and the work that each has done.
+#[mechanism]
+struct Flywheel {
+    #[body(mass = 1, inertia = diagonal(0.3, 0.3, 0.5))]
+    wheel: Body,
+    #[joint(ground -> wheel, about = z)]
+    axle: Pin,
+    #[acts(on = axle)]
+    motor: Torque,
+    #[acts(on = axle, damping = 0.3)]
+    drag: Dashpot,
+    #[state(rate = power(motor))]
+    work: State,
+    #[state(rate = -power(drag))]
+    lost: State,
+}
+
+/// The work of a force is the integral of its power: a state.
+#[test]
+fn work_is_what_energy_gains_and_drag_takes() {
+    let m = Flywheel { work: 0.0, lost: 0.0 };
+    let whole = m.extended();
+    let run = simulate(&whole).from([0.2], [1.0, 0.0, 0.0]).inputs(|t, _, _| [2.0 * t].into());
+    let end = run.method(DormandPrince::new().tolerance(1e-11, 1e-11)).duration(3.0).finish().unwrap();
+    let gained = 0.25 * (end.v[0] * end.v[0] - 1.0);
+    assert!((end.v[1] - end.v[2] - gained).abs() < 1e-8, "{} {} {gained}", end.v[1], end.v[2]);
+    // ω = a t + b + c exp(−k t) with k = 0.6, of 0.5 ω′ = 2 t − 0.3 ω, and the work is the integral of 2 t ω.
+    let (k, a) = (0.6_f64, 2.0 / 0.3);
+    let (b, e) = (-a / k, (-3.0 * k).exp());
+    let c = 1.0 - b;
+    let work = 2.0 * (a * 9.0 + b * 4.5 + c * (1.0 - e * (1.0 + 3.0 * k)) / (k * k));
+    assert!((end.v[1] - work).abs() < 1e-7, "{} {work}", end.v[1]);
+}
+
+/// A ball that slides and turns on a lane, drawn by a force.
+#[mechanism(gravity = -9.81 * z)]
+struct Sliding {
+    mu: f64,
+    #[body(mass = 2, inertia = sphere(2, 0.1))]
+    ball: Body,
+    #[joint(ground.at(0.1 * z) -> ball, along = (x, y, z))]
+    place: Stage,
+    #[constraint(slips(ball.sphere(0.1), ground.plane(z)), friction = mu, speed = 0.02)]
+    lane: Slipping,
+    #[acts(on = ball, along = ground.z)]
+    presses: Force,
+    #[acts(on = place.x, damping = 3)]
+    air: Dashpot,
+    #[output(power(lane))]
+    rubbed: Scalar,
+    #[output(power(air) + power(lane))]
+    lost: Scalar,
+    #[output(power(lane) + 0 * dot(reaction_force(place), x))]
+    beside: Scalar,
+}
+
+/// Friction takes `μ N s² / √(s² + s₀²)` of a slip `s`, whatever presses; with it the power balance is complete.
+#[test]
+fn friction_of_a_slipping_contact_takes_power() {
+    let m = Sliding { mu: 0.3 };
+    let (q, v, u) = (SVector::zeros(), [0.8, -0.6, 0.0].into(), SVector::from([-5.0]));
+    let normal = 2.0 * 9.81 + 5.0;
+    let expected = -0.3 * normal / 1.0_f64.hypot(0.02);
+    assert!((m.rubbed(&q, &v, &u) - expected).abs() < 1e-12, "{} {expected}", m.rubbed(&q, &v, &u));
+    assert!((m.lost(&q, &v, &u) - expected + 3.0 * 0.64).abs() < 1e-12);
+    assert!((m.beside(&q, &v, &u) - expected).abs() < 1e-12);
+    let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
+    let gained = 2.0 * a.dot(&v);
+    assert!((gained - m.lost(&q, &v, &u)).abs() < 1e-12);
+}
