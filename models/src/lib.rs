@@ -153,55 +153,78 @@
 //! | a base whose motion is prescribed (`massive`) | [`RateGyroscope`], [`BallOnTurntable`] |
 //! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
 //!
-//! # By topic of the textbook
+//! # The book, section by section
 //!
-//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, in the order of the chapters on geometry, tensors, kinematics,
-//! frames, statics, dynamics, energy, and Lagrange's, Hamilton's, and Gibbs's, Appell's and Kane's equations; then aircraft,
-//! linearisation and flight modes, linear systems and frequency response. The last column names a mechanism, or a test by its file in
-//! `tests` (of `linkwork-design` where it says so) and its function.
+//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, topic by topic in the order of the chapters: mechanisms and their
+//! classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics (6), Newton's and Euler's dynamics (7), energy (8),
+//! Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's equations (9); aircraft, linearisation, flight modes, linear systems and
+//! frequency response (10–16). The last column names a mechanism, or a test by its file in `tests` (of `linkwork-design` where it
+//! says so) and its function.
 //!
-//! | topic | words | shown and proved by |
-//! | --- | --- | --- |
-//! | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `words_for_vectors` |
-//! | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
-//! | inertia of solids, parallel axes, rotated inertias; principal moments that a body can have | `inertia = …`, `validate()` | `validate.rs` |
-//! | tensors as matrices in a chosen frame, nonstandard and reciprocal frames | left out: components come in orthonormal frames (`resolved_in`) | |
-//! | position, velocity, acceleration, angular velocity and acceleration with respect to a frame | `r`, `v`, `a`, `omega`, `alpha` with slashes | [`RateGyroscope`]; `accelerations.rs` |
-//! | cylindrical and spherical coordinates | a chain of joints, or `Coordinate`s | [`SphericalPendulum`]; `spherical_pendulum_in_two_charts` |
-//! | frames along curves (Frenet and Serret) | left out as words; a place by an expression of a coordinate | `beads_on_wires` |
-//! | closed loops, rolling, sliding | `Pin` and others that close loops, `Rolling`, `Slipping` | [`FourBar`], [`RollingDisk`], [`BowlingBall`] |
-//! | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
-//! | equilibria with held coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
-//! | stability by energy and by eigenvalues | `stiffness`, `linear_system` of it | `a_bead_on_a_hoop_has_four_equilibria` |
-//! | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of it | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
-//! | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
-//! | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `bodies_share_momentum_and_energy` |
-//! | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
-//! | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
-//! | what is conserved: energy, Jacobi's integral, cyclic coordinates, momenta | the word `conserved` | `conserved.rs` |
-//! | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
-//! | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
-//! | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
-//! | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
-//! | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
-//! | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
-//! | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
-//! | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
-//! | gliding, hovering, turning by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
-//! | six degrees of freedom over the round Earth, which turns | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
-//! | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
-//! | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
-//! | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
-//! | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
-//! | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
-//! | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
-//! | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh` in `anchors` of design |
-//! | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
-//! | symbolic linear equations, Routh's reduction, speeds of one's own choice | left out so far: linear systems come in numbers, speeds are those of the joints | |
-//! | Gibbs's, Appell's and Kane's equations in print | left out so far: `equations` takes `lagrange`, `hamilton` and `structure` | |
-//! | all that acts on a body in one list or drawing | left out so far: forces and reactions are asked for one by one | |
-//! | work and power of one force, centres of percussion, instantaneous centres, screw axes | left out as words: what `r`, `v` and `omega` give of them, an output can say | |
-//! | cables around spheres and cylinders | left out so far: what acts between two points runs straight | |
+//! | chapter | topic | words | shown and proved by |
+//! | --- | --- | --- | --- |
+//! | 1 | classes of mechanisms: pendulums, springs and masses, gimbals, shafts, linkages, rolling bodies, tops | the gallery | the tables above, a test each: [`Pendulum`], [`SpringChain`], [`Gyroscope`], [`ShaftWithSlider`], [`FourBar`], [`RollingDisk`], [`HeavyTop`] |
+//! | 1 | joints and their degrees of freedom | `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, `Free`, `Weld` | the table by joint above; `invariants`: `joints.rs` |
+//! | 1 | forces that conserve, dissipate, control and disturb | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `elements_deliver_what_energies_gain` |
+//! | 2 | points, relative positions, frames with and without a place | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `words_for_vectors`; [`Gyroscope`] |
+//! | 2 | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `words_for_vectors` |
+//! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
+//! | 2 | physical matrices: projectors, rotation and cross-product matrices, their products and transposes, resolved in any frame | `Matrix`: `projector`, `rotation`, `skew`, `outer`, `transpose`, `trace` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
+//! | 2 | resolving in a frame, orientation matrices | `resolved_in = frame`, `rotation(B / A)`, `linkwork::rotation` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
+//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`; mechanisms have orthonormal frames alone | `textbook/matrices.rs`: `components_in_oblique_frames` |
+//! | 2 | gradients of scalar fields | `gradient(field / point)` | `textbook/curves.rs`: `a_force_is_the_gradient_of_its_field` |
+//! | 3 | tensors of second order as matrices, dyads, how components change with the frame | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
+//! | 3 | Kronecker products, vectorised matrices, wedge products | nalgebra's `kronecker`; `vectorized`, `wedge` of `linkwork::rotation` | `textbook/matrices.rs`: `kronecker_products_solve_sylvester_s_equation` |
+//! | 3 | tensors of higher order and their coordinates | left out: no equation of a mechanism's user contains one | |
+//! | 4 | position, velocity, acceleration, angular velocity and acceleration with respect to a frame | `r`, `v`, `a`, `omega`, `alpha` with slashes | [`RateGyroscope`]; `accelerations.rs` |
+//! | 4 | rates of vectors and matrices as seen from a frame: the transport theorem, Poisson's equation | `rate(vector / frame)`, `rate(matrix / frame)` | `textbook/motions.rs`: `euler_s_laws_hold_for_a_set_of_bodies`; `matrices_are_what_their_vectors_say` |
+//! | 4 | instantaneous centres of velocity and acceleration | `instant_center`, `acceleration_center` | `textbook/motions.rs`: `a_ladder_turns_about_its_instantaneous_centre`, `a_wheel_turns_about_its_contact_and_accelerates_about_its_hub` |
+//! | 4 | screw of a motion (Chasles, Mozzi) | `screw_axis`, `screw_pitch` | `textbook/motions.rs`: `two_turns_make_a_screw_of_the_cylindroid`, `a_nut_has_the_pitch_and_the_axis_of_its_thread` |
+//! | 4 | closed loops, rolling, sliding | `Pin` and others that close loops, `Rolling`, `Slipping` | [`FourBar`], [`RollingDisk`], [`BowlingBall`] |
+//! | 4 | rolling said by the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `a_wheel_rolls_on_a_point_in_the_axes_of_its_fork` |
+//! | 5 | cylindrical and spherical coordinates and their frames | `#[frame(ground, cylindrical(r(point / ground)))]`, `spherical`; a chain of joints or `Coordinate`s | `accelerations_in_spherical_and_cylindrical_frames`; [`SphericalPendulum`]; `spherical_pendulum_in_two_charts` |
+//! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `a_helix_has_constant_curvature_and_torsion`, `cubics_and_ellipses_bend_as_geometry_says` |
+//! | 5 | a coordinate along a curve of any form | a `Coordinate`, `at = expression` | `beads_on_wires` |
+//! | 6 | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
+//! | 6 | all that acts on a body in one list or drawing | left out so far: forces and reactions are asked for one by one | |
+//! | 6 | forces along lines, ropes by way of pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
+//! | 6 | equilibria with held coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
+//! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `a_chain_hangs_in_its_catenary`, `a_column_buckles_at_eulers_load`, `three_legs_share_what_stands_on_a_table`, `six_legs_hold_a_platform` of design |
+//! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of it | `a_bead_on_a_hoop_has_four_equilibria` |
+//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that name them | `what_is_wrong_is_named` of design |
+//! | 7 | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
+//! | 7 | inertia of solids, parallel axes, rotated inertias; principal moments that a body can have | `inertia = …`, `validate()` | `validate.rs` |
+//! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_are_those_of_energies`, `inertias_about_another_point_are_moved_to_the_centre_of_mass`, `matrices_are_what_their_vectors_say` |
+//! | 7 | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `bodies_share_momentum_and_energy` |
+//! | 7 | momenta of a set of bodies, forces and torques from outside | `momentum((first, second))`, `angular_momentum((first, second) / point)`, `center_of_mass((first, second) / point)` | `euler_s_laws_hold_for_a_set_of_bodies` |
+//! | 7 | centre of percussion | `center_of_percussion(body / point, axis)` | `a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest` |
+//! | 7 | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
+//! | 7 | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of it | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
+//! | 8 | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
+//! | 8 | work and power of one force | `power(element)`, `#[state(rate = power(motor))] work: State` | `work_is_what_energy_gains_and_drag_takes`, `elements_deliver_what_energies_gain` |
+//! | 8 | what is conserved: energy, Jacobi's integral, cyclic coordinates, momenta | the word `conserved` | `conserved.rs` |
+//! | 9 | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
+//! | 9 | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
+//! | 9 | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
+//! | 9 | Gibbs's, Appell's and Kane's equations in print | left out so far: `equations` takes `lagrange`, `hamilton` and `structure` | |
+//! | 9 | Routh's reduction over cyclic coordinates | the word `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
+//! | 9 | speeds of one's own choice | left out so far: speeds are those of the joints | |
+//! | 10–16 | linear equations in the user's parameters, characteristic polynomial, Routh's conditions, in print | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
+//! | 10–16 | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
+//! | 10–16 | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
+//! | 10–16 | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
+//! | 10–16 | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
+//! | 10–16 | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
+//! | 10–16 | gliding, hovering, turning by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
+//! | 10–16 | six degrees of freedom over the round Earth, which turns | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
+//! | 10–16 | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
+//! | 10–16 | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
+//! | 10–16 | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
+//! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
+//! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
+//! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
+//! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh` in `anchors` of design |
+//! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
 
 mod aircraft;
 mod andrews_squeezer;

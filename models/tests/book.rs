@@ -1,11 +1,16 @@
-//! The table of the book's topics in the gallery's documentation names mechanisms and tests that exist.
+//! The table of the book's sections in the gallery's documentation has rows for every chapter, and names mechanisms and tests that
+//! exist.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where the table looks for tests: here, in the package of tests, and in that of design.
-const FOLDERS: [&str; 3] = ["tests", "../tests", "../runtime/design/tests"];
+/// Where the table looks for tests: here, in the package of tests, in that of design, and at the compiler's equations.
+const FOLDERS: [&str; 4] =
+    ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/mechanics/equations/tests"];
+
+/// The chapters; those on flight and linear systems together.
+const CHAPTERS: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10–16"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -29,7 +34,7 @@ fn quoted(cell: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn topics_name_what_exists() {
+fn sections_name_what_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let gallery = fs::read_to_string(root.join("src/lib.rs")).unwrap();
     let mut paths = Vec::new();
@@ -46,14 +51,22 @@ fn topics_name_what_exists() {
         .flat_map(|line| line.split([':', '{', '}', ',', ';', ' ']))
         .collect();
 
-    let table = gallery.split("//! # By topic of the textbook").nth(1).unwrap();
+    let table = gallery.split("//! # The book, section by section").nth(1).unwrap();
     let lines = table.lines().skip(1).take_while(|line| line.starts_with("//!"));
     let rows: Vec<&str> = lines.filter(|line| line.starts_with("//! | ")).collect();
-    assert!(rows.len() > 30, "the table has {} rows", rows.len());
+    assert!(rows.len() > 60, "the table has {} rows", rows.len());
     let mut mistakes = Vec::new();
+    for chapter in CHAPTERS {
+        if !rows.iter().any(|row| row.starts_with(&format!("//! | {chapter} | "))) {
+            mistakes.push(format!("no row of chapter {chapter}"));
+        }
+    }
     for row in &rows[2..] {
         let cells: Vec<&str> = row.trim_start_matches("//! |").trim_end_matches('|').split(" | ").collect();
-        let [topic, words, proof] = cells[..] else { panic!("three columns: {row}") };
+        let [chapter, topic, words, proof] = cells[..] else { panic!("four columns: {row}") };
+        if !CHAPTERS.contains(&chapter.trim()) {
+            mistakes.push(format!("{topic}: no chapter {chapter}"));
+        }
         let reason = words.trim().strip_prefix("left out").and_then(|rest| rest.split_once([':', ',', ';']));
         if quoted(proof).next().is_none() && reason.is_none_or(|(_, why)| why.trim().is_empty()) {
             mistakes.push(format!("{topic}: neither proved nor left out with a reason"));
