@@ -96,7 +96,7 @@ where
 }
 
 /// The second derivatives of `fᵀ v̇` under constraints. `M v̇ + h − Jᵀ λ = τ` and `J v̇ + b = 0` hold along all changes of the state;
-/// they are differentiated twice and contracted with the [`adjoint`] of `f`.
+/// they are differentiated twice and contracted with the adjoint of `f`.
 pub fn constrained_second_derivatives<
     M,
     T,
