@@ -19,6 +19,7 @@ mod pose;
 mod robot;
 mod sdf;
 mod urdf;
+mod whole;
 mod xml;
 
 #[cfg(test)]
@@ -41,15 +42,8 @@ pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnos
     match options.format {
         FileFormat::Urdf => import_urdf(text, options, cx),
         FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
-        FileFormat::Sdf => import_sdf(text, options, cx),
+        FileFormat::Sdf => sdf::import(text, &folder.join(&options.path.text), options, cx),
     }
-}
-
-fn import_sdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
-    let cx = &mut context::Cx::new(text, &options.path, cx);
-    let declared = OnceCell::new();
-    let document = xml::parse(text, &declared, options.format, cx)?;
-    sdf::read(document.root_element(), options, cx)
 }
 
 fn import_urdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {

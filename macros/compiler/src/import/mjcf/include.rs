@@ -4,37 +4,13 @@
 //! the whole is never longer than all files together.
 
 use crate::diag::Diagnostics;
-use crate::import::context::{Cx, Piece, position, quote};
+use crate::import::context::{Cx, position, quote};
 use crate::import::element::{Node, check_attributes, name};
-use crate::import::{LARGEST_FILE, file, xml};
+use crate::import::whole::{DEEPEST, MOST, Read, Whole, plain, report_circle, report_many};
+use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
-use std::path::{Path, PathBuf};
-
-/// Files that include one another, each in the next.
-const DEEPEST: usize = 32;
-/// Files of one mechanism.
-const MOST: usize = 256;
-
-/// A file that was read.
-pub(super) struct Read {
-    /// Its text.
-    pub(super) text: String,
-    /// Its path, as a message names it.
-    pub(super) shown: String,
-    /// Where it is.
-    pub(super) path: PathBuf,
-}
-
-/// The files, and the text that they make.
-pub(super) struct Whole {
-    /// The first one is the file that the user names.
-    pub(super) files: Vec<Read>,
-    /// The text.
-    pub(super) text: String,
-    /// What of it comes from which file.
-    pub(super) pieces: Vec<Piece>,
-}
+use std::path::Path;
 
 /// What is still to be copied, last first.
 enum Step {
@@ -48,8 +24,7 @@ enum Step {
 
 /// Reads a file with all that it includes.
 pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
-    let first = Read { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
-    let mut whole = Whole { files: vec![first], text: String::new(), pieces: Vec::new() };
+    let mut whole = Whole::new(text, path, name);
     let mut places = vec![name.clone()];
     let mut open = vec![0];
     let mut steps = scan(&whole.files, 0, name, true, 0, cx)?;
@@ -66,9 +41,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
                     return None;
                 }
                 if depth > DEEPEST || whole.files.len() >= MOST {
-                    let what = if depth > DEEPEST { "files inside one another" } else { "included files" };
-                    let most = if depth > DEEPEST { DEEPEST } else { MOST };
-                    cx.error(at.place, format!("more than {most} {what}"));
+                    report_many(depth, &at, cx);
                     return None;
                 }
                 let file = whole.files.len();
@@ -83,19 +56,6 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     Some(whole)
 }
 
-impl Whole {
-    fn copy(&mut self, file: usize, from: usize, to: usize, name: &Name, cx: &mut Diagnostics) -> Option<()> {
-        let piece = self.files.get(file)?.text.get(from..to)?;
-        self.pieces.push(Piece { start: self.text.len(), file, offset: from });
-        self.text.push_str(piece);
-        if self.text.len() > LARGEST_FILE {
-            file::report(&file::too_large(self.text.len() as u64), name, cx);
-            return None;
-        }
-        Some(())
-    }
-}
-
 fn report_again(
     known: usize,
     open: &[usize],
@@ -104,15 +64,11 @@ fn report_again(
     at: &Name,
     cx: &mut Diagnostics,
 ) {
-    let shown = files.get(known).map_or("", |read| read.shown.as_str());
     if open.contains(&known) {
-        let error = cx.error(at.place.clone(), format!("{} includes itself", quote(shown)));
-        let rest = open.iter().skip_while(|file| **file != known).skip(1);
-        for by in rest.filter_map(|file| places.get(*file)) {
-            error.help(format!("by way of {} at {}", quote(&by.text), position(&by.place)));
-        }
+        report_circle(known, open, files, places, at, cx);
         return;
     }
+    let shown = files.get(known).map_or("", |read| read.shown.as_str());
     let first = places.get(known).map(|by| position(&by.place)).unwrap_or_default();
     cx.error(at.place.clone(), format!("{} is included twice", quote(shown)))
         .help(format!("the first time is at {first}; MJCF takes a file once: copy it under another name"));
@@ -176,9 +132,4 @@ fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Re
     let text = file::read_named(&path, &name, FileFormat::Mjcf, cx)?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\0').to_string();
     Some(Read { text, shown, path: plain(&path) })
-}
-
-/// A path without detours, so that one file has one.
-fn plain(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }

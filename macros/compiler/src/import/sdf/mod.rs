@@ -6,14 +6,19 @@
 use super::context::{Cx, quote};
 use super::element::{Node, check_attributes, check_element_name, content, elements, name, place, tag, word};
 use super::pose::Pose;
+use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MOST, Robot};
-use crate::syntax::{Expr, FileOptions, GROUND, JointKind, Name};
+use crate::import::xml;
+use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
 use frames::{Frame, Frames, WORLD, model, origin, read_frame};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 mod collision;
 mod frames;
+mod include;
 mod joint;
 mod link;
 mod visual;
@@ -23,7 +28,8 @@ const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
 
 /// What the motion without contact does not depend on.
-const ASIDE: [(&str, &str); 8] = [
+const ASIDE: [(&str, &str); 9] = [
+    ("include", "models that the world includes and that are not beside the file"),
     ("visual", "visual geometry of links"),
     ("collision", "geometry of links, for contact"),
     ("sensor", "sensors"),
@@ -44,8 +50,26 @@ struct Reader<'a> {
     joints: Vec<(Node<'a>, Name, String)>,
 }
 
+/// Reads the text of the file at `path`, with the models that it includes.
+pub(super) fn import(
+    text: &str,
+    path: &Path,
+    options: &FileOptions,
+    cx: &mut Diagnostics,
+) -> Option<Imported> {
+    let whole = include::read_whole(text, path, &options.path, cx)?;
+    let files: Vec<(&str, &str)> =
+        whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
+    let cx = &mut Cx::of_pieces(&files, whole.pieces, options.path.place.span, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(&whole.text, &declared, FileFormat::Sdf, cx)?;
+    let mut imported = read(document.root_element(), options, cx)?;
+    imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
+    Some(imported)
+}
+
 /// Reads the root element.
-pub(super) fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     let top = find_model(root_node, cx)?;
     let mut reader = Reader::default();
     reader.read_models(top, cx)?;
@@ -198,14 +222,6 @@ impl<'a> Reader<'a> {
                         if let Some(inner) = name(child, "name", cx) {
                             open.push((child, format!("{prefix}{}::", inner.text), own.clone()));
                         }
-                    }
-                    "include" => {
-                        let message = "`<include>` is not supported";
-                        cx.error(&place(child, cx), message, |d| {
-                            d.help(
-                                "write the file with all that it includes: `gz sdf -p robot.sdf > whole.sdf`",
-                            )
-                        });
                     }
                     "static"
                         if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>

@@ -1,8 +1,6 @@
 //! MJCF: what is made of it, and what is said of files with mistakes.
 
 use super::*;
-use std::fs;
-use std::path::PathBuf;
 
 fn mjcf() -> FileOptions {
     FileOptions {
@@ -212,35 +210,6 @@ fn a_free_base_needs_a_body_that_nothing_holds() {
     );
 }
 
-/// A folder of files for one test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(test: &str, files: &[(&str, &str)]) -> Folder {
-        let folder = std::env::temp_dir().join(format!("linkwork-{test}-{}", std::process::id()));
-        fs::create_dir_all(folder.join("parts")).expect("a folder");
-        for (name, text) in files {
-            fs::write(folder.join(name), text).expect("a file");
-        }
-        Folder(folder)
-    }
-
-    fn answer(&self, text: &str) -> String {
-        let mut cx = Diagnostics::new();
-        match import(text, &self.0, &mjcf(), &mut cx) {
-            Some(imported) => format!("{}{} files", render(&imported), imported.files.len()),
-            None => cx.messages().join("\n"),
-        }
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // What is left in the folder for temporary files harms nobody.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn included_files_stand_in_the_place_of_their_elements() {
     let files = [
@@ -254,7 +223,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
     let folder = Folder::new("includes", &files);
     let model = |inside: &str| format!("<mujoco>\n{inside}</mujoco>");
     assert_eq!(
-        folder.answer(&model("<include file='parts/arm.xml'/>")),
+        folder.answer(&mjcf(), &model("<include file='parts/arm.xml'/>")),
         "the root is the ground\nbody hand\nPin j: ground -> hand about [0, 0, 1]\n2 files"
     );
     for (inside, expected) in [
@@ -278,7 +247,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
             "r.xml:2:10: unknown attribute `fil` of `<include>`\n\n= help: did you mean `file`?",
         ),
     ] {
-        let answer = folder.answer(&model(inside));
+        let answer = folder.answer(&mjcf(), &model(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -298,7 +267,7 @@ fn meshes_that_cannot_be_read() {
         ("name='no'", "r.xml:1:16: the mass of a mesh without `file` is not computed"),
     ] {
         let stem = asset.split(['\'', '.']).nth(1).unwrap_or_default();
-        let answer = folder.answer(&format!(
+        let answer = folder.answer(&mjcf(), &format!(
             "<mujoco><asset><mesh {asset}/></asset><worldbody><body><geom type='mesh' mesh='{stem}'/></body></worldbody></mujoco>"
         ));
         assert!(answer.starts_with(expected), "{answer}");

@@ -7,7 +7,8 @@ use crate::syntax::{
     Joint, LimitOption, Name,
 };
 use proc_macro2::Span;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 mod couplings;
 mod files;
@@ -21,6 +22,35 @@ mod sdf;
 
 fn name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
+}
+
+/// A folder of files for one test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str, files: &[(&str, &str)]) -> Folder {
+        let folder = std::env::temp_dir().join(format!("linkwork-{test}-{}", std::process::id()));
+        fs::create_dir_all(folder.join("parts")).expect("a folder");
+        for (name, text) in files {
+            fs::write(folder.join(name), text).expect("a file");
+        }
+        Folder(folder)
+    }
+
+    fn answer(&self, options: &FileOptions, text: &str) -> String {
+        let mut cx = Diagnostics::new();
+        match import(text, &self.0, options, &mut cx) {
+            Some(imported) => format!("{}{} files", render(&imported), imported.files.len()),
+            None => cx.messages().join("\n"),
+        }
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What is left in the folder for temporary files harms nobody.
+        let _ = fs::remove_dir_all(&self.0);
+    }
 }
 
 /// The options that the attribute has when nothing is said.

@@ -98,7 +98,11 @@ fn what_is_not_supported_is_said() {
     for (inside, expected) in [
         (
             "<link name='a'/><include/>".to_string(),
-            "r.sdf:2:17: `<include>` is not supported\n= help: write the file with all that it includes: `gz sdf -p robot.sdf > whole.sdf`",
+            "r.sdf:2:17: `<include>` without a `<uri>`\n= help: expected `<uri>model://…</uri>` or the path of a file",
+        ),
+        (
+            "<include merge='true'><uri>a</uri></include>".to_string(),
+            "r.sdf:2:1: `merge` of an `<include>` is not supported\n= help: write the whole: `gz sdf -p robot.sdf > whole.sdf`",
         ),
         (
             "<static>true</static><link name='a'/>".to_string(),
@@ -195,4 +199,61 @@ fn every_beginning_of_a_file_gets_an_answer() {
         assert!(!run(&sdf(), &FILE[..end]).contains("root_joint"));
     }
     assert!(run(&sdf(), FILE).contains("root_joint"));
+}
+
+/// A model stands in the place of the `<include>` that names it, as often as it is named, with its name and its pose; it moves as if it
+/// were written there.
+#[test]
+fn included_models_stand_in_the_place_of_their_elements() {
+    let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'><pose>0 0 1 0 0 0</pose></link></model></sdf>";
+    let files = [
+        (
+            "parts/model.config",
+            "<model><sdf version='1.4'>old.sdf</sdf><sdf version='1.9'>new.sdf</sdf></model>",
+        ),
+        ("parts/new.sdf", wheel),
+        ("wheel.sdf", wheel),
+        ("two.sdf", "<sdf><model name='two'><include><uri>parts</uri></include></model></sdf>"),
+        ("bad.sdf", "<sdf>\n<model name='b'><lnk/></model></sdf>"),
+        ("none.sdf", "<sdf/>"),
+        ("a.sdf", "<sdf><model name='a'><include><uri>b.sdf</uri></include></model></sdf>"),
+        ("b.sdf", "<sdf><model name='b'>\n<include><uri>model://a.sdf</uri></include></model></sdf>"),
+    ];
+    let folder = Folder::new("sdf-includes", &files);
+    let model = |inside: &str| format!("<sdf><model name='m'>\n{inside}</model></sdf>");
+    let joints = "<link name='hull'/><joint name='i' type='revolute'><parent>hull</parent><child>left::rim</child><axis/></joint>\
+         <joint name='j' type='revolute'><parent>hull</parent><child>wheel::rim</child><axis/></joint>";
+    let written = |name: &str, pose: &str| {
+        format!("<model name='{name}'>{pose}<link name='rim'><pose>0 0 1 0 0 0</pose></link></model>")
+    };
+    let (near, far) = ("<pose>1 0 0 0 0 0</pose>", "<pose>9 9 9 0 0 0</pose>");
+    let included = format!(
+        "{joints}<include><name> left </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
+    );
+    let whole = format!("{joints}{}{}", written("left", near), written("wheel", far));
+    let answer = folder.answer(&sdf(), &model(&included));
+    let expected = folder.answer(&sdf(), &model(&whole)).replace("0 files", "2 files");
+    assert_eq!(answer, expected);
+    assert!(answer.contains("Pin i: hull.at([1, 0, 1]) -> left::rim"), "{answer}");
+    // Includes of included files, and of the world, which need not all be there.
+    let world = "<sdf><world name='w'><include><uri>model://ground_plane</uri></include><include><uri>two.sdf</uri></include></world></sdf>";
+    let answer = folder.answer(&sdf(), world);
+    assert!(answer.contains("body wheel::rim") && answer.contains("not beside the file: 1"), "{answer}");
+    for (inside, expected) in [
+        ("<include><uri>bad.sdf</uri></include>", "bad.sdf:2:17: unknown element `<lnk>`"),
+        (
+            "<include><uri>none.sdf</uri></include>",
+            "none.sdf:1:1: expected an SDF file with one model, found no model",
+        ),
+        ("<include><uri>a.sdf</uri></include>", "b.sdf:2:15: `a.sdf` includes itself"),
+        ("<include><uri>model://arm</uri></include>", "r.sdf:2:15: `model://arm` is not beside the file"),
+        (
+            "<include><uri>wheal.sdf</uri></include>",
+            "r.sdf:2:15: there is no file `wheal.sdf`\n\n= help: did you mean `wheel.sdf`?",
+        ),
+        ("<include><uri>wheel.sdf</uri><nam/></include>", "r.sdf:2:30: unknown element `<nam>`"),
+    ] {
+        let answer = folder.answer(&sdf(), &model(inside));
+        assert!(answer.starts_with(expected), "{answer}");
+    }
 }

@@ -1,0 +1,313 @@
+//! `<include>` → the model of another file in its place, with the name and the pose that are given: one text, of pieces that know from
+//! which file they are.
+//!
+//! Each file is parsed on its own first, so that what is wrong with one is told at its own place.
+
+use crate::diag::Diagnostics;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, elements, place, word};
+use crate::import::whole::{DEEPEST, MOST, Read, Whole, plain, report_circle, report_many};
+use crate::import::{file, xml};
+use crate::syntax::{FileFormat, Name};
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+
+/// What an `<include>` holds.
+const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placement_frame"];
+
+/// Bytes of a file.
+type Range = std::ops::Range<usize>;
+
+/// What is still to be copied, last first.
+enum Step {
+    /// Bytes of a file.
+    Copy(usize, Range),
+    /// A text in the place of what stands at a byte of a file.
+    Put(String, usize, usize),
+    /// The model of another file.
+    Include(Box<Include>),
+    /// The file is through: what includes it again does so twice, not in a circle.
+    Leave,
+}
+
+/// An `<include>`: the file that has it and its first byte, what it names and where, its name and pose, and how deep it is.
+struct Include {
+    by: usize,
+    from: usize,
+    uri: Name,
+    name: Option<Range>,
+    pose: Option<Range>,
+    depth: usize,
+}
+
+/// Reads a file with all that it includes.
+pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
+    let mut whole = Whole::new(text, path, name);
+    let mut places = vec![name.clone()];
+    let (mut open, mut count) = (vec![0], 0);
+    let mut steps = scan(&whole.files, 0, name, None, cx)?;
+    while let Some(step) = steps.pop() {
+        match step {
+            Step::Copy(file, range) => whole.copy(file, range.start, range.end, name, cx)?,
+            Step::Put(text, file, at) => whole.put(&text, (file, at), name, cx)?,
+            Step::Leave => {
+                open.pop();
+            }
+            Step::Include(include) => {
+                let found = find(&whole.files, &include, cx)?;
+                count += 1;
+                if include.depth > DEEPEST || count > MOST {
+                    report_many(include.depth, &include.uri, cx);
+                    return None;
+                }
+                let known = whole.files.iter().position(|read| plain(&read.path) == found.path);
+                if let Some(known) = known.filter(|known| open.contains(known)) {
+                    report_circle(known, &open, &whole.files, &places, &include.uri, cx);
+                    return None;
+                }
+                let file = known.unwrap_or(whole.files.len());
+                if known.is_none() {
+                    whole.files.push(found);
+                    places.push(include.uri.clone());
+                }
+                open.push(file);
+                steps.push(Step::Leave);
+                steps.extend(scan(&whole.files, file, &include.uri, Some(&include), cx)?);
+            }
+        }
+    }
+    Some(whole)
+}
+
+/// The pieces of a file, last first: the whole of it, or its model for an `<include>`.
+fn scan(
+    files: &[Read],
+    file: usize,
+    name: &Name,
+    include: Option<&Include>,
+    cx: &mut Diagnostics,
+) -> Option<Vec<Step>> {
+    let read = files.get(file)?;
+    let shown = Name { text: read.shown.clone(), place: name.place.clone() };
+    let cx = &mut Cx::new(&read.text, &shown, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
+    // Prefixes that are not declared are declared for the whole text, where all bytes stand elsewhere.
+    if declared.get().is_some() {
+        return match include {
+            None => plain_copy(&document, file, read, cx),
+            Some(_) => {
+                undeclared(document.root_element(), cx);
+                None
+            }
+        };
+    }
+    let root = document.root_element();
+    let mut steps = Vec::new();
+    let (top, mut at, end) = match include {
+        None => (root, 0, read.text.len()),
+        Some(include) => {
+            let model = only_model(root, cx)?;
+            open_model(&mut steps, model, file, include);
+            let inner = |child: Option<Node<'_>>| child.map(|child| child.range());
+            let first = inner(model.first_child()).map_or(model.range().end, |range| range.start);
+            let last = inner(model.last_child()).map_or(first, |range| range.end);
+            (model, first, last)
+        }
+    };
+    let depth = include.map_or(1, |include| include.depth + 1);
+    for node in top.descendants().filter(Node::is_element) {
+        let range = node.range();
+        let is_moved = include.is_some_and(|include| include.pose.is_some());
+        let is_own_pose = node.parent() == Some(top) && node.tag_name().name() == "pose" && is_moved;
+        let replaces = if is_own_pose {
+            None
+        } else if node.tag_name().name() == "include" {
+            match read_include(node, files, file, depth, cx) {
+                Some(found) => Some(Step::Include(Box::new(found))),
+                // What the world includes beside the robot need not be there.
+                None => continue,
+            }
+        } else {
+            continue;
+        };
+        steps.push(Step::Copy(file, at..range.start));
+        steps.extend(replaces);
+        at = range.end;
+    }
+    steps.push(Step::Copy(file, at..end));
+    if include.is_some() {
+        steps.push(Step::Put("</model>".to_string(), file, end));
+    }
+    steps.reverse();
+    (!cx.failed()).then_some(steps)
+}
+
+/// A file with prefixes that it does not declare, which is read as it is.
+fn plain_copy(
+    document: &roxmltree::Document<'_>,
+    file: usize,
+    read: &Read,
+    cx: &mut Cx<'_>,
+) -> Option<Vec<Step>> {
+    let include =
+        document.descendants().find(|node| node.is_element() && node.tag_name().name() == "include");
+    if let Some(include) = include.filter(|include| !in_world(*include)) {
+        undeclared(include, cx);
+        return None;
+    }
+    Some(vec![Step::Copy(file, 0..read.text.len())])
+}
+
+fn undeclared(node: Node<'_>, cx: &mut Cx<'_>) {
+    cx.error(&place(node, cx), "prefixes of names are not declared", |d| {
+        d.help("files that include others, or are included, declare them: `<sdf xmlns:gz=\"http://gazebosim.org/schema\">`")
+    });
+}
+
+fn in_world(node: Node<'_>) -> bool {
+    node.parent().is_some_and(|parent| parent.tag_name().name() == "world")
+}
+
+/// The beginning of a model: its name and pose are those that the `<include>` gives, or its own.
+fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Include) {
+    let start = model.range().start;
+    let put = |text: &str| Step::Put(text.to_string(), file, start);
+    steps.push(Step::Put("<model name=\"".to_string(), include.by, include.from));
+    match &include.name {
+        Some(range) => steps.push(Step::Copy(include.by, range.clone())),
+        None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
+    }
+    steps.push(put("\""));
+    for attribute in model.attributes().filter(|attribute| attribute.name() != "name") {
+        steps.push(put(&format!(" {}=\"", attribute.name())));
+        steps.push(Step::Copy(file, attribute.range_value()));
+        steps.push(put("\""));
+    }
+    steps.push(put(">"));
+    if let Some(pose) = &include.pose {
+        steps.push(Step::Copy(include.by, pose.clone()));
+    }
+}
+
+/// The model of an included file.
+fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
+    let mut models = elements(root).filter(|node| node.tag_name().name() == "model");
+    let found = models.next().filter(|_| root.tag_name().name() == "sdf");
+    let second = models.next();
+    if let (Some(model), None) = (found, second) {
+        return Some(model);
+    }
+    let at = place(second.unwrap_or(root), cx);
+    let what = if second.is_some() { "several models" } else { "no model" };
+    cx.error(&at, format!("expected an SDF file with one model, found {what}"), |d| {
+        d.help("an included file is `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
+    });
+    None
+}
+
+/// Reads an `<include>`; `None` with a mistake, or where it is left out.
+fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mut Cx<'_>) -> Option<Include> {
+    check_attributes(node, &[], &["merge"], cx);
+    if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
+        cx.error(&place(node, cx), "`merge` of an `<include>` is not supported", |d| {
+            d.help("write the whole: `gz sdf -p robot.sdf > whole.sdf`")
+        });
+        return None;
+    }
+    let mut uri = None;
+    let (mut own_name, mut pose) = (None, None);
+    for child in elements(node) {
+        let inside = || child.first_child().filter(|text| text.is_text()).map(|text| trimmed(text));
+        match child.tag_name().name() {
+            "uri" => uri = word(child, cx),
+            "name" => own_name = inside(),
+            "pose" => pose = Some(child.range()),
+            "static" if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) => {
+                if in_world(node) {
+                    return None;
+                }
+                cx.error(&place(child, cx), "the included model is static: nothing of it moves", |d| {
+                    d.help("remove `<static>`")
+                });
+            }
+            "placement_frame" => cx.error(&place(child, cx), "`placement_frame` is not supported", |d| {
+                d.help("give the `<include>` a `<pose>`")
+            }),
+            _ => crate::import::element::check_element_name(child, &INCLUDE, cx),
+        }
+    }
+    let Some(uri) = uri else {
+        cx.error(&place(node, cx), "`<include>` without a `<uri>`", |d| {
+            d.help("expected `<uri>model://…</uri>` or the path of a file")
+        });
+        return None;
+    };
+    let from = node.range().start;
+    if in_world(node) && candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
+        return None;
+    }
+    Some(Include { by, from, uri, name: own_name, pose, depth })
+}
+
+/// The bytes of a text without spaces around it.
+fn trimmed(text: Node<'_>) -> Range {
+    let (range, all) = (text.range(), text.text().unwrap_or_default());
+    let before = all.len() - all.trim_start().len();
+    let after = all.len() - all.trim_end().len();
+    range.start + before..range.end.saturating_sub(after).max(range.start + before)
+}
+
+/// Where a file may be: beside the one that includes it or the one that the user names, or one folder above, each with how it is shown.
+/// A folder has its model in `model.sdf`, or where its `model.config` says.
+fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
+    let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
+    let named = rest.unwrap_or(uri);
+    let mut found = Vec::new();
+    for file in [by, 0] {
+        let Some(read) = files.get(file) else { continue };
+        for above in ["", ".."] {
+            let beside = |base: &Path| base.with_file_name(above).join(named);
+            let (path, shown) = (beside(&read.path), beside(Path::new(&read.shown)));
+            let inside = if path.is_dir() { Some(model_of(&path)) } else { None };
+            let whole = |base: PathBuf| match &inside {
+                Some(inside) => base.join(inside),
+                None => base,
+            };
+            found.push((whole(path.clone()), whole(shown).to_string_lossy().into_owned()));
+        }
+    }
+    found
+}
+
+/// The file of a folder's model.
+fn model_of(folder: &Path) -> String {
+    let usual = "model.sdf".to_string();
+    let Ok(config) = std::fs::read_to_string(folder.join("model.config")) else { return usual };
+    let Ok(document) = roxmltree::Document::parse(&config) else { return usual };
+    let mut versions = document.root_element().children().filter(|node| node.tag_name().name() == "sdf");
+    let last = versions.next_back().and_then(|node| node.text()).map(|text| text.trim().to_string());
+    last.unwrap_or(usual)
+}
+
+/// Reads the file that an `<include>` names.
+fn find(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read> {
+    let all = candidates(files, include.by, &include.uri.text);
+    let there = all.iter().find(|(path, _)| path.is_file());
+    if there.is_none() && include.uri.text.contains("://") {
+        let first = all.first().map_or(String::new(), |(path, _)| path.display().to_string());
+        cx.error(include.uri.place.clone(), format!("{} is not beside the file", quote(&include.uri.text)))
+            .help(format!("looked for `{first}`, and one folder above"))
+            .help("or write the whole: `gz sdf -p robot.sdf > whole.sdf`");
+        return None;
+    }
+    let (path, shown) = there.or(all.first())?;
+    let name = Name { text: shown.clone(), place: include.uri.place.clone() };
+    let text = file::read_named(path, &name, FileFormat::Sdf, cx)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\0').to_string();
+    Some(Read {
+        text: xml::without_late_declaration(&text).to_string(),
+        shown: shown.clone(),
+        path: plain(path),
+    })
+}
