@@ -92,12 +92,18 @@ pub fn command() -> Command {
                         text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
                             .value_parser(["double", "float"]),
                     )
-                    .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics")),
+                    .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
+                    .arg(switch("casadi", "A third file: the functions as CasADi and acados take them"))
+                    .arg(
+                        text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
+                            .action(ArgAction::Append)
+                            .requires("casadi"),
+                    ),
                 )
                 .subcommand(
-                    with_input(Command::new("library").about(
+                    with_tables(with_input(Command::new("library").about(
                         "A crate and a header: all functions on plain arrays, as a shared and a static library",
-                    ))
+                    )))
                     .arg(
                         text("out", "FOLDER", "Where the crate goes [default: the prefix]")
                             .short('o')
@@ -136,7 +142,19 @@ fn with_input(command: Command) -> Command {
         ))
 }
 
+fn with_tables(command: Command) -> Command {
+    command.arg(
+        text(
+            "table",
+            "NAME=FILE",
+            "Figures of a table: a line of comma-separated values for each point of its grid, the variables, then the value; `,smooth` and `,extrapolated` behind FILE say how it goes on",
+        )
+        .action(ArgAction::Append),
+    )
+}
+
 fn with_motion(command: Command) -> Command {
+    let command = with_tables(command);
     let number = |name, value, help| {
         text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
     };

@@ -2,10 +2,12 @@
 //! Rust. Slower than generated code, and equal to it.
 
 use crate::Stop;
+use crate::constrained::Metric;
+use crate::grid::Looked;
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 use linkwork_compiler::derive::{Function, Output};
-use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::expr::eval::eval_one;
+use linkwork_compiler::expr::{Lookup, Symbol};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 
@@ -15,6 +17,7 @@ pub struct Evaluated<'a, 'g> {
     pub model: &'a Model<'g>,
     output: &'a Output,
     parameters: Vec<f64>,
+    tables: Vec<Looked>,
 }
 
 /// What programs are functions of.
@@ -29,13 +32,24 @@ struct Values<'a> {
     passive: &'a [f64],
 }
 
+/// Accelerations and velocities that miss a constraint by this part contradict it.
+const CONTRADICTION: f64 = 1e-6;
+/// Residuals of a configuration that lies on the constraints, m and rad.
+const SETTLED: f64 = 1e-12;
+/// Steps of Newton's method.
+const ATTEMPTS: usize = 50;
 /// A rotation matrix row by row, and a position: those of the ground.
 const GROUND: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
 
 impl<'a, 'g> Evaluated<'a, 'g> {
-    /// A mechanism with values of all parameters.
-    pub fn new(model: &'a Model<'g>, output: &'a Output, parameters: Vec<f64>) -> Evaluated<'a, 'g> {
-        Evaluated { model, output, parameters }
+    /// A mechanism with values of all parameters, and its tables.
+    pub fn new(
+        model: &'a Model<'g>,
+        output: &'a Output,
+        parameters: Vec<f64>,
+        tables: Vec<Looked>,
+    ) -> Evaluated<'a, 'g> {
+        Evaluated { model, output, parameters, tables }
     }
 
     /// The configuration zero.
@@ -87,29 +101,99 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         }
     }
 
-    /// Accelerations under inputs.
+    /// Accelerations under inputs; nothing where constraints determine none.
     pub fn accelerations(&self, t: f64, q: &[f64], v: &[f64], u: &[f64]) -> Vec<f64> {
         let state = Values { t, q, v, u, ..Values::default() };
-        let function = |name: &str| self.output.functions.iter().find(|f| f.name == name);
-        let passive = function("__passive_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
+        let passive = self.find("__passive_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
         let state = Values { passive: &passive, ..state };
-        let tau = function("generalized_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
+        let tau = self.find("generalized_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
         let tau = if tau.is_empty() { vec![0.0; v.len()] } else { tau };
-        function("forward_dynamics")
+        if self.is_constrained() {
+            return self.constrained(state, tau).unwrap_or(vec![f64::NAN; v.len()]);
+        }
+        self.find("forward_dynamics")
             .map_or(Vec::new(), |f| self.run(&f.program, Values { tau: &tau, ..state }))
+    }
+
+    fn find(&self, name: &str) -> Option<&Function> {
+        self.output.functions.iter().find(|f| f.name == name)
+    }
+
+    fn called(&self, name: &str, state: Values<'_>) -> Option<Vec<f64>> {
+        Some(self.run(&self.find(name)?.program, state))
+    }
+
+    fn is_constrained(&self) -> bool {
+        !self.model.constraints.is_empty()
+    }
+
+    fn metric(&self, state: Values<'_>) -> Option<Metric> {
+        Metric::of(&self.called("mass_matrix", state)?, self.model.nv())
+    }
+
+    /// Of all accelerations that the constraints allow those next to what forces alone would do.
+    fn constrained(&self, state: Values<'_>, mut force: Vec<f64>) -> Option<Vec<f64>> {
+        let bias = self.called("bias_forces", state)?;
+        force.iter_mut().zip(bias).for_each(|(f, h)| *f -= h);
+        let jacobian = self.called("constraint_jacobian", state)?;
+        let target: Vec<f64> = self.called("constraint_bias", state)?.iter().map(|b| -b).collect();
+        let (a, off) = self.metric(state)?.nearest(force, &jacobian, &target);
+        let scale = target.iter().chain(&a).fold(1.0_f64, |most, x| most.max(x.abs()));
+        (off <= CONTRADICTION * scale).then_some(a)
+    }
+
+    /// Brings a state onto the constraints, the nearest one in the metric of the mass matrix: first the configuration by Newton's
+    /// method, then the velocity. `None` where no state is near.
+    pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut Vec<f64>) -> Option<()> {
+        if !self.is_constrained() {
+            return Some(());
+        }
+        for _ in 0..ATTEMPTS {
+            let state = Values { t, q, v, ..Values::default() };
+            let residuals = self.called("constraint_residuals", state)?;
+            let largest = residuals.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            if !largest.is_finite() {
+                return None;
+            }
+            if largest <= SETTLED {
+                let target: Vec<f64> =
+                    self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
+                let jacobian = self.called("constraint_jacobian", state)?;
+                let (change, off) = self.metric(state)?.nearest(vec![0.0; v.len()], &jacobian, &target);
+                v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
+                return (off <= CONTRADICTION).then_some(());
+            }
+            let (all, held) = (self.model.constraints.len(), residuals.len());
+            let jacobian = self.called("constraint_jacobian", state)?;
+            // Those on configurations come first.
+            let jacobian: Vec<f64> =
+                jacobian.chunks(all).flat_map(|column| &column[..held]).copied().collect();
+            let target: Vec<f64> = residuals.iter().map(|x| -x).collect();
+            let (moved, _) = self.metric(state)?.nearest(vec![0.0; v.len()], &jacobian, &target);
+            let mut rates = vec![0.0; q.len()];
+            self.rates(q, &moved, &mut rates);
+            q.iter_mut().zip(rates).for_each(|(q, rate)| *q += rate);
+            self.normalise(q).ok()?;
+        }
+        None
     }
 
     /// Why its accelerations cannot be computed here.
     pub fn obstacle(&self, without_contacts: bool) -> Option<String> {
         let m = self.model;
         let tell = |what: &str| {
-            Some(format!("{what}: simulate it in a program of Rust, as `linkwork new` makes one"))
+            Some(format!(
+                "{what}: simulate it in a program of Rust, as `linkwork new` makes one, or through `linkwork export library`"
+            ))
         };
         if m.kinematic {
             return Some("it has no masses (`inertia = none`), so nothing tells how it moves".to_string());
         }
-        if !m.constraints.is_empty() {
-            return tell("it has constraints");
+        if m.constraints.iter().any(|constraint| !constraint.friction.is_empty()) {
+            return tell("it has contacts that slip, whose friction depends on the forces of constraints");
+        }
+        if self.is_constrained() && !m.acceleration_forces.is_empty() {
+            return tell("it has constraints, and forces that depend on accelerations");
         }
         if !m.contacts.is_empty() && !without_contacts {
             let text = tell("it has contacts").unwrap_or_default();
@@ -127,13 +211,15 @@ impl<'a, 'g> Evaluated<'a, 'g> {
                     | Quantity::PassiveForce(_)
             )
         };
-        let whole = |f: &Function| f.program.symbols().into_iter().all(known);
-        let dynamics = self.output.functions.iter().find(|f| f.name == "forward_dynamics");
-        if dynamics.is_some_and(whole) {
-            None
-        } else {
-            tell("its dynamics are no function of the state alone")
-        }
+        let names = match self.is_constrained() {
+            true => {
+                &["mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias", "constraint_rates"]
+                    [..]
+            }
+            false => &["forward_dynamics"],
+        };
+        let whole = |name: &&str| self.find(name).is_some_and(|f| f.program.symbols().into_iter().all(known));
+        if names.iter().all(whole) { None } else { tell("its dynamics are no function of the state alone") }
     }
 
     /// The placement of every frame.
@@ -164,7 +250,10 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     }
 
     fn run(&self, program: &Program, values: Values<'_>) -> Vec<f64> {
-        program.run(&|symbol| self.symbol(symbol, values))
+        let looked = |lookup: Lookup, x| {
+            self.tables.get(lookup.table()).map_or(f64::NAN, |table| table.value(lookup, x))
+        };
+        program.run_with(&|symbol| self.symbol(symbol, values), &looked)
     }
 
     fn symbol(&self, symbol: Symbol, values: Values<'_>) -> f64 {

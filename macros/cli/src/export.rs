@@ -4,6 +4,7 @@ use crate::Stop;
 use crate::commands::given;
 use crate::input::Input;
 use crate::library;
+use crate::motion::parse;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
@@ -25,13 +26,18 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let kinematic = description.inertias == Inertias::None;
     source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
     let prefix = given(matches, "prefix").unwrap_or_default().to_string();
-    let files = export_c(&source, &Options { prefix, single }, cx);
+    let fixed: Result<Vec<(String, f64)>, Stop> = (matches.get_many::<String>("set").into_iter().flatten())
+        .map(|given| parse(given).map(|(name, value)| (name.to_string(), value)))
+        .collect();
+    let casadi = if matches.get_flag("casadi") { Some(fixed?) } else { None };
+    let files = export_c(&source, &Options { prefix, single, casadi }, cx);
     let files = input.checked(files, cx)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     std::fs::create_dir_all(&folder)
         .map_err(|error| Stop::Failure(format!("cannot make the folder {}: {error}", folder.display())))?;
-    for (end, text) in [("h", &files.header), ("c", &files.source)] {
-        let path = folder.join(format!("{}.{end}", files.prefix));
+    let casadi = files.casadi.as_ref().map(|text| ("_casadi.c", text));
+    for (end, text) in [(".h", &files.header), (".c", &files.source)].into_iter().chain(casadi) {
+        let path = folder.join(format!("{}{end}", files.prefix));
         write(&path, text)?;
         println!("{}", path.display());
     }
@@ -46,7 +52,7 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let given_prefix = given(matches, "prefix").map(ToString::to_string);
     let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.name)));
-    let made = library::write(&input, &prefix, given(matches, "linkwork"))?;
+    let made = library::write(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
     for (path, text) in &made.files {
         let path = folder.join(path.replace("NAME", &made.prefix));

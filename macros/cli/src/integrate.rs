@@ -16,9 +16,17 @@ const DIFFERENCE: [f64; 7] =
 /// Steps from one sample to the next, before it is given up.
 const MOST: usize = 1_000_000;
 
+/// A system: the rates of its state, and what is done to a state at the end of a step, which tells whether there is one.
+pub struct System<'a> {
+    /// Of time and state.
+    pub rates: &'a dyn Fn(f64, &[f64]) -> Vec<f64>,
+    /// Of time, and the state that it changes.
+    pub settle: &'a dyn Fn(f64, &mut Vec<f64>) -> bool,
+}
+
 /// Goes from one time to another; `step` is the size of a step, which is kept for the next call. Tells when it cannot go on.
 pub fn advance(
-    rates: &dyn Fn(f64, &[f64]) -> Vec<f64>,
+    system: &System<'_>,
     (from, to): (f64, f64),
     y: &mut Vec<f64>,
     step: &mut f64,
@@ -34,8 +42,8 @@ pub fn advance(
         if h <= 1e-14 * t.abs().max(1e-3) {
             return Err(t);
         }
-        let (next, error) = attempt(rates, t, y, h, tolerance);
-        let good = error <= 1.0 && next.iter().all(|x| x.is_finite());
+        let (mut next, error) = attempt(system.rates, t, y, h, tolerance);
+        let good = error <= 1.0 && next.iter().all(|x| x.is_finite()) && (system.settle)(t + h, &mut next);
         let factor = if error.is_finite() { 0.9 * error.max(1e-10).powf(-0.2) } else { 0.1 };
         if good {
             t = if h == left { to } else { t + h };
@@ -77,17 +85,18 @@ fn attempt(
 
 #[cfg(test)]
 mod tests {
-    use super::advance;
+    use super::{System, advance};
 
     /// `y'' = −y` has circles.
     #[test]
     fn a_circle_closes() {
         let rates = |_: f64, y: &[f64]| vec![y[1], -y[0]];
+        let system = System { rates: &rates, settle: &|_, _| true };
         let (mut y, mut step) = (vec![1.0, 0.0], 0.1);
         let turn = 2.0 * std::f64::consts::PI;
         for k in 0..100 {
             let from = turn * f64::from(k) / 100.0;
-            assert!(advance(&rates, (from, from + turn / 100.0), &mut y, &mut step, 1e-10).is_ok());
+            assert!(advance(&system, (from, from + turn / 100.0), &mut y, &mut step, 1e-10).is_ok());
         }
         assert!((y[0] - 1.0).abs() < 1e-8 && y[1].abs() < 1e-8, "{y:?}");
     }
@@ -96,7 +105,8 @@ mod tests {
     #[test]
     fn an_end_is_told() {
         let (mut y, mut step) = (vec![1.0], 0.1);
-        let end = advance(&|_, y| vec![y[0] * y[0]], (0.0, 2.0), &mut y, &mut step, 1e-8);
+        let system = System { rates: &|_, y| vec![y[0] * y[0]], settle: &|_, _| true };
+        let end = advance(&system, (0.0, 2.0), &mut y, &mut step, 1e-8);
         assert!(end.is_err_and(|t| (t - 1.0).abs() < 1e-3));
     }
 }

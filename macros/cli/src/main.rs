@@ -2,9 +2,11 @@
 
 mod check;
 mod commands;
+mod constrained;
 mod convert;
 mod evaluate;
 mod export;
+mod grid;
 mod input;
 mod integrate;
 mod library;

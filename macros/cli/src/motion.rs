@@ -2,9 +2,11 @@
 
 use crate::Stop;
 use crate::evaluate::Evaluated;
-use crate::integrate::advance;
+use crate::grid::{self, Grid, Looked};
+use crate::integrate::{System, advance};
 use crate::table::Table;
 use clap::ArgMatches;
+use linkwork_compiler::Source;
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::mechanism::Model;
 use std::path::PathBuf;
@@ -33,10 +35,13 @@ pub struct Start<'a, 'g> {
 
 /// Most samples of a motion.
 const MOST: f64 = 1e7;
+/// How often a mechanism is assembled from another beginning.
+const ASSEMBLIES: u8 = 100;
 
 impl<'a, 'g> Start<'a, 'g> {
     /// What `--set` says.
     pub fn new(
+        source: &Source,
         model: &'a Model<'g>,
         output: &'a Output,
         matches: &ArgMatches,
@@ -48,7 +53,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let configuration: Vec<String> = model.configuration.iter().map(|name| format!("q.{name}")).collect();
         let inputs: Vec<String> = model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         let mut parameters = vec![None; model.parameters.len()];
-        let empty = Evaluated::new(model, output, Vec::new());
+        let empty = Evaluated::new(model, output, Vec::new(), Vec::new());
         let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
         for given in matches.get_many::<String>("set").into_iter().flatten() {
             let (name, value) = parse(given)?;
@@ -73,7 +78,9 @@ impl<'a, 'g> Start<'a, 'g> {
         if !missing.is_empty() {
             return Err(Stop::Failure(format!("parameters without a value: {}", missing.join(" "))));
         }
-        let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect());
+        let tables: Result<Vec<Looked>, _> =
+            grid::given(matches, &source.tables())?.iter().map(Grid::looked).collect();
+        let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect(), tables?);
         mechanism.normalise(&mut q)?;
         Ok(Start { mechanism, q, v, u })
     }
@@ -116,7 +123,25 @@ impl<'a, 'g> Start<'a, 'g> {
             rates.extend(self.mechanism.accelerations(t, q, v, &given(t)));
             rates
         };
+        let settle = |t: f64, y: &mut Vec<f64>| {
+            let (mut q, mut v) = (y[..nq].to_vec(), y[nq..].to_vec());
+            let is_there = self.mechanism.settle(t, &mut q, &mut v).is_some();
+            *y = [q, v].concat();
+            is_there
+        };
+        let system = System { rates: &rates, settle: &settle };
         let (mut y, mut step) = ([self.q.clone(), self.v.clone()].concat(), every.min(1e-3));
+        if !settle(0.0, &mut y) {
+            y = self.assembled(&settle).ok_or_else(|| {
+                Stop::Failure(format!(
+                    "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set q.NAME=VALUE`",
+                    self.mechanism.model.name
+                ))
+            })?;
+            eprintln!(
+                "linkwork: the beginning fulfils no constraints; the motion begins in a configuration that was found near it"
+            );
+        }
         let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
         if times[count] < duration * (1.0 - 1e-9) {
             times.push(duration);
@@ -124,7 +149,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let mut samples = Vec::with_capacity(times.len());
         for (k, t) in times.iter().enumerate() {
             if k > 0 {
-                advance(&rates, (times[k - 1], *t), &mut y, &mut step, tolerance).map_err(|t| {
+                advance(&system, (times[k - 1], *t), &mut y, &mut step, tolerance).map_err(|t| {
                     Stop::Failure(format!(
                         "the motion cannot be continued beyond {t} s: it is stiff, or singular there"
                     ))
@@ -134,6 +159,22 @@ impl<'a, 'g> Start<'a, 'g> {
             samples.push(Sample { t: *t, q: y[..nq].to_vec(), v: y[nq..].to_vec(), u: given(*t) });
         }
         Ok(samples)
+    }
+
+    /// A state that constraints allow, from beginnings that are more and more off.
+    fn assembled(&self, settle: &dyn Fn(f64, &mut Vec<f64>) -> bool) -> Option<Vec<f64>> {
+        (1..=ASSEMBLIES).find_map(|attempt| {
+            let mut q = self.q.clone();
+            let size = 0.02 * f64::from(attempt);
+            for (k, x) in q.iter_mut().enumerate() {
+                // Numbers that repeat nothing: parts of a golden angle.
+                let turn = (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract();
+                *x += size * (2.0 * turn - 1.0);
+            }
+            self.mechanism.normalise(&mut q).ok()?;
+            let mut y = [q, self.v.clone()].concat();
+            settle(0.0, &mut y).then_some(y)
+        })
     }
 
     /// Inputs of a file, by their number.
@@ -158,7 +199,7 @@ impl<'a, 'g> Start<'a, 'g> {
 }
 
 /// A name with its value.
-fn parse(given: &str) -> Result<(&str, f64), Stop> {
+pub fn parse(given: &str) -> Result<(&str, f64), Stop> {
     let fail = || Stop::Failure(format!("`--set`: expected NAME=VALUE, found `{given}`"));
     let (name, value) = given.split_once('=').ok_or_else(fail)?;
     let value: f64 = value.trim().parse().map_err(|_| fail())?;

@@ -18,7 +18,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let graph = Graph::new();
     let made = compile(&source, &graph, cx);
     let (model, output) = input.checked(made, cx)?;
-    let samples = Start::new(&model, &output, matches)?.run(matches)?;
+    let samples = Start::new(&source, &model, &output, matches)?.run(matches)?;
     put(matches, &csv(&model, &samples))
 }
 

@@ -27,7 +27,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let graph = Graph::new();
     let made = compile(&source, &graph, cx);
     let (model, output) = input.checked(made, cx)?;
-    let start = Start::new(&model, &output, matches)?;
+    let start = Start::new(&source, &model, &output, matches)?;
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => from_log(path, &start)?,
         None => match start.mechanism.obstacle(matches.get_flag("without-contacts")) {

@@ -2,9 +2,10 @@
 
 mod mechanisms;
 
-use linkwork::Frames;
+use linkwork::prelude::*;
+use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
-use mechanisms::{Awkward, Balloon};
+use mechanisms::{Awkward, Balloon, Wing};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,6 +23,8 @@ struct Case {
     /// What identifiers and files begin with.
     prefix: &'static str,
     parameters: Vec<f64>,
+    /// Tables as C writes them, and the arrays that they name.
+    tables: [&'static str; 2],
     time: Option<f64>,
     /// Arguments by name.
     given: Vec<(&'static str, Vec<f64>)>,
@@ -113,6 +116,7 @@ macro_rules! case {
         Case {
             prefix: $prefix,
             parameters: vec![$($p),*],
+            tables: [""; 2],
             time,
             given: vec![
                 ("q", q.as_slice().to_vec()),
@@ -125,6 +129,55 @@ macro_rules! case {
             entries,
             tolerance: 1e-11,
         }
+    }};
+}
+
+/// How the end of a step changes with its length, by central differences of sixth order.
+fn by_length<const NQ: usize, const NV: usize>(
+    end: impl Fn(f64) -> (SVector<f64, NQ>, SVector<f64, NV>),
+    difference: impl Fn(&SVector<f64, NQ>, &SVector<f64, NQ>) -> SVector<f64, NV>,
+) -> Vec<f64> {
+    let d = 1e-4;
+    let (start, _) = end(0.0);
+    let at = |x: f64| {
+        let (q, v) = end(x);
+        [difference(&start, &q).as_slice(), v.as_slice()].concat()
+    };
+    let sides: Vec<[Vec<f64>; 2]> = [1.0, 2.0, 3.0].iter().map(|k| [at(k * d), at(-k * d)]).collect();
+    let slope = |i: usize| {
+        let part = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
+        (part(0, 45.0) + part(1, -9.0) + part(2, 1.0)) / (60.0 * d)
+    };
+    (0..2 * NV).map(slope).collect()
+}
+
+/// Steps and their Jacobians.
+macro_rules! steps {
+    ($kind:ident, $m:expr, $case:ident) => {{
+        const NX: usize = 2 * $kind::NV;
+        let (m, state) = (&$m, &$case.given);
+        let t = $case.time.unwrap_or(0.0);
+        let (q, v, u) = (vector(&state[0].1), vector(&state[1].1), vector(&state[4].1));
+        let mut entries = Vec::new();
+        macro_rules! by {
+            ($method:ident, $step:literal, $transition:literal) => {{
+                let (next_q, next_v) =
+                    discrete::step(m, &$method::step(0.01), t, &q, &v, &u).expect("a step");
+                let found = discrete::transition(m, &$method::step(0.01), t, &q, &v, &u).expect("a step");
+                let (a, b) = (found.a::<NX>(), found.b::<NX>());
+                entries.push(entry!($step, "q, v, u, 0.01", next_q, next_v));
+                let mut all = entry!($transition, "q, v, u, 0.01", next_q, next_v, a, b);
+                if $case.time.is_none() {
+                    let end =
+                        |x: f64| discrete::step(m, &$method::step(0.01 + x), t, &q, &v, &u).expect("a step");
+                    all.results.push(by_length(end, |a, b| m.difference(a, b)));
+                }
+                entries.push(all);
+            }};
+        }
+        by!(SemiImplicitEuler, "semi_implicit_euler_step", "semi_implicit_euler_transition");
+        by!(Rk4, "rk4_step", "rk4_transition");
+        entries
     }};
 }
 
@@ -182,7 +235,9 @@ fn program(case: &Case, scalar: &str) -> String {
     let own = match case.parameters.is_empty() {
         true => "",
         false => {
-            let _ = writeln!(text, "    static const {p} self = {{{}}};", list(&case.parameters));
+            let [arrays, tables] = case.tables;
+            let _ =
+                writeln!(text, "{arrays}    static const {p} self = {{{}{tables}}};", list(&case.parameters));
             "&self, "
         }
     };
@@ -310,7 +365,8 @@ fn agrees(case: &Case, arguments: &[&str]) {
 
 #[test]
 fn arms() {
-    let case = case!("arm", Ur5, Ur5, [], time(), of_trees);
+    let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
+    case.entries.extend(steps!(Ur5, Ur5, case));
     agrees(&case, &["../../models/urdf/ur5.urdf"]);
     let case = case!("panda_arm", PandaArm, PandaArm, [], time(), of_trees);
     agrees(&case, &["../../models/src/arm7.rs", "--struct", "PandaArm"]);
@@ -318,7 +374,8 @@ fn arms() {
 
 #[test]
 fn quadrupeds() {
-    let case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
+    let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
+    case.entries.extend(steps!(Solo12, Solo12, case));
     agrees(&case, &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
     let case = case!("anymal", AnymalB, AnymalB, [], time(), of_trees);
     agrees(&case, &["../../models/src/quadruped.rs", "--struct", "AnymalB"]);
@@ -333,7 +390,8 @@ fn a_humanoid() {
 #[test]
 fn declared_mechanisms() {
     let m = CartPole { cart_mass: 1.2, pole_mass: 0.3, pole_length: 0.8, rail_damping: 0.4 };
-    let case = case!("cart_pole", CartPole, m, [1.2, 0.3, 0.8, 0.4], time(), of_trees);
+    let mut case = case!("cart_pole", CartPole, m, [1.2, 0.3, 0.8, 0.4], time(), of_trees);
+    case.entries.extend(steps!(CartPole, m, case));
     agrees(&case, &["../../models/src/cart_pole.rs"]);
     let m = FurutaPendulum { g: 9.8, arm_mass: 0.7, arm_length: 0.5, mass: 0.3, length: 0.9 };
     let case = case!("furuta", FurutaPendulum, m, [9.8, 0.7, 0.5, 0.3, 0.9], time(), nothing);
@@ -361,14 +419,70 @@ fn names_that_c_does_not_have() {
         entry!("inverse_dynamics_by_parameters", "q, v, a", m.inverse_dynamics_by_parameters(&q, &v, &a)),
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
+    case.entries.extend(steps!(Awkward, m, case));
     agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
 }
 
 #[test]
 fn what_is_driven_in_time() {
     let m = Balloon { mass: 3.0, buoyancy: 2.5 };
-    let case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
+    let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
+    case.entries.extend(steps!(Balloon, m, case));
     agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
+}
+
+/// Figures of [`Wing`], and the same as C writes them.
+fn tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
+    let drag = Table::new([&[-1.0, 0.2, 0.5, 2.0]], &[0.3, -0.1, 0.4, 0.2]);
+    let lift = Table::new([&[-0.2, 0.1, 0.5], &[-1.0, 1.0]], &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9]);
+    let moment = Table::new(
+        [&[0.0, 1.0], &[-1.0, 0.0, 1.5], &[0.0, 0.3]],
+        &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95],
+    );
+    fn shaped<const N: usize>(
+        table: Result<Table<N>, linkwork::TableError>,
+        smooth: bool,
+        on: bool,
+    ) -> [Table<N>; 1] {
+        let table = table.expect("a table");
+        let table = if smooth { table.smooth() } else { table };
+        [if on { table.extrapolated() } else { table }]
+    }
+    (
+        shaped(drag, smooth, extrapolated),
+        shaped(lift, smooth, extrapolated),
+        shaped(moment, smooth, extrapolated),
+    )
+}
+
+const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] = {0.3, -0.1, 0.4, 0.2};
+    static const double l0[] = {-0.2, 0.1, 0.5}, l1[] = {-1.0, 1.0}, l[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9};
+    static const double m0[] = {0.0, 1.0}, m1[] = {-1.0, 0.0, 1.5}, m2[] = {0.0, 0.3};
+    static const double m[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95};
+";
+
+/// Tables within the grid and beyond it, of every shape.
+#[test]
+fn tables_are_looked_up_alike() {
+    let written = [
+        ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 0}",
+        ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 1}",
+        ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 0}",
+        ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 1}",
+    ];
+    for (k, (prefix, c)) in
+        ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(written).enumerate()
+    {
+        let ([drag], [lift], [moment]) = tables(k > 1, k % 2 == 1);
+        let m = Wing { mass: 2.0, lift, drag, moment };
+        let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
+        case.prefix = prefix;
+        case.tables = [ARRAYS, c];
+        // Slopes by the length of a step are compared with differences, which are not exact where slopes jump.
+        case.tolerance = 1e-9;
+        case.entries.extend(steps!(Wing, m, case));
+        agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
+    }
 }
 
 /// Functions that solve for forces of constraints are not there, which the header and the command say; the others are.
@@ -398,4 +512,75 @@ fn in_single_precision() {
     let flags = ["-O2", "-Wdouble-promotion", "-Wfloat-conversion"];
     let found = printed(compiler, &folder, "single", &program(&case, "float"), &flags);
     compare(&case, &found, 2e-3);
+}
+
+/// A Python that has CasADi: that of `LINKWORK_PYTHON`, or the system's.
+fn python() -> Option<String> {
+    let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let has =
+        Command::new(&python).args(["-c", "import casadi, numpy"]).output().is_ok_and(|o| o.status.success());
+    has.then_some(python)
+}
+
+/// What CasADi loads has the values of the functions and their slopes; acados' functions fit together. Without CasADi it is compiled
+/// without a warning.
+#[test]
+fn casadi_loads_functions_with_their_jacobians() {
+    let Some(compiler) = compilers().into_iter().next() else {
+        println!("skipped: there is no C compiler");
+        return;
+    };
+    let folder = folder("casadi");
+    let fixed = ["cart_mass=1.2", "pole_mass=0.3", "pole_length=0.8", "rail_damping=0.4"];
+    let set: Vec<&str> = fixed.iter().flat_map(|value| ["--set", value]).collect();
+    export(
+        &folder,
+        &[&["../../models/src/cart_pole.rs", "--prefix", "fixed", "--casadi"], &set[..]].concat(),
+    );
+    export(
+        &folder,
+        &["../../models/src/cart_pole.rs", "--prefix", "open", "--casadi", "--set", "cart_mass=1.2"],
+    );
+    export(&folder, &["tests/mechanisms/mod.rs", "--struct", "Balloon", "--prefix", "timed", "--casadi"]);
+    for prefix in ["fixed", "open", "timed"] {
+        let done = Command::new(compiler)
+            .current_dir(&folder)
+            .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-fPIC", "-shared", "-o"])
+            .args([
+                format!("lib{prefix}.so"),
+                format!("{prefix}.c"),
+                format!("{prefix}_casadi.c"),
+                "-lm".to_string(),
+            ])
+            .output()
+            .expect("the compiler starts");
+        assert!(done.status.success(), "{prefix}: {}", String::from_utf8_lossy(&done.stderr));
+    }
+    let Some(python) = python() else {
+        println!("skipped: there is no CasADi (LINKWORK_PYTHON names a Python that has it)");
+        return;
+    };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/casadi.py");
+    let run = Command::new(python).arg(script).current_dir(&folder).output().expect("Python starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+}
+
+/// What cannot be fixed, and numbers that CasADi does not have, are told.
+#[test]
+fn what_casadi_cannot_have_is_told() {
+    for (arguments, part) in [
+        (["--set", "mass=1"], "there is no parameter `mass` to be fixed"),
+        (["--scalar", "float"], "CasADi has no functions of single precision"),
+        (["--set", "cart_mass"], "expected NAME=VALUE"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
+            .args(["export", "c", "../../models/src/cart_pole.rs", "--casadi"])
+            .args(arguments)
+            .arg("--out")
+            .arg(folder("refused"))
+            .output()
+            .expect("the command starts");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && told.contains(part), "{told}");
+    }
 }

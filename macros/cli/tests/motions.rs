@@ -107,6 +107,134 @@ fn contacts_are_no_free_fall() {
     }
 }
 
+const CLOSED: &str = "
+#[mechanism(gravity = -9.81 * y, derivatives)]
+pub struct Closed {
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    crank: Body,
+    #[body(mass = 2, com = x, inertia = rod(2, 2, x))]
+    coupler: Body,
+    #[body(mass = 2.5, com = 1.25 * x, inertia = rod(2.5, 2.5, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    input: Pin,
+    #[joint(crank.at(x) -> coupler, about = z)]
+    elbow: Pin,
+    #[joint(ground.at(3 * x) -> rocker, about = z)]
+    output: Pin,
+    #[joint(coupler.at(2 * x) -> rocker.at(2.5 * x), about = z)]
+    closing: Pin,
+    #[acts(on = input)]
+    motor: Torque,
+}
+";
+
+/// A closed loop moves as generated code moves it: the same four-bar linkage, integrated by itself in Rust; its loop stays closed
+/// and, without a motor, its energy what it was.
+#[test]
+fn loops_stay_closed() {
+    let here = folder("closed");
+    std::fs::write(here.join("closed.rs"), CLOSED).unwrap();
+    let begin = ["--set", "q.input=1.2", "--set", "v.input=2", "--set", "q.output=1.9", "--set", "u.motor=0"];
+    let arguments = [
+        &["simulate", "closed.rs", "--duration", "2", "--every", "0.25", "--tolerance", "1e-11"][..],
+        &begin,
+    ]
+    .concat();
+    let (status, log, told) = linkwork(&here, &arguments);
+    assert_eq!((status, told.as_str()), (0, ""));
+    let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
+    let rows = rows(&log);
+    assert_eq!(rows.len(), 9);
+    let state = |row: &[f64]| -> (SVector<f64, 3>, SVector<f64, 3>) {
+        (SVector::from_column_slice(&row[1..4]), SVector::from_column_slice(&row[4..7]))
+    };
+    let (q, v) = state(&rows[0]);
+    let motion = simulate(&m).from(q, v).method(Rk4::step(5e-4)).duration(2.0).sample_every(0.25);
+    let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
+    let energy = |q: &SVector<f64, 3>, v: &SVector<f64, 3>| m.kinetic_energy(q, v) + m.potential_energy(q);
+    for (row, sample) in rows.iter().zip(&samples) {
+        let (at, rate) = state(row);
+        assert!(m.constraint_residuals(&at).norm() < 1e-11, "{row:?}");
+        assert!(m.constraint_rates(&at, &rate).norm() < 1e-11, "{row:?}");
+        assert!((energy(&at, &rate) - energy(&q, &v)).abs() < 1e-7, "{row:?}");
+        assert!(
+            (at - sample.q).norm() + (rate - sample.v).norm() < 1e-6,
+            "{row:?} {:?} {:?}",
+            sample.q,
+            sample.v
+        );
+    }
+    // A loop that is stretched out is assembled near by, which is told; the page of it shows the motion.
+    let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
+    assert!(status == 0 && told.contains("a configuration that was found near it"), "{told}");
+    assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
+}
+
+/// What no configuration fulfils is told; so are tables, whose figures the command does not have.
+#[test]
+fn what_cannot_be_assembled_is_told() {
+    let here = folder("apart");
+    let apart = CLOSED
+        .replace("ground.at(3 * x)", "ground.at(base * x)")
+        .replace("Closed {", "Closed {\n    pub base: f64,");
+    std::fs::write(here.join("apart.rs"), apart).unwrap();
+    let (status, out, told) = linkwork(&here, &["simulate", "apart.rs", "--set", "base=30"]);
+    assert!(status == 2 && out.is_empty() && told.contains("`Closed` cannot be assembled"), "{told}");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
+    let (status, out, told) = linkwork(&here, &["simulate", file, "--struct", "Wing", "--set", "mass=1"]);
+    assert!(status == 2 && out.is_empty() && told.contains("--table lift=FILE --table drag=FILE"), "{told}");
+}
+
+/// A parabola by a smooth table of three points is the parabola: the spring that it makes swings as a spring does.
+#[test]
+fn tables_are_read_from_files() {
+    let here = folder("tables");
+    let spring = "
+#[mechanism]
+pub struct Slider {
+    pub potential: Table<1>,
+    #[particle(mass = 2)]
+    block: Particle,
+    #[joint(ground -> block, along = x)]
+    rail: Sleeve,
+    #[energy(potential(rail))]
+    spring: Potential,
+}
+";
+    std::fs::write(here.join("slider.rs"), spring).unwrap();
+    std::fs::write(here.join("spring.csv"), "x,energy\n2,16\n0,0\n-2,16\n").unwrap();
+    let arguments = [
+        "simulate",
+        "slider.rs",
+        "--set",
+        "q.rail=1",
+        "--duration",
+        "3",
+        "--every",
+        "0.5",
+        "--tolerance",
+        "1e-11",
+    ];
+    let table = ["--table", "potential=spring.csv,smooth"];
+    let (status, log, told) = linkwork(&here, &[&arguments[..], &table].concat());
+    assert_eq!((status, told.as_str()), (0, ""));
+    // Potential 4 x², mass 2 kg: 2 rad/s.
+    for row in rows(&log) {
+        assert!((row[1] - (2.0 * row[0]).cos()).abs() < 1e-8, "{row:?}");
+    }
+    for (table, part) in [
+        (None, "tables without figures: --table potential=FILE"),
+        (Some("potentail=spring.csv"), "there is no table `potentail`, but potential"),
+        (Some("potential=none.csv"), "cannot read none.csv"),
+        (Some("potential=slider.rs"), "slider.rs: line 3: expected numbers"),
+    ] {
+        let table: Vec<&str> = table.iter().flat_map(|table| ["--table", table]).collect();
+        let (status, out, told) = linkwork(&here, &[&arguments[..], &table].concat());
+        assert!(status == 2 && out.is_empty() && told.contains(part), "{told}");
+    }
+}
+
 #[test]
 fn what_cannot_be_done_is_told() {
     let here = folder("refused");

@@ -68,16 +68,25 @@ pub fn export_c(
     let graph = Graph::new();
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
-    export::c::write(&model, &output, options)
+    let tables = source.mechanism.shell.table_names();
+    export::c::write(&model, &output, &tables, options)
         .map_err(|unfit| {
             let (what, help) = match unfit {
-                export::c::Unfit::Table(of) => (
-                    format!("`{of}` looks up a table, which C sources do not have yet"),
-                    "give the function as an expression, or call the mechanism from a library in Rust",
+                export::c::Unfit::NoParameter(name) => (
+                    format!("there is no parameter `{name}` to be fixed"),
+                    match model.parameters.is_empty() {
+                        true => "the mechanism has no parameters".to_string(),
+                        false => format!("there are {}", model.parameters.join(", ")),
+                    },
+                ),
+                export::c::Unfit::SingleCasadi => (
+                    "CasADi has no functions of single precision".to_string(),
+                    "export them in double precision".to_string(),
                 ),
                 export::c::Unfit::Lanes(of) => (
                     format!("Linkwork made a mistake: `{of}` was derived with lanes"),
-                    "this is no mistake of yours: please report it with the declaration of the mechanism",
+                    "this is no mistake of yours: please report it with the declaration of the mechanism"
+                        .to_string(),
                 ),
             };
             cx.error(model.place.clone(), what).help(help);
@@ -320,6 +329,12 @@ fn check_outputs(
 }
 
 impl Source {
+    /// The fields that are tables, with the numbers of their variables.
+    pub fn tables(&self) -> Vec<(String, usize)> {
+        let tables = &self.mechanism.description.tables;
+        tables.iter().map(|table| (table.name.text.clone(), table.variables)).collect()
+    }
+
     /// What every joint joins, in a line each.
     pub fn structure(&self) -> Vec<String> {
         self.mechanism.description.joints.iter().map(structure_line).collect()

@@ -7,7 +7,10 @@ mod header;
 mod write;
 
 use crate::Stop;
+use crate::commands::given;
+use crate::grid::{self, Grid};
 use crate::input::Input;
+use clap::ArgMatches;
 use functions::{Function, Kind};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -34,6 +37,8 @@ struct Known<'a, 'g> {
     source: &'a Source,
     model: &'a Model<'g>,
     prefix: &'a str,
+    /// Its tables.
+    tables: Vec<Grid>,
     /// Its functions, in the order of their numbers.
     functions: Vec<Function>,
     left_out: Vec<String>,
@@ -63,8 +68,8 @@ impl Known<'_, '_> {
     }
 }
 
-/// Writes the crate of a mechanism. `linkwork` is the folder of the sources of Linkwork, if not crates of a registry.
-pub fn write(input: &Input, prefix: &str, linkwork: Option<&str>) -> Result<Crate, Stop> {
+/// Writes the crate of a mechanism: with the sources of Linkwork in the folder `--linkwork`, if not with crates of a registry.
+pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.read(cx);
     let source = input.checked(source, cx)?;
@@ -72,13 +77,6 @@ pub fn write(input: &Input, prefix: &str, linkwork: Option<&str>) -> Result<Crat
     let made = compile(&source, &graph, cx);
     let (model, output) = input.checked(made, cx)?;
     let shell = &source.mechanism.shell;
-    if !shell.tables.is_empty() {
-        return Err(Stop::Failure(format!(
-            "{}: the tables of `{}` cannot be handed over as plain numbers: give them as expressions",
-            input.file.display(),
-            input.name
-        )));
-    }
     if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
         return Err(Stop::Failure(format!(
             "{}: `{}` has generic parameters beside that of its numbers",
@@ -101,12 +99,13 @@ pub fn write(input: &Input, prefix: &str, linkwork: Option<&str>) -> Result<Crat
         source: &source,
         model: &model,
         prefix,
+        tables: grid::given(matches, &source.tables())?,
         functions,
         left_out,
         equations: output.equations.plain.clone(),
     };
     let description = describe::description(&known);
-    let linkwork = linkwork.map(home).transpose()?;
+    let linkwork = given(matches, "linkwork").map(home).transpose()?;
     let manifest = manifest(prefix, linkwork.as_deref());
     let text = write::library(&known, &description, &at_home(input)?)?;
     Ok(Crate {

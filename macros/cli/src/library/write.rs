@@ -60,6 +60,7 @@ pub fn library(
             (_, false) => format!("library::roll_out::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
         },
     );
+    text.push_str(&tables(known));
     if known.functions.iter().any(|f| f.arguments.iter().any(|(_, kind)| *kind == Kind::Frame)) {
         let _ = write!(
             text,
@@ -98,16 +99,15 @@ fn row(f: &Function, nv: usize) -> String {
     )
 }
 
-/// The mechanism made of numbers.
+/// The mechanism made of numbers, and of its tables.
 fn made(known: &Known<'_, '_>) -> String {
     let shell = &known.source.mechanism.shell;
     let name = &known.input.name;
-    if known.model.parameters.is_empty() {
-        return match shell.parameters.is_empty() && shell.file_fields.is_empty() {
-            true => format!("let _ = of;\n{name} {{}}"),
-            false => format!("{name}::FILE"),
-        };
-    }
+    let tables = shell.tables.iter().filter_map(|f| f.ident.as_ref()).enumerate();
+    let tables: Vec<[String; 2]> =
+        tables.map(|(k, field)| [field.to_string(), format!("TABLE_{k}")]).collect();
+    let has_numbers = !known.model.parameters.is_empty();
+    let unused = if has_numbers { "" } else { "let _ = of;\n" };
     let fields = by_field(&known.model.parameters);
     let own: Vec<String> =
         shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
@@ -115,15 +115,45 @@ fn made(known: &Known<'_, '_>) -> String {
         fields.get(field.trim_start_matches("r#")).and_then(|all| all.first()).copied().unwrap_or(usize::MAX)
     };
     if shell.file_fields.is_empty() {
-        let values: Vec<String> = own.iter().map(|field| format!("{field}: of({})", index(field))).collect();
-        return format!("{name} {{ {} }}", values.join(", "));
+        let numbers = own.iter().map(|field| format!("{field}: of({})", index(field)));
+        let tables = tables.iter().map(|[field, table]| format!("{field}: {table}"));
+        return format!("{unused}{name} {{ {} }}", numbers.chain(tables).collect::<Vec<_>>().join(", "));
     }
-    let values: Vec<String> = own.iter().map(|field| format!("of({})", index(field))).collect();
+    if !has_numbers && own.is_empty() && tables.is_empty() {
+        return format!("{unused}{name}::FILE");
+    }
+    let numbers = own.iter().map(|field| format!("of({})", index(field)));
+    let tables = tables.iter().map(|[_, table]| table.clone());
+    let values: Vec<String> = numbers.chain(tables).collect();
+    if !has_numbers {
+        return format!("{unused}{name}::from_file({})", values.join(", "));
+    }
     let mut text = format!("let mut m = {name}::from_file({});\n", values.join(", "));
     for (k, member) in known.model.parameters.iter().enumerate().filter(|(_, member)| !own.contains(member)) {
         let _ = writeln!(text, "m.{member} = of({k});");
     }
     text + "m"
+}
+
+/// The figures of the tables, as constants.
+fn tables(known: &Known<'_, '_>) -> String {
+    let mut text = String::new();
+    for (k, grid) in known.tables.iter().enumerate() {
+        let axes: Vec<String> = grid.axes.iter().map(|axis| format!("&{axis:?}")).collect();
+        let smooth = if grid.smooth { ".smooth()" } else { "" };
+        let extrapolated = if grid.extrapolated { ".extrapolated()" } else { "" };
+        let _ = writeln!(
+            text,
+            "const TABLE_{k}: linkwork::Table<{}> = match linkwork::Table::new([{}], &{:?}) {{
+                Ok(table) => table{smooth}{extrapolated},
+                Err(error) => panic!(\"{{}}\", error.message()),
+            }};",
+            grid.axes.len(),
+            axes.join(", "),
+            grid.values
+        );
+    }
+    text
 }
 
 fn checked(known: &Known<'_, '_>) -> &'static str {

@@ -54,3 +54,26 @@ pub struct Balloon {
     #[limit(on = swing, from = -1, to = 1.5, max_speed = 4)]
     ropes: Limit,
 }
+
+/// Tables of one to three variables, with edges and beyond them, linear and smooth.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+pub struct Wing {
+    pub mass: f64,
+    pub lift: Table<2>,
+    pub drag: Table<1>,
+    pub moment: Table<3>,
+    #[body(mass = mass, com = -0.5 * y, inertia = rod(mass, 1, y))]
+    arm: Body,
+    #[joint(ground -> arm, about = z)]
+    hinge: Pin,
+    #[body(mass = 0.1, com = -0.1 * y, inertia = rod(0.1, 0.2, y))]
+    flap: Body,
+    #[joint(arm.at(-y) -> flap, about = z)]
+    pivot: Pin,
+    #[acts(on = hinge, value = lift(hinge, rate(hinge)) - drag(rate(hinge)))]
+    air: Torque,
+    #[acts(on = pivot, value = moment(hinge, pivot, rate(pivot)))]
+    eddies: Torque,
+    #[acts(on = pivot)]
+    motor: Torque,
+}

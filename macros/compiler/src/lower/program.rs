@@ -250,14 +250,27 @@ impl Program {
 
     /// The values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        self.run_with(symbol, &Lookup::apply)
+    }
+
+    /// The values of the outputs with those of tables, of which each lookup is given its variables.
+    pub fn run_with(
+        &self,
+        symbol: &dyn Fn(Symbol) -> f64,
+        table: &dyn Fn(Lookup, [f64; 3]) -> f64,
+    ) -> Vec<f64> {
         let joins = self.instructions.iter().any(|op| matches!(op, Op::Join(..)));
         match joins || !self.tuples.is_empty() || !self.gathers.is_empty() {
-            true => self.run_lanes::<MOST>(symbol),
-            false => self.run_lanes::<1>(symbol),
+            true => self.run_lanes::<MOST>(symbol, table),
+            false => self.run_lanes::<1>(symbol, table),
         }
     }
 
-    fn run_lanes<const N: usize>(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+    fn run_lanes<const N: usize>(
+        &self,
+        symbol: &dyn Fn(Symbol) -> f64,
+        table: &dyn Fn(Lookup, [f64; 3]) -> f64,
+    ) -> Vec<f64> {
         let each = |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
         let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
         let at = |values: &[[f64; N]], o: Operand| match o {
@@ -275,7 +288,7 @@ impl Program {
                 op => {
                     let mut operands = Vec::with_capacity(3);
                     op.operands(|o| operands.push(at(&values, o)));
-                    std::array::from_fn(|lane| op.apply(|k| operands[k][lane]))
+                    std::array::from_fn(|lane| op.apply(|k| operands[k][lane], table))
                 }
             };
             values.push(result);
@@ -286,7 +299,7 @@ impl Program {
 
 impl Op {
     /// The result in one lane, given the operands by number.
-    fn apply(self, get: impl Fn(usize) -> f64) -> f64 {
+    fn apply(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
         match self {
             Op::Neg(_) => -get(0),
             Op::Add(..) => get(0) + get(1),
@@ -301,7 +314,7 @@ impl Op {
             Op::Pow(..) => get(0).powf(get(1)),
             Op::Extreme(f, ..) => f.apply(get(0), get(1)),
             Op::Table(lookup, ..) => {
-                lookup.apply(std::array::from_fn(|k| if k < lookup.variables() { get(k) } else { 0.0 }))
+                table(lookup, std::array::from_fn(|k| if k < lookup.variables() { get(k) } else { 0.0 }))
             }
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
         }

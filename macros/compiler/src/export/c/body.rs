@@ -5,7 +5,7 @@ use super::pieces::{Piece, Statement};
 use super::scalar::constant;
 use super::support::Support;
 use crate::catalogue::Argument;
-use crate::expr::{Extreme, Function as Elementary};
+use crate::expr::{Extreme, Function as Elementary, Lookup};
 use crate::lower::{Angles, Op, Operand, Program};
 use crate::mechanism::Quantity;
 use std::fmt::Write;
@@ -24,6 +24,8 @@ pub struct Scope<'a> {
     pub arguments: &'a [Argument],
     /// The members of the struct of parameters.
     pub parameters: &'a [String],
+    /// Those of them that are tables.
+    pub tables: &'a [String],
 }
 
 struct Writer<'a> {
@@ -181,8 +183,9 @@ impl Writer<'_> {
             Op::Pow(a, b) => self.call("pow", &[a, b]),
             Op::Extreme(Extreme::Min, a, b) => self.call("fmin", &[a, b]),
             Op::Extreme(Extreme::Max, a, b) => self.call("fmax", &[a, b]),
-            // Refused before, as are lanes.
-            Op::Table(..) | Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain("missing".to_string()),
+            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
+            // Refused before.
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain("missing".to_string()),
         }
     }
 
@@ -196,6 +199,21 @@ impl Writer<'_> {
             }
             other => other.name().to_string(),
         }
+    }
+
+    fn lookup(&mut self, lookup: Lookup, x: [Operand; 3]) -> Piece {
+        self.support.tabulated = true;
+        let count = lookup.variables();
+        let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand(*o)).collect();
+        let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
+        let orders: Vec<String> = lookup.orders().iter().map(ToString::to_string).collect();
+        let table = self.scope.tables.get(lookup.table()).map_or("missing", String::as_str);
+        let text = format!(
+            "tabulated(&self->{table}, {count}, (const double[]){{{}}}, (const int[]){{{}}})",
+            x.join(", "),
+            orders.join(", ")
+        );
+        Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
     }
 
     fn infix(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> Piece {

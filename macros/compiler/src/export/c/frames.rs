@@ -47,15 +47,11 @@ const ACCESSES: [Access; 4] = [
     },
 ];
 
-fn timed(o: &Outline<'_>, arguments: &[Argument]) -> Vec<Argument> {
-    o.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
-}
-
 fn signature(o: &Outline<'_>, access: &Access) -> String {
-    let spelled = o.spelled("int", access.name, &timed(o, access.arguments), &["result"]);
+    let spelled = o.spelled("int", access.name, &o.timed(access.arguments), &["result"]);
     // The frame comes first, but for the parameters.
     let open = spelled.find('(').map_or(0, |at| at + 1);
-    let at = if o.parameters.is_empty() { open } else { spelled.find(", ").map_or(open, |at| at + 2) };
+    let at = if !o.has_own() { open } else { spelled.find(", ").map_or(open, |at| at + 2) };
     format!("{}int frame, {}", &spelled[..at], &spelled[at..])
 }
 
@@ -96,7 +92,7 @@ pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String
     write_frame_steps(&mut text, frames, o, support);
     for access in &ACCESSES {
         let body = access_body(access, o, most);
-        let unused = o.unused(&body, &timed(o, access.arguments), &["result"]);
+        let unused = o.unused(&body, &o.timed(access.arguments), &["result"]);
         let _ = writeln!(text, "{} {{\n{unused}{body}}}\n", signature(o, access));
     }
     text
@@ -132,7 +128,7 @@ struct Step<'a> {
 
 fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut Support) {
     let mut body = String::new();
-    let scope = Scope { arguments: &step.arguments, parameters: o.parameters };
+    let scope = Scope { arguments: &step.arguments, parameters: o.parameters, tables: o.tables };
     for (k, (program, is_copy)) in step.programs.iter().enumerate() {
         let _ = writeln!(body, "    case {k}: {{");
         if *is_copy {
@@ -159,22 +155,22 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
     let steps = [
         Step {
             name: "link_placement",
-            arguments: [timed(o, &[Q]), vec![PLACED]].concat(),
+            arguments: [o.timed(&[Q]), vec![PLACED]].concat(),
             programs: of(|l| &l.placement),
         },
         Step {
             name: "link_twist",
-            arguments: [timed(o, &[Q, V]), vec![given(6)]].concat(),
+            arguments: [o.timed(&[Q, V]), vec![given(6)]].concat(),
             programs: of(|l| &l.twist),
         },
         Step {
             name: "link_acceleration",
-            arguments: [timed(o, &[Q, V, A]), vec![given(12)]].concat(),
+            arguments: [o.timed(&[Q, V, A]), vec![given(12)]].concat(),
             programs: of(|l| &l.acceleration),
         },
         Step {
             name: "link_columns",
-            arguments: [timed(o, &[Q]), vec![PLACED, Argument::Given("o", 12, 3)]].concat(),
+            arguments: [o.timed(&[Q]), vec![PLACED, Argument::Given("o", 12, 3)]].concat(),
             programs: of(|l| &l.columns),
         },
     ];
@@ -214,7 +210,7 @@ fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, 
 fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String {
     let has_links = most.is_some();
     let frames = format!("{}_FRAMES", o.prefix.to_ascii_uppercase());
-    let own = if o.parameters.is_empty() { "" } else { "self, " };
+    let own = if o.has_own() { "self, " } else { "" };
     let time = if o.time { "t, " } else { "" };
     let mut body = format!("    if (frame < 0 || frame >= {frames}) {{\n        return 1;\n    }}\n");
     // Placement, twist and acceleration, one after another.

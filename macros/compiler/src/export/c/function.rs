@@ -5,7 +5,7 @@ use super::composed;
 use super::docs;
 use super::names::letters;
 use super::support::Support;
-use crate::catalogue::{Argument, Called, Shape};
+use crate::catalogue::{Argument, Called, Id, Record, Shape};
 use crate::derive::Function;
 use crate::lower::Operand;
 use crate::mechanism::Quantity;
@@ -17,6 +17,8 @@ pub struct Outline<'a> {
     pub prefix: String,
     /// The members of the struct of parameters, none if there are no parameters.
     pub parameters: &'a [String],
+    /// The members that are tables.
+    pub tables: &'a [String],
     /// `NQ`.
     pub nq: usize,
     /// `NV`.
@@ -27,6 +29,8 @@ pub struct Outline<'a> {
     pub time: bool,
     /// How many passive forces others call for, and how many derivatives of them.
     pub passive: [usize; 2],
+    /// There are derivatives of the dynamics.
+    pub derivatives: bool,
 }
 
 /// A result: its name, rows and columns.
@@ -35,6 +39,9 @@ pub type Given = (&'static str, usize, usize);
 /// The arrays that a function's results go into; none for one that returns a number.
 pub fn results(shape: Shape) -> Vec<Given> {
     match shape {
+        Shape::Record(Record::InputDerivatives(n, m)) => {
+            vec![("by_q", n, n), ("by_v", n, n), ("by_u", n, m)]
+        }
         Shape::Scalar | Shape::Record(_) | Shape::Symmetric(_) => Vec::new(),
         Shape::Vector(n) | Shape::Array(n) => vec![("result", n, 1)],
         Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],
@@ -61,6 +68,16 @@ pub fn results(shape: Shape) -> Vec<Given> {
 }
 
 impl Outline<'_> {
+    /// Functions take a struct of parameters first.
+    pub fn has_own(&self) -> bool {
+        !(self.parameters.is_empty() && self.tables.is_empty())
+    }
+
+    /// Time, if functions take it, and further arguments.
+    pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
+        self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
+    }
+
     /// How many numbers an argument has.
     pub fn length(&self, argument: Argument) -> usize {
         match argument {
@@ -86,7 +103,7 @@ impl Outline<'_> {
     /// The same with any results.
     pub fn spelled(&self, kind: &str, name: &str, arguments: &[Argument], given: &[&str]) -> String {
         let mut list: Vec<String> = Vec::new();
-        if !self.parameters.is_empty() {
+        if self.has_own() {
             list.push(format!("const {} *self", self.prefix));
         }
         list.extend(arguments.iter().filter(|a| is_passed(a)).map(|a| match a {
@@ -100,7 +117,7 @@ impl Outline<'_> {
 
     /// A call of a function with the arguments by name, and what stands behind them.
     pub fn call(&self, name: &str, arguments: &[&str], given: &[&str]) -> String {
-        let own = (!self.parameters.is_empty()).then_some("self");
+        let own = self.has_own().then_some("self");
         let time = self.time.then_some("t");
         let list: Vec<&str> = own
             .into_iter()
@@ -113,7 +130,7 @@ impl Outline<'_> {
 
     /// Lines that keep compilers from saying that an argument, or an array for results, is not used.
     pub fn unused(&self, body: &str, arguments: &[Argument], given: &[&str]) -> String {
-        let own = (!self.parameters.is_empty()).then_some("self");
+        let own = self.has_own().then_some("self");
         let passed = arguments.iter().filter(|a| is_passed(a)).map(|a| a.name());
         let names = own.into_iter().chain(passed).chain(given.iter().copied());
         names.filter(|name| !mentions(body, name)).map(|name| format!("    (void)({name});\n")).collect()
@@ -139,12 +156,20 @@ pub fn plain(name: &str) -> String {
     letters(name.trim_start_matches('_'))
 }
 
+/// What the function of [`Id::InputDerivatives`] gives.
+const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
+
+/// The name of a function for others.
+pub fn spoken(f: &Function) -> String {
+    if f.id == Id::InputDerivatives { "generalized_forces_derivatives".to_string() } else { plain(&f.name) }
+}
+
 /// A definition, with its documentation if it is for others.
 pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     let mut body = String::new();
     let scope_arguments: Vec<Argument> =
         f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect();
-    let scope = Scope { arguments: &scope_arguments, parameters: o.parameters };
+    let scope = Scope { arguments: &scope_arguments, parameters: o.parameters, tables: o.tables };
     for called in Called::ALL {
         write_call(&mut body, f, called, o);
     }
@@ -160,22 +185,32 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
         | Shape::CalledForward(_)
         | Shape::CalledLinear(..) => composed::write(&mut body, f, &scope, o, support),
         _ => {
-            let results = results(f.shape);
+            let mut results = results(f.shape);
+            // The forces themselves have a function of their own.
+            if f.id == Id::InputDerivatives {
+                results.insert(0, ("forces", o.nv, 1));
+                let _ = writeln!(body, "    double forces[{}];", o.nv.max(1));
+            }
             write_program(&mut body, &f.program, &scope, &|k| place(&results, k), support);
+            if f.id == Id::InputDerivatives {
+                body.push_str("    (void)(forces);\n");
+            }
         }
     }
     let given: Vec<&str> = results(f.shape).iter().map(|(name, ..)| *name).collect();
     let unused = o.unused(&body, &f.arguments, &given);
-    let hidden = if f.is_hidden() { "static " } else { "" };
-    let signature = o.signature(&plain(&f.name), &f.arguments, f.shape);
+    let hidden = if f.is_hidden() && f.id != Id::InputDerivatives { "static " } else { "" };
+    let signature = o.signature(&spoken(f), &f.arguments, f.shape);
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
 
 /// A declaration with its documentation.
 pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     let results = results(f.shape);
-    let docs = docs::function(&f.docs, &f.arguments, &results, o);
-    format!("{docs}{};\n", o.signature(&plain(&f.name), &f.arguments, f.shape))
+    let own = [INPUT_DERIVATIVES.to_string()];
+    let about = if f.id == Id::InputDerivatives { &own } else { f.docs.as_slice() };
+    let docs = docs::function(about, &f.arguments, &results, o);
+    format!("{docs}{};\n", o.signature(&spoken(f), &f.arguments, f.shape))
 }
 
 /// Where an output stands among results that follow one another.

@@ -4,15 +4,19 @@
 //! any number of threads may call them.
 
 mod body;
+mod casadi;
 mod composed;
 mod docs;
 mod frames;
 mod function;
+mod manifold;
 mod names;
 mod pieces;
 mod scalar;
 mod source;
+mod steps;
 mod support;
+mod tables;
 
 pub(super) use docs::{safe, without_links, wrapped};
 pub use names::{capitals, identifier, prefix};

@@ -105,6 +105,80 @@ const RESERVED: &[&str] = &[
     "math_errhandling",
 ];
 
+/// Functions and constants that sources and the headers they include have.
+const OF_SOURCES: &[&str] = &[
+    "accelerations_under",
+    "add_products",
+    "atmosphere",
+    "block",
+    "bracket",
+    "cbrt",
+    "ceil",
+    "complete",
+    "cross_into",
+    "dot_of",
+    "erf",
+    "even_slopes",
+    "expm1",
+    "floor",
+    "fourth_bracket",
+    "gamma",
+    "hypot",
+    "invert",
+    "isa_pressure",
+    "isa_temperature",
+    "isa_lapse_rate",
+    "jacobian_factors",
+    "ldexp",
+    "left_jacobian",
+    "lgamma",
+    "linear_motion",
+    "log1p",
+    "log10",
+    "log2",
+    "logb",
+    "moved",
+    "moved_block",
+    "minus_products",
+    "mul_add",
+    "mul_sub",
+    "multiply_turns",
+    "neg_mul_add",
+    "normalise",
+    "own",
+    "plus_into",
+    "plus_part",
+    "product",
+    "put_columns",
+    "rate_of",
+    "remainder",
+    "rint",
+    "rotate",
+    "round",
+    "scalb",
+    "second_bracket",
+    "signgam",
+    "signum",
+    "sin_cos",
+    "solve",
+    "tabulated",
+    "tgamma",
+    "trunc",
+    "weights_around",
+    "y0",
+    "y1",
+    "j0",
+    "j1",
+    "yn",
+    "jn",
+    "index",
+    "time",
+    "clock",
+    "div",
+    "abs",
+    "exp2",
+];
+
 /// What may stand behind other letters in a name: signs of ASCII become underscores, letters of other alphabets their numbers.
 pub fn letters(name: &str) -> String {
     let mut text = String::new();
@@ -127,6 +201,16 @@ pub fn identifier(name: &str) -> String {
     }
     let shouts = text.len() > 2 && text.chars().all(|c| !c.is_ascii_lowercase());
     if shouts || RESERVED.contains(&text.as_str()) {
+        text.push('_');
+    }
+    text
+}
+
+/// What every name begins with, which is the name of a type as well: none of the mathematical library, nor of functions that sources
+/// have for themselves.
+pub fn prefix_identifier(name: &str) -> String {
+    let mut text = identifier(name);
+    if OF_SOURCES.contains(&text.as_str()) || super::scalar::FUNCTIONS.contains(&text.trim_end_matches('f')) {
         text.push('_');
     }
     text

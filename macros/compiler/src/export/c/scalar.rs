@@ -1,7 +1,7 @@
 //! Numbers: everything is written for `double`, and turned into `float` word by word where that is asked for.
 
 /// Functions of `math.h` that are used.
-const FUNCTIONS: &[&str] = &[
+pub const FUNCTIONS: &[&str] = &[
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
     "fabs", "copysign", "pow", "fmin", "fmax", "fma",
 ];

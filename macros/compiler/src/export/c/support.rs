@@ -21,6 +21,12 @@ pub struct Support {
     pub balls: bool,
     /// Free joints.
     pub motions: bool,
+    /// Tables.
+    pub tabulated: bool,
+    /// Derivatives on the configuration space, of ball joints and of free ones.
+    pub jacobians: [bool; 2],
+    /// Products of matrices with what changes in a step, of so many columns.
+    pub sums: bool,
 }
 
 impl Support {
@@ -67,8 +73,8 @@ impl Support {
         }
     }
 
-    /// The definitions, for a mechanism of so many velocities.
-    pub fn text(self, nv: usize) -> String {
+    /// The definitions, for a mechanism of so many velocities whose names begin with this.
+    pub fn text(self, nv: usize, prefix: &str) -> String {
         let angles = match self.single {
             true => {
                 [include_str!("templates/single_angles.c"), include_str!("templates/four_single_angles.c")]
@@ -89,6 +95,12 @@ impl Support {
             (self.balls || self.motions, include_str!("templates/turns.c")),
             (self.balls, include_str!("templates/ball_rates.c")),
             (self.motions, include_str!("templates/motions.c")),
+            (self.jacobians.contains(&true), include_str!("templates/fourth_bracket.c")),
+            (self.jacobians[0], include_str!("templates/left_jacobian.c")),
+            (self.jacobians[0], include_str!("templates/ball_jacobians.c")),
+            (self.jacobians[1], include_str!("templates/motion_jacobians.c")),
+            (self.sums, include_str!("templates/sums.c")),
+            (self.tabulated, include_str!("templates/tabulated.c")),
         ];
         let mut texts: Vec<String> =
             parts.iter().filter(|(needed, _)| *needed).map(|(_, text)| (*text).to_string()).collect();
@@ -98,7 +110,7 @@ impl Support {
                 "static double {name}(double h) {{\n    double temperature, pressure, rate;\n    atmosphere(h, &temperature, &pressure, &rate);\n    return {variable};\n}}\n"
             )
         }));
-        texts.join("\n").replace("@NV@", &nv.max(1).to_string())
+        texts.join("\n").replace("@NV@", &nv.max(1).to_string()).replace("@PREFIX@", prefix)
     }
 }
 

@@ -1,0 +1,193 @@
+//! `--table NAME=FILE`: the figures of a table, a line of comma-separated values for each point of its grid: the variables, then the value.
+
+use crate::Stop;
+use clap::ArgMatches;
+use linkwork::{Table, TableError};
+use linkwork_compiler::expr::Lookup;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// The points of each axis.
+    pub axes: Vec<Vec<f64>>,
+    /// The values in the order of the points, those along the last axis side by side.
+    pub values: Vec<f64>,
+    /// Slopes are continuous.
+    pub smooth: bool,
+    /// It goes on beyond its edges.
+    pub extrapolated: bool,
+}
+
+/// A table that is looked up.
+#[derive(Clone, Copy)]
+pub enum Looked {
+    /// Of one variable.
+    One(Table<1>),
+    /// Of two.
+    Two(Table<2>),
+    /// Of three.
+    Three(Table<3>),
+}
+
+impl Looked {
+    /// The derivative of some orders.
+    pub fn value(self, lookup: Lookup, x: [f64; 3]) -> f64 {
+        let order = |k: usize| lookup.order(k) as u8;
+        match self {
+            Looked::One(table) => table.derivative([x[0]], [order(0)]),
+            Looked::Two(table) => table.derivative([x[0], x[1]], [order(0), order(1)]),
+            Looked::Three(table) => table.derivative(x, [order(0), order(1), order(2)]),
+        }
+    }
+}
+
+impl Grid {
+    fn parse(text: &str, variables: usize) -> Result<Grid, String> {
+        let mut points: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
+        let mut axes: Vec<Vec<f64>> = vec![Vec::new(); variables];
+        let mut is_first = true;
+        for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+            let found: Option<Vec<f64>> =
+                fields.iter().map(|field| field.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+            let may_name = std::mem::take(&mut is_first);
+            let Some(found) = found else {
+                // A line of names may come first.
+                if may_name && fields.iter().all(|field| field.parse::<f64>().is_err()) {
+                    continue;
+                }
+                return Err(format!("line {}: expected numbers, found `{}`", number + 1, line.trim()));
+            };
+            let Some((value, x)) = found.split_last().filter(|(_, x)| x.len() == variables) else {
+                return Err(format!(
+                    "line {}: expected {variables} variable{} and a value, found {} numbers",
+                    number + 1,
+                    if variables == 1 { "" } else { "s" },
+                    found.len()
+                ));
+            };
+            axes.iter_mut().zip(x).for_each(|(axis, x)| axis.push(*x + 0.0));
+            if points.insert(x.iter().map(|x| (*x + 0.0).to_bits()).collect(), *value).is_some() {
+                return Err(format!("line {}: this point stands there twice", number + 1));
+            }
+        }
+        for axis in &mut axes {
+            axis.sort_by(f64::total_cmp);
+            axis.dedup();
+        }
+        let count: usize = axes.iter().map(Vec::len).product();
+        let mut values = Vec::with_capacity(points.len());
+        for k in 0..count.min(points.len() + 1) {
+            let mut rest = k;
+            let mut at: Vec<f64> = axes
+                .iter()
+                .rev()
+                .map(|axis| {
+                    let x = axis[rest % axis.len()];
+                    rest /= axis.len();
+                    x
+                })
+                .collect();
+            at.reverse();
+            let value = points.get(&at.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+            values.push(*value.ok_or_else(|| format!("the grid has no value at {at:?}"))?);
+        }
+        let grid = Grid { axes, values, smooth: false, extrapolated: false };
+        grid.looked().map_err(|error| error.to_string())?;
+        Ok(grid)
+    }
+
+    /// The table; its figures live as long as the program.
+    pub fn looked(&self) -> Result<Looked, TableError> {
+        let kept = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
+        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| kept(axis)).collect();
+        let values = kept(&self.values);
+        match axes[..] {
+            [a] => Table::new([a], values).map(|table| Looked::One(self.shaped(table))),
+            [a, b] => Table::new([a, b], values).map(|table| Looked::Two(self.shaped(table))),
+            [a, b, c] => Table::new([a, b, c], values).map(|table| Looked::Three(self.shaped(table))),
+            _ => Err(TableError::Size { expected: 3, found: axes.len() }),
+        }
+    }
+
+    fn shaped<const N: usize>(&self, table: Table<N>) -> Table<N> {
+        let table = if self.smooth { table.smooth() } else { table };
+        if self.extrapolated { table.extrapolated() } else { table }
+    }
+}
+
+/// The tables that are given, in the order of the mechanism's, which come with the numbers of their variables.
+pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
+    let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
+    for given in matches.get_many::<String>("table").into_iter().flatten() {
+        let fail = |why: String| Stop::Failure(format!("`--table {given}`: {why}"));
+        let (name, rest) = given.split_once('=').ok_or_else(|| fail("expected NAME=FILE".to_string()))?;
+        let at = tables.iter().position(|(known, _)| known == name.trim()).ok_or_else(|| {
+            let known: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
+            let known = if known.is_empty() {
+                "there is none".to_string()
+            } else {
+                format!("but {}", known.join(", "))
+            };
+            fail(format!("there is no table `{}`, {known}", name.trim()))
+        })?;
+        let (mut smooth, mut extrapolated, mut file) = (false, false, rest);
+        while let Some((before, word)) = file.rsplit_once(',') {
+            match word.trim() {
+                "smooth" => smooth = true,
+                "extrapolated" => extrapolated = true,
+                _ => break,
+            }
+            file = before;
+        }
+        let text = std::fs::read_to_string(Path::new(file.trim()))
+            .map_err(|error| fail(format!("cannot read {file}: {error}")))?;
+        let grid = Grid::parse(&text, tables[at].1).map_err(|why| fail(format!("{file}: {why}")))?;
+        found[at] = Some(Grid { smooth, extrapolated, ..grid });
+    }
+    let missing: Vec<String> = (tables.iter().zip(&found))
+        .filter(|(_, grid)| grid.is_none())
+        .map(|((name, _), _)| format!("--table {name}=FILE"))
+        .collect();
+    match missing.is_empty() {
+        true => Ok(found.into_iter().flatten().collect()),
+        false => Err(Stop::Failure(format!("tables without figures: {}", missing.join(" ")))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Grid;
+
+    #[test]
+    fn points_come_in_any_order() {
+        let grid =
+            Grid::parse("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2).unwrap_or_else(|why| panic!("{why}"));
+        assert_eq!(
+            (grid.axes, grid.values),
+            (vec![vec![0.0, 1.0], vec![0.0, 5.0]], vec![1.0, 2.0, 3.0, 4.0])
+        );
+    }
+
+    #[test]
+    fn what_is_no_grid_is_told() {
+        for (text, part) in [
+            ("", "fewer than two points"),
+            ("0,1\n", "fewer than two points"),
+            ("0,1\n0,2\n", "line 2: this point stands there twice"),
+            ("0,1\n-0,2\n", "line 2: this point stands there twice"),
+            ("0,1,2\n", "line 1: expected 1 variable and a value, found 3 numbers"),
+            ("0,1\nx,2\n", "line 2: expected numbers, found `x,2`"),
+            ("0,1\n1,inf\n", "line 2: expected numbers"),
+        ] {
+            assert!(
+                Grid::parse(text, 1).is_err_and(|why| why.contains(part)),
+                "{text}: {:?}",
+                Grid::parse(text, 1)
+            );
+        }
+        assert!(Grid::parse("0,0,1\n1,1,2\n", 2).is_err_and(|why| why.contains("no value at [0.0, 1.0]")));
+    }
+}

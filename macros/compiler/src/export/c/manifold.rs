@@ -1,0 +1,159 @@
+//! The configuration space: motions of configurations, differences of them, and their derivatives.
+
+use super::docs;
+use super::function::Outline;
+use super::support::Support;
+use crate::mechanism::Chart;
+use std::fmt::Write;
+
+/// `integrate`, `difference` and `tangent_rate`: name, arguments, and what the result is made of.
+const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
+    (
+        "integrate",
+        ["q", "dv"],
+        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised. The result may be `q` itself.",
+    ),
+    (
+        "difference",
+        ["from", "to"],
+        "The velocity that leads from one configuration to another in one unit of time.",
+    ),
+    ("tangent_rate", ["dv", "v"], "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`."),
+];
+
+fn own(o: &Outline<'_>) -> String {
+    if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() }
+}
+
+fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
+    let own = own(o);
+    format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
+}
+
+/// Definitions.
+pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
+    for (name, [a, b], _) in MANIFOLD {
+        let mut body = String::new();
+        for chart in charts {
+            let (kind, q, v) = match *chart {
+                Chart::Plain(q, v) => {
+                    let _ = match name {
+                        "integrate" => writeln!(body, "    result[{q}] = q[{q}] + dv[{v}];"),
+                        "difference" => writeln!(body, "    result[{v}] = to[{q}] - from[{q}];"),
+                        _ => writeln!(body, "    result[{v}] = v[{v}];"),
+                    };
+                    continue;
+                }
+                Chart::Ball(q, v) => ("ball", q, v),
+                Chart::Free(q, v) => ("free", q, v),
+            };
+            support.balls |= kind == "ball";
+            support.motions |= kind == "free";
+            let [r, x, y] = match name {
+                "integrate" => [q, q, v],
+                "difference" => [v, q, q],
+                _ => [v, v, v],
+            };
+            let _ = writeln!(body, "    {kind}_{name}({a} + {x}, {b} + {y}, result + {r});");
+        }
+        let unused = o.unused(&body, &[], &[a, b, "result"]);
+        let _ = writeln!(out, "{} {{\n{unused}{body}}}\n", signature(o, name, [a, b]));
+    }
+    if o.derivatives {
+        TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
+    }
+}
+
+/// A function's derivatives: its name, what they take, their names, and the value of the first one for plain coordinates.
+struct ToFirstOrder {
+    name: &'static str,
+    arguments: &'static [&'static str],
+    results: [&'static str; 2],
+    plain: &'static str,
+    docs: &'static str,
+}
+
+const TO_FIRST_ORDER: [ToFirstOrder; 2] = [
+    ToFirstOrder {
+        name: "integrate",
+        arguments: &["dv"],
+        results: ["by_q", "by_dv"],
+        plain: "1.0",
+        docs: "How the result of `integrate` moves with `q` and with `dv`, at any `q`, for ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
+    },
+    ToFirstOrder {
+        name: "tangent_rate",
+        arguments: &["dv", "v"],
+        results: ["by_dv", "by_v"],
+        plain: "0.0",
+        docs: "Derivatives of `tangent_rate`: NV by NV each, column by column; zero and the identity for plain coordinates.",
+    },
+];
+
+fn derivatives_signature(o: &Outline<'_>, of: &ToFirstOrder) -> String {
+    let given = of.arguments.iter().map(|name| format!("const double *{name}"));
+    let results = of.results.iter().map(|name| format!("double *{name}"));
+    let list: Vec<String> = given.chain(results).collect();
+    format!("void {}_{}_derivatives({}{})", o.prefix, of.name, own(o), list.join(", "))
+}
+
+fn define_derivatives(
+    out: &mut String,
+    of: &ToFirstOrder,
+    charts: &[Chart],
+    o: &Outline<'_>,
+    support: &mut Support,
+) {
+    let [first, second] = of.results;
+    let mut body = format!(
+        "    for (int k = 0; k < {0} * {0}; ++k) {{\n        {first}[k] = k % {1} == 0 ? {2} : 0.0;\n        {second}[k] = k % {1} == 0 ? 1.0 : 0.0;\n    }}\n",
+        o.nv,
+        o.nv + 1,
+        of.plain
+    );
+    for chart in charts {
+        let Some((kind, at, n)) = block(*chart, support) else { continue };
+        let given: Vec<String> = of.arguments.iter().map(|name| format!("{name} + {at}")).collect();
+        let _ = writeln!(
+            body,
+            "    {{\n        double a[{0}], b[{0}];\n        {kind}_{1}_derivatives({2}, a, b);\n        for (int k = 0; k < {0}; ++k) {{\n            const int at = ({at} + k / {n}) * {3} + {at} + k % {n};\n            {first}[at] = a[k];\n            {second}[at] = b[k];\n        }}\n    }}",
+            n * n,
+            of.name,
+            given.join(", "),
+            o.nv,
+        );
+    }
+    let names = [of.arguments, &of.results].concat();
+    let unused = o.unused(&body, &[], &names);
+    let _ = writeln!(out, "{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
+}
+
+/// The kind of a joint whose displacements are not added, its place among velocities, and how many it has; what is needed for its
+/// derivatives is asked for.
+pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize, usize)> {
+    match chart {
+        Chart::Plain(..) => None,
+        Chart::Ball(_, v) => {
+            (support.balls, support.jacobians[0]) = (true, true);
+            Some(("ball", v, 3))
+        }
+        Chart::Free(_, v) => {
+            (support.motions, support.jacobians[1]) = (true, true);
+            Some(("free", v, 6))
+        }
+    }
+}
+
+/// Declarations.
+pub fn declare(o: &Outline<'_>) -> String {
+    let mut text = String::new();
+    for (name, arguments, about) in MANIFOLD {
+        text.push_str(&docs::wrapped(about, "/* ", " * "));
+        let _ = writeln!(text, " */\n{};\n", signature(o, name, arguments));
+    }
+    for of in TO_FIRST_ORDER.iter().filter(|_| o.derivatives) {
+        text.push_str(&docs::wrapped(of.docs, "/* ", " * "));
+        let _ = writeln!(text, " */\n{};\n", derivatives_signature(o, of));
+    }
+    text
+}

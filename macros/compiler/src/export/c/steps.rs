@@ -1,0 +1,248 @@
+//! Discrete steps of a tree mechanism under inputs that are held, and their Jacobians: what filters, iLQR and multiple shooting are
+//! made of. Derivatives are carried forwards through the stages, as the runtime does it (`linkwork::discrete`).
+//!
+//! What changes with the start of a step stands in one array: the value, then its derivatives by `q`, `v`, `u` and, where time is
+//! not in the equations, by the length of the step; `NV` numbers each.
+
+use super::docs;
+use super::function::Outline;
+use super::manifold::block;
+use super::support::Support;
+use crate::catalogue::{Argument, Id};
+use crate::derive::Output;
+use crate::mechanism::{Chart, Model};
+use std::fmt::Write;
+
+/// Names of the methods with what they are.
+const METHODS: [(&str, &str); 2] = [
+    (
+        "semi_implicit_euler",
+        "the semi-implicit method of Euler: the velocity at the end by the accelerations at the start, then the configuration by the velocity at the end",
+    ),
+    ("rk4", "the classical method of Runge and Kutta"),
+];
+
+const PUT_H: &str = "        by_h[k] = motion[BY_H + k];\n        by_h[@N@ + k] = v[BY_H + k];\n";
+const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[BY_U + j * @N@ + k];\n        }\n";
+
+const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
+const NEXT: [&str; 2] = ["next_q", "next_v"];
+
+/// Which steps a mechanism has.
+pub struct Steps<'a> {
+    charts: &'a [Chart],
+    /// None for a mechanism with constraints or contacts, whose steps need more than C has here.
+    pub has_steps: bool,
+    /// Steps have Jacobians.
+    pub has_transitions: bool,
+    /// Arguments of the inputs' forces, none without inputs.
+    inputs: Option<&'static [&'static str]>,
+    /// The blocks of the derivatives of the inputs' forces that are not zero: by `q` and by `v`.
+    changing: [bool; 2],
+}
+
+impl<'a> Steps<'a> {
+    /// Those of a mechanism.
+    pub fn of(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
+        let find = |id: Id| output.functions.iter().find(|f| f.id == id);
+        let taken = output.functions.iter().any(|f| {
+            METHODS.iter().any(|(method, _)| {
+                [format!("{method}_step"), format!("{method}_transition")].contains(&f.name)
+            })
+        });
+        let has_steps =
+            find(Id::ForwardDynamics).is_some() && model.contacts.is_empty() && !taken && model.nv() > 0;
+        let nv = model.nv();
+        let derivatives = find(Id::InputDerivatives);
+        let changing = |first: usize| {
+            derivatives.is_some_and(|f| (first..first + nv * nv).any(|k| !super::function::is_zero(f, k)))
+        };
+        Steps {
+            charts: &output.charts,
+            has_steps,
+            has_transitions: has_steps
+                && derivatives.is_some()
+                && find(Id::ForwardDynamicsDerivatives).is_some(),
+            inputs: (model.nu() > 0).then_some(if model.velocity_inputs {
+                &["q", "v", "u"]
+            } else {
+                &["q", "u"]
+            }),
+            changing: [changing(nv), changing(nv + nv * nv)],
+        }
+    }
+
+    /// Declarations.
+    pub fn declare(&self, o: &Outline<'_>) -> String {
+        let mut text = String::new();
+        for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
+            let says = format!(
+                "One step of {about}; `h` seconds long, under inputs `u` that are held: configuration and velocity after it. They may go where `q` and `v` came from."
+            );
+            text.push_str(&docs::function(&[says], &o.timed(&STATE), &next(o), o));
+            let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_step"), &NEXT));
+            if !self.has_transitions {
+                continue;
+            }
+            let by_h = if o.time { "" } else { ", and `by_h` how it changes with the length of the step" };
+            let says = format!(
+                "The step of `{method}_step` with its Jacobians, exact to rounding: with `x` the displacement of the configuration (as `integrate` takes it), then the change of the velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the change of the inputs{by_h}."
+            );
+            let (n, m) = (o.nv, o.nu);
+            let mut results = next(o);
+            results.extend([("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]);
+            results.extend((!o.time).then_some(("by_h", 2 * n, 1)));
+            text.push_str(&docs::function(&[says], &o.timed(&STATE), &results, o));
+            let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_transition"), &transition(o)));
+        }
+        text
+    }
+
+    /// Definitions.
+    pub fn define(&self, out: &mut String, o: &Outline<'_>, support: &mut Support) {
+        if !self.has_steps {
+            return;
+        }
+        out.push_str(&self.filled(include_str!("templates/steps.c"), o, support));
+        if self.has_transitions {
+            support.sums = true;
+            out.push_str(&self.filled(include_str!("templates/transitions.c"), o, support));
+        }
+    }
+
+    /// A template with the mechanism's sizes, names and calls.
+    fn filled(&self, template: &str, o: &Outline<'_>, support: &mut Support) -> String {
+        let own = if o.has_own() { "self, " } else { "" };
+        let own_declared = if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() };
+        let [t, t_declared] = if o.time { ["t, ", "double t, "] } else { ["", ""] };
+        let later = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
+        let mut text = template.to_string();
+        let mut put = |word: &str, by: &str| text = text.replace(word, by);
+        put("@FORCES@", &self.forces(o));
+        put("@LINEAR@", &self.linear(o));
+        let has_blocks = self.charts.iter().any(|chart| !matches!(chart, Chart::Plain(..)));
+        put("@MOVED_BLOCK@", if has_blocks { include_str!("templates/moved_block.c") } else { "" });
+        put("@MOVED@", &self.blocks(o, "integrate", support));
+        put("@RATE@", &self.blocks(o, "tangent_rate", support));
+        for (method, _) in METHODS {
+            put(&format!("@{method}_step@"), &signature(o, &format!("{method}_step"), &NEXT));
+            put(
+                &format!("@{method}_transition@"),
+                &signature(o, &format!("{method}_transition"), &transition(o)),
+            );
+        }
+        let [h_declared, h_passed] = if o.time { ["", ""] } else { [", double *by_h", ", by_h"] };
+        put("@H_DECLARED@", h_declared);
+        put("@H_PASSED@", h_passed);
+        put("@PUT_H@", if o.time { "" } else { PUT_H });
+        put("@PUT_INPUTS@", if o.nu == 0 { "" } else { PUT_INPUTS });
+        put("@UNUSED@", if o.nu == 0 { "    (void)(by_input);\n" } else { "" });
+        put("@PERIOD@", if o.time { "0" } else { "1" });
+        put("@S@", if o.time { "        const double s = part * h;\n" } else { "" });
+        put("@MOVED_PLAIN@", &self.plain(o));
+        put("@OWN@", own);
+        put("@OWN_DECLARED@", &own_declared);
+        put("@T@", t);
+        put("@T_DECLARED@", t_declared);
+        put("@LATER@", &later("s"));
+        put("@PREFIX@", &o.prefix);
+        put("@NQ@", &o.nq.max(1).to_string());
+        put("@NV@", &o.nv.max(1).to_string());
+        put("@N@", &o.nv.to_string());
+        put("@M@", &o.nu.to_string());
+        put("@NU@", &o.nu.max(1).to_string());
+        put("@COLUMNS@", &(2 * o.nv + o.nu + usize::from(!o.time)).to_string());
+        text
+    }
+
+    /// The generalized forces of the inputs into `tau`.
+    fn forces(&self, o: &Outline<'_>) -> String {
+        match self.inputs {
+            Some(inputs) => format!("{};", o.call("generalized_forces", inputs, &["tau"])),
+            None => format!(
+                "(void)(u);\n    for (int k = 0; k < {}; ++k) {{\n        tau[k] = 0.0;\n    }}",
+                o.nv
+            ),
+        }
+    }
+
+    /// The derivatives of the accelerations under inputs.
+    fn linear(&self, o: &Outline<'_>) -> String {
+        let call = o.call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "by_tau"]);
+        let mut text = format!("    {call};\n");
+        if o.nu == 0 {
+            text.push_str("    (void)(by_u);\n");
+            return text;
+        }
+        let of_inputs = o.call(
+            "generalized_forces_derivatives",
+            &["q", "v", "u"],
+            &["force_by_q", "force_by_v", "force_by_u"],
+        );
+        let _ = writeln!(
+            text,
+            "    double force_by_q[{0}], force_by_v[{0}], force_by_u[{1}];\n    {of_inputs};",
+            (o.nv * o.nv).max(1),
+            (o.nv * o.nu).max(1)
+        );
+        for (name, _) in ["q", "v"].iter().zip(self.changing).filter(|(_, changing)| *changing) {
+            let _ = writeln!(text, "    add_products({}, by_tau, force_by_{name}, by_{name});", o.nv);
+        }
+        let _ = writeln!(
+            text,
+            "    for (int k = 0; k < {}; ++k) {{\n        by_u[k] = 0.0;\n    }}\n    add_products({}, by_tau, force_by_u, by_u);",
+            o.nv * o.nu,
+            o.nu
+        );
+        text
+    }
+
+    /// Plain coordinates move as themselves, and with their displacement.
+    fn plain(&self, o: &Outline<'_>) -> String {
+        let all = self.charts.iter().filter_map(|chart| match chart {
+            Chart::Plain(_, v) => Some(format!("    motion[(1 + {v}) * {} + {v}] += 1.0;\n", o.nv)),
+            _ => None,
+        });
+        all.collect()
+    }
+
+    /// What joints whose displacements are not added do to columns.
+    fn blocks(&self, o: &Outline<'_>, function: &str, support: &mut Support) -> String {
+        let mut text = String::new();
+        for chart in self.charts {
+            let Some((kind, at, n)) = block(*chart, support) else { continue };
+            let _ = match function {
+                "integrate" => writeln!(
+                    text,
+                    "    {{\n        double by_q[{0}], by_dv[{0}];\n        {kind}_integrate_derivatives(displacement + {at}, by_q, by_dv);\n        moved_block({n}, {at}, by_dv, displacement, motion);\n        for (int k = 0; k < {0}; ++k) {{\n            motion[(1 + {at} + k / {n}) * {1} + {at} + k % {n}] += by_q[k];\n        }}\n    }}",
+                    n * n,
+                    o.nv
+                ),
+                _ => writeln!(
+                    text,
+                    "    {{\n        double by_dv[{0}], by_v[{0}], of_v[{1}];\n        {kind}_tangent_rate_derivatives(displacement + {at}, v + {at}, by_dv, by_v);\n        {kind}_tangent_rate(displacement + {at}, v + {at}, rate + {at});\n        moved_block({n}, {at}, by_dv, displacement, rate);\n        moved_block({n}, {at}, by_v, v, of_v);\n        for (int j = 1; j <= @COLUMNS@; ++j) {{\n            for (int k = {at}; k < {at} + {n}; ++k) {{\n                rate[j * {2} + k] += of_v[j * {2} + k];\n            }}\n        }}\n    }}",
+                    n * n,
+                    (1 + 2 * o.nv + o.nu + 1) * o.nv,
+                    o.nv
+                ),
+            };
+        }
+        text
+    }
+}
+
+fn next(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
+    vec![(NEXT[0], o.nq, 1), (NEXT[1], o.nv, 1)]
+}
+
+/// The results of a step with its Jacobians.
+fn transition(o: &Outline<'_>) -> Vec<&'static str> {
+    let by_h = (!o.time).then_some("by_h");
+    NEXT.into_iter().chain(["by_state", "by_input"]).chain(by_h).collect()
+}
+
+/// A signature with the length of the step after the inputs.
+fn signature(o: &Outline<'_>, name: &str, given: &[&str]) -> String {
+    let spelled = o.spelled("void", name, &o.timed(&STATE), given);
+    spelled.replacen("const double *u, ", "const double *u, double h, ", 1)
+}
