@@ -14,6 +14,8 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
+
 from ._mechanism import Error, Mechanism, load
 
 _HERE = Path(__file__).resolve().parent
@@ -39,6 +41,7 @@ def compile(
     *,
     options: str = "",
     name: str | None = None,
+    tables: dict | None = None,
     native: bool = True,
     batch: bool = True,
     derivatives: bool = True,
@@ -54,6 +57,10 @@ def compile(
             declaration as text.
         options: further arguments of the attribute, as in ``"base = free, inertia = trust"``.
         name: the struct, of a Rust file that has several.
+        tables: the figures of fields that are tables, by name: a path of a file of comma-separated values (for each point of the grid
+            a line with the variables, then the value), or ``(axes, values)`` with the points of each axis and an array that has as many
+            sides. Behind either may stand ``"smooth"`` and ``"extrapolated"``: ``(axes, values, "smooth")``, ``(path, "smooth")``.
+            The figures become constants of the library.
         native: for the processor at hand rather than for all of its kind.
         batch: also functions of eight states at once, for arrays of states. Takes longer to compile.
         derivatives: also derivatives of the dynamics, linear systems, and steps with Jacobians. Takes longer to compile.
@@ -68,6 +75,7 @@ def compile(
         FileNotFoundError: there is no such file.
     """
     text, path = _source(source)
+    written = {key: _table(key, table) for key, table in (tables or {}).items()}
     command = _command(quiet)
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         if path is None:
@@ -80,8 +88,10 @@ def compile(
             arguments += ["--with", words]
         if name is not None:
             arguments += ["--struct", name]
+        arguments += _table_arguments(written, folder)
         _run(arguments, None)
         origin = {"text": text, "path": None if text else str(path), "options": words, "name": name}
+        origin["tables"] = written
         return _built(Path(folder) / "crate", origin, native, quiet)
 
 
@@ -121,12 +131,44 @@ def view(origin, run, path):
             arguments += ["--struct", origin["name"]]
         for name, value in run.mechanism.parameters.items():
             arguments += ["--set", f"{name}={value!r}"]
+        arguments += _table_arguments(origin.get("tables", {}), folder)
         _run(arguments, None)
 
 
 def command(arguments: list[str]) -> int:
     """Runs Linkwork's command, as `python -m linkwork` does; its exit status."""
     return subprocess.run([str(_command(quiet=False)), *arguments], check=False).returncode
+
+
+def _table(name, given):
+    """A table as comma-separated values, and the words behind it."""
+    parts = list(given) if isinstance(given, (tuple, list)) else [given]
+    words = []
+    while parts and isinstance(parts[-1], str) and parts[-1] in ("smooth", "extrapolated"):
+        words.insert(0, parts.pop())
+    if len(parts) == 1 and isinstance(parts[0], (str, os.PathLike)):
+        path = Path(parts[0]).expanduser()
+        if not path.is_file():
+            raise FileNotFoundError(f"table {name!r}: there is no file {path}")
+        return path.read_text(encoding="utf-8"), words
+    if len(parts) != 2:
+        raise TypeError(f"table {name!r}: expected a path or (axes, values), found {given!r}")
+    axes = [np.asarray(axis, dtype=float) for axis in parts[0]]
+    values = np.asarray(parts[1], dtype=float)
+    shape = tuple(axis.size for axis in axes)
+    if any(axis.ndim != 1 for axis in axes) or values.shape != shape:
+        raise ValueError(f"table {name!r}: the axes have {shape} points, but the values the shape {values.shape}")
+    points = np.stack([grid.ravel() for grid in np.meshgrid(*axes, indexing="ij")] + [values.ravel()], axis=1)
+    return "\n".join(",".join(repr(float(x)) for x in row) for row in points), words
+
+
+def _table_arguments(written, folder):
+    arguments = []
+    for k, (name, (text, words)) in enumerate(written.items()):
+        file = Path(folder) / f"table_{k}.csv"
+        file.write_text(text, encoding="utf-8")
+        arguments += ["--table", ",".join([f"{name}={file}", *words])]
+    return arguments
 
 
 def _source(source):

@@ -126,6 +126,57 @@ def _index(names, name, what):
     raise KeyError(f"there is no {what} {name!r}{hint}")
 
 
+class _Rest:
+    """The equations of a mechanism at rest under inputs, of those velocities that are free: forces and those of the constraints
+    balance, and the constraints hold."""
+
+    def __init__(self, mechanism, inputs, free):
+        self.m, self.u, self.free = mechanism, inputs, free
+        self.zero = np.zeros(mechanism.nv)
+        self.time = [0.0] if mechanism._description["time"] else []
+        self.is_constrained = bool(mechanism._description["constraints"])
+
+    def forces(self, q):
+        m = self.m
+        return m.inverse_dynamics(*self.time, q, self.zero, self.zero) - m._forces(self.time, q, self.zero, self.u)
+
+    def jacobian(self, q):
+        return self.m.constraint_jacobian(*self.time, q) if self.is_constrained else np.zeros((0, self.m.nv))
+
+    def residuals(self, q):
+        return self.m.constraint_residuals(*self.time, q) if self.is_constrained else np.zeros(0)
+
+    def multipliers(self, q):
+        """Those that balance forces best."""
+        jacobian, forces = self.jacobian(q), self.forces(q)[self.free]
+        if not (len(jacobian) and np.all(np.isfinite(forces)) and np.all(np.isfinite(jacobian))):
+            return np.zeros(len(jacobian))
+        return np.linalg.lstsq(jacobian.T[self.free], forces, rcond=1e-13)[0]
+
+    def lacking(self, q, multipliers):
+        balance = self.forces(q) - self.jacobian(q).T @ multipliers
+        return np.concatenate([balance[self.free], self.residuals(q)])
+
+    def slope(self, q, multipliers):
+        m, free = self.m, self.free
+        slope = m.inverse_dynamics_derivatives(*self.time, q, self.zero, self.zero)[0]
+        if m.nu:
+            slope = slope - m.generalized_forces_derivatives(*self.time, q, self.zero, self.u)[0]
+        jacobian, count = self.jacobian(q), len(self.residuals(q))
+        for k in np.flatnonzero(free) if len(jacobian) else ():
+            move = 1e-6 * np.eye(m.nv)[k]
+            sides = [self.jacobian(m.integrate(q, side * move)).T @ multipliers for side in (1, -1)]
+            slope[:, k] -= (sides[0] - sides[1]) / 2e-6
+        above = np.hstack([slope[np.ix_(free, free)], -jacobian.T[free]])
+        return np.vstack([above, np.hstack([jacobian[:count, free], np.zeros((count, len(jacobian)))])])
+
+    def moved(self, x, step):
+        move = np.zeros(self.m.nv)
+        count = self.free.sum()
+        move[self.free] = step[:count]
+        return self.m.integrate(x[0], move), x[1] + step[count:]
+
+
 def _structures(number):
     """Settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
 
@@ -474,7 +525,8 @@ class Mechanism:
 
     def equilibrium(self, q=None, inputs=None, *, held=(), tolerance=1e-12, iterations=50):
         """A configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
-        generated derivatives.
+        generated derivatives. Under constraints they hold there, and their forces are found along with it (the change of these with
+        the configuration by differences of the generated Jacobian).
 
         Args:
             q: where the search begins: an array, or values by name.
@@ -484,49 +536,44 @@ class Mechanism:
             iterations: how many steps at most.
 
         Raises:
-            Error: there is none near, or the mechanism has constraints or no derivatives.
+            Error: there is none near, or the mechanism has contacts or no derivatives.
         """
-        if self._description["constraints"] or self._description["contacts"]:
-            raise Error("equilibria under constraints and at contacts are found by the crate linkwork-design")
+        if self._description["contacts"]:
+            raise Error("equilibria at contacts are found by the crate linkwork-design")
         self._need("inverse_dynamics_derivatives", "derivatives")
         q = self.neutral() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
         free = np.ones(self.nv, bool)
         for name in held:
             free[self.index_v(name)] = False
-        zero = np.zeros(self.nv)
-        time = [0.0] if self._description["time"] else []
-        forces = lambda q: self.inverse_dynamics(*time, q, zero, zero) - self._forces(time, q, zero, u)
-        lacking = forces(q)
-        if not np.all(np.isfinite(lacking)):
-            raise Error("no equilibrium was found: forces are not finite where the search begins")
         if not free.any():
             return q
+        rest = _Rest(self, u, free)
+        x = (q, rest.multipliers(q))
+        lacking = rest.lacking(*x)
+        if not np.all(np.isfinite(lacking)):
+            raise Error("no equilibrium was found: forces are not finite where the search begins")
         for _ in range(iterations):
-            slope = self.inverse_dynamics_derivatives(*time, q, zero, zero)[0]
-            if self.nu and hasattr(self, "generalized_forces_derivatives"):
-                given = [q, zero, u] if self._takes("generalized_forces_derivatives", "v") else [q, u]
-                slope = slope - self.generalized_forces_derivatives(*time, *given)[0]
-            move = np.zeros(self.nv)
-            part = slope[np.ix_(free, free)]
-            move[free] = -np.linalg.lstsq(part, lacking[free], rcond=1e-13)[0]
-            if not np.all(np.isfinite(move)):
+            slope = rest.slope(*x)
+            if not np.all(np.isfinite(slope)):
                 break
+            step = -np.linalg.lstsq(slope, lacking, rcond=1e-13)[0]
+            largest = np.abs(step[: free.sum()]).max()
             part = 1.0
             while part > 1e-6:
-                there = self.integrate(q, part * move)
-                found = forces(there)
-                if np.linalg.norm(found[free]) < np.linalg.norm(lacking[free]) or part * np.abs(move).max() < tolerance:
+                there = rest.moved(x, part * step)
+                found = rest.lacking(*there)
+                if np.linalg.norm(found) < np.linalg.norm(lacking) or part * largest < tolerance:
                     break
                 part /= 2
-            q, lacking = there, found
-            if np.abs(part * move).max() <= tolerance * (1 + np.abs(q).max()):
-                scale = 1 + np.abs(slope).max()
-                if np.abs(lacking[free]).max() <= 1e-8 * scale:
-                    return q
+            x, lacking = there, found
+            if part * largest <= tolerance * (1 + np.abs(x[0]).max()):
+                if np.abs(lacking).max() <= 1e-8 * (1 + np.abs(slope).max()):
+                    return x[0]
                 break
-        rest = np.abs(lacking[free]).max()
-        raise Error(f"no equilibrium was found near this configuration: forces of {rest:.3g} (N, N m) are left")
+        raise Error(
+            f"no equilibrium was found near this configuration: forces (N, N m) and gaps of constraints (m, rad) of {np.abs(lacking).max():.3g} are left"
+        )
 
     def linear_system(self, q, v=None, inputs=None, *, t=0.0):
         """The linear system about a state.

@@ -45,6 +45,20 @@ pub struct Bead {
     wire: Holonomic,
 }
 """
+# A mass on a spring whose energy is a table.
+SLIDER = """
+#[mechanism]
+pub struct Slider {
+    pub mass: f64,
+    pub energy: Table<1>,
+    #[particle(mass = mass)]
+    block: Particle,
+    #[joint(ground -> block, along = x)]
+    rail: Sleeve,
+    #[energy(energy(rail))]
+    spring: Potential,
+}
+"""
 BALL = """
 #[mechanism(gravity = -9.81 * z)]
 pub struct Bouncing {
@@ -263,6 +277,37 @@ class OfAPendulum(unittest.TestCase):
         self.assertIn("def mass_matrix(self, q: ArrayLike, /", text)
 
 
+class WithTables(unittest.TestCase):
+    """A parabola as a smooth table: the spring of that energy."""
+
+    def test_figures_are_those_that_are_given(self):
+        figures = ([[-2.0, 0.0, 2.0]], [16.0, 0.0, 16.0], "smooth")
+        m = compiled(SLIDER, tables={"energy": figures})(mass=2.0)
+        x = np.linspace(-2, 2, 7)[:, None]
+        np.testing.assert_allclose(m.potential_energy(x), 4 * x[:, 0] ** 2, atol=1e-13)
+        run = m.simulate([1.0], duration=3.0, tolerance=1e-11)
+        np.testing.assert_allclose(run.q[:, 0], np.cos(2 * run.t), atol=1e-8)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "energy.csv"
+            file.write_text("x,energy\n2,16\n-2,16\n0,0\n")
+            again = compiled(SLIDER, tables={"energy": (file, "smooth")})(mass=2.0)
+            self.assertEqual(again.potential_energy([0.5]), m.potential_energy([0.5]))
+            page = run.view(Path(folder) / "slider.html")
+            self.assertGreater(page.path.stat().st_size, 1000)
+
+    def test_what_is_no_table_is_told(self):
+        for tables, kind, words in [
+            ({}, linkwork.Error, "tables without figures"),
+            ({"enrgy": ([[0, 1]], [0, 1])}, linkwork.Error, "there is no table `enrgy`, but energy"),
+            ({"energy": ([[0, 1]], [0, 1, 2])}, ValueError, "the axes have"),
+            ({"energy": ([[0, 0]], [0, 1])}, linkwork.Error, "stands there twice"),
+            ({"energy": 3.0}, TypeError, "expected a path"),
+            ({"energy": "nowhere.csv"}, FileNotFoundError, "nowhere.csv"),
+        ]:
+            with self.subTest(tables), self.assertRaisesRegex(kind, words):
+                compiled(SLIDER, tables=tables)
+
+
 class UnderConstraints(unittest.TestCase):
     """A bead on a wire: forces of constraints, assembling, and where it cannot go."""
 
@@ -292,6 +337,14 @@ class UnderConstraints(unittest.TestCase):
         np.testing.assert_allclose(np.hypot(*run.q.T), 1.0, rtol=1e-12)
         energy = self.m.kinetic_energy(run.q, run.v) + self.m.potential_energy(run.q)
         self.assertLess(np.ptp(energy), 1e-7)
+
+    def test_its_equilibria(self):
+        np.testing.assert_allclose(self.m.equilibrium([0.3, -0.8]), [0.0, -1.0], atol=1e-9)
+        # At the side, where nothing holds it up, there is none.
+        with self.assertRaisesRegex(linkwork.Error, "no equilibrium"):
+            self.m.equilibrium([1.0, 0.0], held=["plane.x"])
+        # Held in x it hangs from its holder and the wire.
+        np.testing.assert_allclose(self.m.equilibrium([0.6, -0.7], held=["plane.x"]), [0.6, -0.8], atol=1e-9)
 
     def test_its_linear_system(self):
         system = self.m.linear_system([0.0, -1.0])
