@@ -150,7 +150,7 @@ fn libraries_that_cannot_be_are_told() {
     let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
     for (arguments, words) in [
-        (&["export", "library", fighter, "--struct", "Fighter"][..], "tables of `Fighter`"),
+        (&["export", "library", fighter, "--struct", "Fighter"][..], "tables without figures: --table"),
         (
             &["export", "library", own, "--struct", "Balloon", "--linkwork", "/nowhere"][..],
             "/nowhere has no sources of Linkwork",
