@@ -1,0 +1,154 @@
+//! A quadruped trots and walks on its feet: a gait that leads the feet around, springs and dampers at the joints that follow it, and
+//! the ground that does the rest.
+//!
+//! Feet are led backwards under the hips while they stand, and return above the ground. The joints give way, so that the robot goes at
+//! half to three quarters of the speed at which its feet are led. In a trot feet stand in diagonal pairs, half of
+//! the time each; in a walk they are lifted one after the other. Source: Hildebrand, *Symmetrical gaits of horses*, Science 150
+//! (1965). Nothing is known of contacts here; what the ground exerts is read off as force plates would do it.
+//!
+//! ```text
+//! cargo run --release --example trot -p linkwork-models
+//! ```
+
+use linkwork::contact;
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+
+/// Solo 12 on the ground, each foot a sphere.
+#[mechanism(urdf = "urdf/solo12.urdf", base = free, gravity = -9.81 * z, limits = ignore)]
+struct Solo {
+    #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    front_left: Contact,
+    #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    front_right: Contact,
+    #[contact(HL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    hind_left: Contact,
+    #[contact(HR_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
+    hind_right: Contact,
+}
+
+type Configuration = SVector<f64, 19>;
+type Velocity = SVector<f64, 18>;
+
+/// Length of thigh and shank, m.
+const SEGMENT: f64 = 0.16;
+/// Height of the hips over the feet, and how high these are lifted, m.
+const HEIGHT: f64 = 0.23;
+const LIFT: f64 = 0.04;
+/// Stiffness and damping of the joints, N·m/rad and N·m·s/rad.
+const STIFFNESS: f64 = 30.0;
+const DAMPING: f64 = 0.5;
+/// For how long the gait grows from standing, s.
+const BEGINS: f64 = 1.0;
+
+/// When feet are lifted.
+struct Gait {
+    name: &'static str,
+    /// Of a cycle, s.
+    period: f64,
+    /// The part of a cycle for which a foot stands.
+    duty: f64,
+    /// By which part of a cycle each foot is ahead: front left and right, hind left and right.
+    phases: [f64; 4],
+    /// How fast feet move backwards, m/s.
+    speed: f64,
+}
+
+const TROT: Gait = Gait { name: "trot", period: 0.4, duty: 0.5, phases: [0.0, 0.5, 0.5, 0.0], speed: 0.3 };
+const WALK: Gait = Gait { name: "walk", period: 0.6, duty: 0.8, phases: [0.25, 0.75, 0.0, 0.5], speed: 0.1 };
+
+impl Gait {
+    /// Where a foot should be from its hip, forwards and up, m.
+    fn foot(&self, foot: usize, t: f64) -> [f64; 2] {
+        let grown = (t / BEGINS).clamp(0.0, 1.0);
+        let reach = grown * self.speed * self.duty * self.period / 2.0;
+        let cycle = (t / self.period + self.phases[foot]).rem_euclid(1.0);
+        if cycle < self.duty {
+            return [reach * (1.0 - 2.0 * cycle / self.duty), -HEIGHT];
+        }
+        let swing = (cycle - self.duty) / (1.0 - self.duty);
+        let angle = core::f64::consts::PI * swing;
+        [-reach * angle.cos(), -HEIGHT + grown * LIFT * angle.sin().powi(2)]
+    }
+
+    /// The angles of hip, thigh and shank with the foot there.
+    fn leg(&self, foot: usize, t: f64) -> [f64; 3] {
+        let [x, z] = self.foot(foot, t);
+        let knee = -2.0 * (x.hypot(z) / (2.0 * SEGMENT)).acos();
+        [0.0, (-x).atan2(-z) - knee / 2.0, knee]
+    }
+
+    /// The torques of the joints.
+    fn follow(&self, t: f64, q: &Configuration, v: &Velocity) -> SVector<f64, 12> {
+        let h = 1e-4;
+        SVector::from_fn(|k, _| {
+            let [wanted, soon] = [t, t + h].map(|t| self.leg(k / 3, t)[k % 3]);
+            STIFFNESS * (wanted - q[7 + k]) + DAMPING * ((soon - wanted) / h - v[6 + k])
+        })
+    }
+}
+
+/// How far the trunk leans, rad.
+fn lean(q: &Configuration) -> f64 {
+    // The cosine between its vertical and that of the ground.
+    (1.0 - 2.0 * (q[3] * q[3] + q[4] * q[4])).clamp(-1.0, 1.0).acos()
+}
+
+/// Lets the robot go for some seconds.
+fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
+    let robot = Solo {};
+    let mut start = robot.neutral();
+    for foot in 0..4 {
+        start.fixed_rows_mut::<3>(7 + 3 * foot).copy_from_slice(&gait.leg(foot, 0.0));
+    }
+    start[2] -= robot.contact_gaps(&start).min();
+    let (h, weight) = (1e-3, robot.total_mass() * 9.81);
+    let run = simulate(&robot)
+        .from(start, Velocity::zeros())
+        .control_every(h, |t, q, v| gait.follow(t, q, v))
+        .method(TimeStepping::step(h))
+        .duration(duration);
+    println!("{}\n  t, s   way, m   height, m   lean, mrad   feet that stand", gait.name);
+    // Mean force on the ground over whole cycles, and how far feet slip meanwhile.
+    let cycles = (duration - BEGINS) / gait.period;
+    let since = duration - cycles.floor() * gait.period;
+    let (mut pressed, mut steps, mut begin, mut feet) = (0.0, 0.0, start, 0);
+    let mut end = (0.0, start, Velocity::zeros());
+    for (k, sample) in run.enumerate() {
+        let sample = sample?;
+        if sample.t < since {
+            begin = sample.q;
+        } else {
+            let (t, q, v) = &end;
+            let forces = contact::forces(&robot, *t, q, v, &gait.follow(*t, q, v), h)?;
+            pressed += (0..4).map(|foot| forces[3 * foot]).sum::<f64>();
+            steps += 1.0;
+        }
+        end = (sample.t, sample.q, sample.v);
+        let stand = robot.contact_gaps(&sample.q).iter().filter(|gap| **gap < 1e-6).count();
+        feet = feet.max(if sample.t > BEGINS { 4 - stand } else { 0 });
+        assert!(lean(&sample.q) < 0.2 && sample.q[2] > 0.18, "the trunk stays upright: {}", sample.q);
+        if k % 500 == 0 {
+            let (way, height) = (sample.q[0] - start[0], sample.q[2]);
+            println!("{:6.2} {way:8.3} {height:11.3} {:12.1} {stand:9}", sample.t, 1e3 * lean(&sample.q));
+        }
+    }
+    let speed = (end.1[0] - begin[0]) / (end.0 - since);
+    let mean = pressed / steps / weight;
+    println!("goes at {speed:.3} m/s of {}, its feet carry {mean:.4} of its weight\n", gait.speed);
+    let part = speed / gait.speed;
+    assert!(0.45 < part && part < 1.0, "it goes, less fast than its feet are led: springs lag behind");
+    assert!((mean - 1.0).abs() < 0.02, "over whole cycles the ground carries the weight");
+    assert!(feet > 0, "feet are lifted");
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    go(&TROT, 5.0)?;
+    go(&WALK, 6.0)
+}
+
+#[test]
+fn it_goes() -> Result<(), Box<dyn std::error::Error>> {
+    main()
+}
