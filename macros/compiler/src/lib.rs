@@ -39,9 +39,21 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     if let Some((model, output)) = &output {
         return emit_mechanism(&source.interface(model, output), output);
     }
+    // Of a robot whose file cannot be read even the sizes are unknown: whatever is said of them would be a second mistake.
+    if !source.imported {
+        return a_type_of_mistakes(&source, cx.distinct().map(Diagnostic::tokens));
+    }
     let mut emitted = source.emit_failed();
     emitted.tokens.extend(cx.into_tokens());
     emitted
+}
+
+/// The mistakes, the first of them in place of the struct, so that rustc says nothing of whatever uses it.
+fn a_type_of_mistakes(source: &Source, mut mistakes: impl Iterator<Item = TokenStream>) -> Emitted {
+    let first = mistakes.next().unwrap_or_default();
+    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &first);
+    tokens.extend(mistakes);
+    Emitted { tokens, text: String::new() }
 }
 
 /// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!` for that, in place of
@@ -54,9 +66,7 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
     let mut mistake =
         Diagnostic::new(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`");
     mistake.help("write it below: there it sees the struct without its elements, which do not stay");
-    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &mistake.tokens());
-    tokens.extend(cx.into_tokens());
-    Emitted { tokens, text: String::new() }
+    a_type_of_mistakes(&source, [mistake.tokens(), cx.into_tokens()].into_iter())
 }
 
 /// A mechanism as C99: the text of a source file and of its header. `None` with the reasons in `cx`.
