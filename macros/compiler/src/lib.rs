@@ -170,12 +170,14 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     let own_joints = std::mem::replace(&mut description.joints, imported.joints);
     for own in &own_bodies {
         if description.bodies.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text));
+            cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text))
+                .help("choose another name, or use the link by its name without declaring it");
         }
     }
     for own in &own_joints {
         if description.joints.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file has a joint `{}` already", own.name.text));
+            cx.error(own.name.place.clone(), format!("the file has a joint `{}` already", own.name.text))
+                .help("choose another name, or use the joint by its name without declaring it");
         }
     }
     description.bodies.extend(own_bodies);

@@ -67,6 +67,12 @@ impl<'g> Scope<'_, 'g> {
         } else if let Some(what) = self.what(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
+        } else if ["momentum", "angular_momentum", "kinetic_energy"].contains(&name) {
+            let error = cx.error(e.place.clone(), format!("`{name}` is a function of a body"));
+            error.help(format!("write `{name}(body)`"));
+            if name == "kinetic_energy" {
+                error.help("that of the whole mechanism needs no output: it is the method `kinetic_energy`");
+            }
         } else {
             let kinematics = self.kinematics.borrow();
             let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();

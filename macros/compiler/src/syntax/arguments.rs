@@ -1,6 +1,6 @@
 //! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
 
-use super::expression::{parse_expr, parse_name};
+use super::expression::{parse_expr, parse_name, quoted};
 use super::figures::{self, FileFigures};
 use super::{BinaryOp, Expr, ExprKind, Name, words};
 use crate::diag::{Diagnostics, Place, nearest, syn_error};
@@ -212,12 +212,15 @@ impl Arguments {
         if self.place_of(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
-            if let [value] = self.plain.as_slice()
+            if let [value, others @ ..] = self.plain.as_slice()
                 && attribute != "constraint"
                 && !value.name().is_some_and(|word| known.contains(&word))
             {
-                cx.error(value.place.clone(), "expected `name = value`")
-                    .help(format!("write `{key} = {}`", value.spelt()));
+                let error = cx.error(value.place.clone(), "expected `name = value`");
+                error.help(format!("write `{key} = {}`", value.spelt()));
+                if !others.is_empty() {
+                    error.suggest("", known.iter().copied());
+                }
                 self.plain.clear();
                 return None;
             }
@@ -258,6 +261,11 @@ impl Arguments {
                 );
                 None
             }
+            Value::Text(text) if choices.contains(&text.value().as_str()) => {
+                cx.error(text.span(), format!("expected a word for `{key}`"))
+                    .help(format!("write it without quotes: `{key} = {}`", text.value()));
+                None
+            }
             _ => {
                 cx.error(name.place, format!("expected a word for `{key}`"))
                     .suggest("", choices.iter().copied());
@@ -287,9 +295,11 @@ impl Arguments {
             Some((_, Value::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
                 Vec::new()
             }
-            Some((name, _)) => {
+            Some((name, value)) => {
+                let list =
+                    names_without_brackets_or_quotes(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
                 cx.error(name.place, format!("expected a list of strings for `{key}`"))
-                    .help(format!("write `{key} = [\"…\", \"…\"]`"));
+                    .help(format!("write `{key} = [{list}]`"));
                 Vec::new()
             }
         }
@@ -455,6 +465,19 @@ impl Arguments {
     }
 }
 
+/// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.
+fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
+    match value {
+        Value::Text(text) => Some(quoted(&text.value())),
+        Value::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
+        Value::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
+            let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
+            names.map(|names| names.join(", "))
+        }
+        _ => None,
+    }
+}
+
 /// What to do where an argument is not known that says something all the same.
 fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
     match (whose, name) {
@@ -508,6 +531,14 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             "parameters" => Value::Figures(figures::parse(input)?),
             _ => parse_value(input)?,
         };
+        if let ("between" | "on", Value::Expr(first)) = (key.text.as_str(), &value)
+            && input.peek(Token![->])
+        {
+            let arrow: Token![->] = input.parse()?;
+            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.spelt());
+            let help = format!("write `between = ({}, {second})`", first.spelt());
+            return Err(syn_error(arrow.spans[0], "expected `,`", &help));
+        }
         arguments.named.push((key, value));
         return Ok(());
     }

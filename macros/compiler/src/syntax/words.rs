@@ -144,6 +144,16 @@ pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
 }
 
+/// The coordinate whose acceleration a name seems to be: `hinge_ddot`, `ddhinge`.
+pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
+    let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
+    let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let begin = |stem: &str| {
+        word.strip_suffix(stem).is_some_and(|before| matches!(before, "dd" | "dd_" | "ddot_" | "a_" | "acc_"))
+    };
+    coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
+}
+
 /// True for what Rust's constants are called: their values are not known when a macro runs.
 pub fn is_constant(word: &str) -> bool {
     word.chars().any(|c| c.is_ascii_uppercase()) && !word.chars().any(|c| c.is_ascii_lowercase())
@@ -153,6 +163,8 @@ pub fn is_constant(word: &str) -> bool {
 pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
     if let Some(coordinate) = rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate({coordinate})` for its rate"));
+    } else if let Some(coordinate) = second_rate_of(name, coordinates) {
+        diagnostic.help(format!("write `rate(rate({coordinate}))` for its acceleration"));
     } else if let Some(same) = spelt_otherwise(name, known) {
         diagnostic.help(format!("did you mean `{same}`?"));
     } else if explain(diagnostic, NAMES, name, &[]) {
@@ -165,10 +177,9 @@ pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coord
         ));
     } else {
         diagnostic.suggest(name, known.iter().copied());
-    }
-    if diagnostic.is_bare() {
+        let or = if diagnostic.is_bare() { "" } else { "or " };
         diagnostic
-            .help(format!("declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"));
+            .help(format!("{or}declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"));
     }
 }
 
@@ -252,6 +263,9 @@ mod tests {
         assert_eq!(rate_of("dhinge", &["hinge"]), Some("hinge"));
         assert_eq!(rate_of("theta1dot", &["theta", "theta1"]), Some("theta1"));
         assert_eq!(rate_of("hinge2", &["hinge"]), None);
+        assert_eq!(second_rate_of("hinge_ddot", &["hinge"]), Some("hinge"));
+        assert_eq!(second_rate_of("ddtheta1", &["theta", "theta1"]), Some("theta1"));
+        assert_eq!(second_rate_of("hinge_dot", &["hinge"]), None);
         assert_eq!(spelt_otherwise("θ1", &["theta_1"]), Some("theta_1"));
     }
 }

@@ -1,6 +1,7 @@
 //! Slips of those who know Rust, other tools or mechanics, and not yet the language: each gets one error, which says what to do.
 
-use super::{ARM, messages};
+use super::{ARM, Row, messages};
+use std::path::Path;
 
 /// Arguments of the attribute, and fields beside those of an arm on a hinge.
 const SLIPS: &[(&str, &str)] = &[
@@ -111,6 +112,55 @@ fn each_is_one_error_with_help() {
         }
     }
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), SLIPS.len(), wrong.join("\n\n"));
+}
+
+/// Fields beside those of an arm on a hinge, with the first line of what is said, and a part of the help.
+const POINTERS: &[Row] = &[
+    (
+        "#[acts(on = hinge, value = 3 * hinge_ddot)] k: Torque",
+        "unknown name `hinge_ddot`",
+        "write `rate(rate(hinge))` for its acceleration",
+    ),
+    (
+        "#[acts(on = hinge, value = -stiff * hinge)] k: Torque",
+        "unknown name `stiff`",
+        "or declare it: `stiff: f64` is a parameter",
+    ),
+    (
+        "#[output(kinetic_energy)] e: Scalar",
+        "`kinetic_energy` is a function of a body",
+        "that of the whole mechanism needs no output: it is the method `kinetic_energy`",
+    ),
+    ("#[output(momentum)] p: Vector", "`momentum` is a function of a body", "write `momentum(body)`"),
+    (
+        "#[acts(between = ground.at(x) -> arm.at(y), stiffness = 1)] k: Spring",
+        "expected `,`",
+        "write `between = (ground.at(x), arm.at(y))`",
+    ),
+    ("#[limit(hinge, -1, 1)] range: Limit", "expected `name = value`", "write `on = hinge`"),
+];
+
+#[test]
+fn each_points_at_what_was_meant() {
+    super::answers(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
+}
+
+/// Arguments of a robot's file.
+const OPTIONS: &[Row] = &[
+    ("lock = [hand_joint]", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
+    ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
+    ("lock = (a, b)", "expected a list of strings for `lock`", "write `lock = [\"a\", \"b\"]`"),
+    ("lock = 3", "expected a list of strings for `lock`", "write `lock = [\"…\", \"…\"]`"),
+    ("base = \"free\"", "expected a word for `base`", "write it without quotes: `base = free`"),
+    ("inertia = \"none\"", "expected a word for `inertia`", "write it without quotes: `inertia = none`"),
+];
+
+#[test]
+fn options_of_a_file_are_written_as_they_are_meant() {
+    let robot = "<robot name=\"arm\"><link name=\"arm\"/></robot>";
+    std::fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("options.urdf"), robot).unwrap();
+    let setting = |options: &str| (format!("urdf = \"options.urdf\", {options}"), String::new());
+    super::answers(setting, OPTIONS);
 }
 
 #[test]
