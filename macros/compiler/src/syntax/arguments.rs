@@ -1,6 +1,6 @@
 //! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
 
-use super::expression::{parse_expr, parse_name, quoted};
+use super::expression::{parse_expr, parse_name};
 use super::figures::{self, FileFigures};
 use super::{BinaryOp, Expr, ExprKind, Name, words};
 use crate::diag::{Diagnostics, Place, nearest, syn_error};
@@ -11,7 +11,7 @@ use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
 
 mod slips;
 
-use slips::{no_arrow, no_comma, text_alone, unnamed};
+use slips::{names_without_brackets_or_quotes, no_arrow, no_comma, text_alone, unnamed};
 
 /// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions (of an
 /// equilibrium any number), and `key = value` in any order.
@@ -462,19 +462,6 @@ impl Arguments {
             cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
                 .help("`parent -> child` stands in a joint");
         }
-    }
-}
-
-/// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.
-fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
-    match value {
-        Value::Text(text) => Some(quoted(&text.value())),
-        Value::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
-        Value::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
-            let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
-            names.map(|names| names.join(", "))
-        }
-        _ => None,
     }
 }
 

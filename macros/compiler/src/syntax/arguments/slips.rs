@@ -1,6 +1,6 @@
 //! Slips in the grammar of arguments, and what is most likely meant.
 
-use super::Arguments;
+use super::{Arguments, Value};
 use crate::diag::{Diagnostics, one_of, syn_error};
 use crate::syntax::expression::{parse_expr, quoted, unexpected};
 use crate::syntax::{Expr, ExprKind, words};
@@ -97,4 +97,17 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
 fn is_double(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
+}
+
+/// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.
+pub fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
+    match value {
+        Value::Text(text) => Some(quoted(&text.value())),
+        Value::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
+        Value::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
+            let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
+            names.map(|names| names.join(", "))
+        }
+        _ => None,
+    }
 }
