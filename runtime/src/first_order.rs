@@ -25,6 +25,8 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
 {
     /// Name of every state.
     const STATES: [&'static str; NX];
+    /// Unit of every state, as [`Mechanism::VELOCITY_UNITS`](crate::Mechanism::VELOCITY_UNITS) says.
+    const STATE_UNITS: [&'static str; NX] = [""; NX];
 
     /// The states as they are, each in its own unit.
     fn states(&self) -> SVector<Self::Scalar, NX>;
@@ -219,7 +221,7 @@ fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     all
 }
 
-/// The names of all velocities.
+/// The names, or the units, of all velocities.
 const fn names<const NV: usize, const NX: usize, const NE: usize>(
     velocities: [&'static str; NV],
     states: [&'static str; NX],
@@ -258,6 +260,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NE] = names(M::VELOCITIES, M::STATES);
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NE] = names(M::VELOCITY_UNITS, M::STATE_UNITS);
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;

@@ -40,6 +40,11 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     const VELOCITIES: [&'static str; NV];
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
+    /// SI unit of every entry of `v`, as inferred: `rad/s`; `any` where nothing determines one, empty where none was said. A
+    /// displacement along it has the same unit without the `/s`.
+    const VELOCITY_UNITS: [&'static str; NV] = [""; NV];
+    /// SI unit of every entry of `u`, in the same words.
+    const INPUT_UNITS: [&'static str; NU] = [""; NU];
 
     /// The coordinates are restricted by constraints ([`Constrained`](crate::Constrained)).
     const CONSTRAINED: bool = false;
@@ -255,6 +260,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;

@@ -16,6 +16,8 @@ pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: u
 
     /// The name of every entry: that of the output, with `.x`, `.y` and `.z` for the components of a vector.
     const OUTPUTS: [&'static str; NY];
+    /// SI unit of every entry, as inferred: `m/s²`; `any` where nothing determines one, empty where none was said.
+    const OUTPUT_UNITS: [&'static str; NY] = [""; NY];
 
     /// The outputs at the time `t` (which matters where a function of the mechanism depends on it), of the configuration `q`, the
     /// velocity `v`, the acceleration `a` and the inputs `u`, in their own units.
@@ -57,6 +59,7 @@ where
 {
     type Scalar = T;
     const OUTPUTS: [&'static str; NY] = M::OUTPUTS;
+    const OUTPUT_UNITS: [&'static str; NY] = M::OUTPUT_UNITS;
 
     fn outputs(
         &self,

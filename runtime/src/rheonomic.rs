@@ -26,6 +26,10 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     const VELOCITIES: [&'static str; NV];
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
+    /// SI unit of every entry of `v` ([`Mechanism::VELOCITY_UNITS`]).
+    const VELOCITY_UNITS: [&'static str; NV] = [""; NV];
+    /// SI unit of every entry of `u` ([`Mechanism::INPUT_UNITS`]).
+    const INPUT_UNITS: [&'static str; NU] = [""; NU];
 
     /// The coordinates are restricted by constraints ([`Mechanism::CONSTRAINED`]).
     const CONSTRAINED: bool = false;
@@ -264,6 +268,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;
@@ -294,6 +300,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;

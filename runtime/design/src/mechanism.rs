@@ -46,19 +46,58 @@ fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
     m
 }
 
-pub(crate) fn named(names: &[&'static str]) -> Vec<Signal> {
-    names.iter().map(|name| Signal::from(*name)).collect()
+/// Names with their units; what nothing determines and plain numbers go without.
+pub(crate) fn named(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
+    let said = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
+    let unit = |k: usize| units.get(k).copied().map_or("", said);
+    names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit(k))).collect()
 }
 
-/// Displacements by the names of the velocities, then changes of velocity with a prime, then so many states of first order.
-pub(crate) fn state_names(
-    coordinates: &[&'static str],
-    speeds: &[&'static str],
-    first_order: usize,
-) -> Vec<Signal> {
-    let (speeds, states) = speeds.split_at(speeds.len().saturating_sub(first_order));
-    let primed = speeds.iter().map(|name| Signal::from(format!("{name}'")));
-    named(coordinates).into_iter().chain(primed).chain(named(states)).collect()
+/// What is displaced at this speed.
+fn displaced(speed: Signal) -> Signal {
+    let unit = match speed.unit.strip_suffix("/s") {
+        Some(unit) => unit.to_owned(),
+        None if speed.unit.is_empty() => String::new(),
+        None => format!("{}·s", speed.unit),
+    };
+    Signal { unit, ..speed }
+}
+
+/// The displacements that go with some of a mechanism's velocities.
+fn displacements<M, const NQ: usize, const NV: usize, const NU: usize>(
+    which: impl IntoIterator<Item = usize>,
+) -> Vec<Signal>
+where
+    M: Rheonomic<NQ, NV, NU>,
+{
+    let speeds = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
+}
+
+/// Displacements by the names of the velocities, then changes of velocity with a prime, then states of first order, of those
+/// entries of the velocity.
+pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
+    coordinates: impl IntoIterator<Item = usize>,
+    speeds: impl IntoIterator<Item = usize>,
+) -> Vec<Signal>
+where
+    M: Rheonomic<NQ, NV, NU>,
+{
+    let all = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    let changes = speeds.into_iter().filter_map(|k| {
+        let speed = all.get(k)?.clone();
+        let is_state = k + M::FIRST_ORDER >= NV;
+        Some(if is_state { speed } else { Signal { name: format!("{}'", speed.name), ..speed } })
+    });
+    displacements::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
+}
+
+/// The inputs of a mechanism.
+pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
+where
+    M: Rheonomic<NQ, NV, NU>,
+{
+    named(&M::INPUTS, &M::INPUT_UNITS)
 }
 
 /// Which of the displacements and velocities are states: states of first order have no displacement.
@@ -68,7 +107,7 @@ fn kept(nv: usize, first_order: usize) -> Vec<usize> {
 
 /// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The states are the
 /// displacements (in body axes for ball and free joints), named like the velocities, then the changes of velocity, named with a
-/// prime; they are the outputs, too. States of first order come last, by their own names: of a mechanism with such states pass
+/// prime; they are the outputs, too, and have the units that the compiler infers. States of first order come last, by their own names: of a mechanism with such states pass
 /// `&at(&m.extended(), t)`.
 ///
 /// ```
@@ -112,9 +151,8 @@ where
     let motion = m.linear_motion(q, v, u);
     let n = M::FIRST_ORDER;
     let system = of_motion(&motion, n)?;
-    let coordinates = M::VELOCITIES.get(..NV.saturating_sub(n)).unwrap_or_default();
-    let system = system.with_states(state_names(coordinates, &M::VELOCITIES, n))?;
-    Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+    let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
+    Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
 fn of_motion<const NV: usize, const NU: usize>(
@@ -180,9 +218,8 @@ where
     let system = of_motion(&motion, n)?;
     let (c, d) = output_matrices(&seen);
     let system = StateSpace::new(system.a, system.b, c.select_columns(&kept(NV, n)), d)?;
-    let coordinates = M::VELOCITIES.get(..NV.saturating_sub(n)).unwrap_or_default();
-    let system = system.with_states(state_names(coordinates, &M::VELOCITIES, n))?;
-    system.with_inputs(named(&M::INPUTS))?.with_outputs(named(&M::OUTPUTS))
+    let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
+    system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(named(&M::OUTPUTS, &M::OUTPUT_UNITS))
 }
 
 fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
@@ -237,13 +274,11 @@ pub fn constrained_system<
 where
     M: linkwork::Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    let name = |k: &usize| M::VELOCITIES.get(*k).copied().unwrap_or_default();
-    let coordinates: Vec<_> = linear.coordinates.iter().map(name).collect();
-    let speeds: Vec<_> = linear.speeds.iter().map(name).collect();
     let (a, b) = (dynamic(&linear.a), dynamic(&linear.b));
     let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
-    let system = system.with_states(state_names(&coordinates, &speeds, 0))?;
-    Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+    let states =
+        state_names::<M, NQ, NV, NU>(linear.coordinates.iter().copied(), linear.speeds.iter().copied());
+    Ok(system.with_states(states)?.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
 /// What multiplies the accelerations: the mass matrix, or, where forces depend on accelerations, what inverse dynamics makes of each
@@ -300,5 +335,5 @@ where
     let position = -(&mass * (&by_q - &by_v * &turning));
     let input = &mass * dynamic(&motion.by_u);
     let form = SecondOrderForm::new(mass, velocity, position, input)?;
-    form.with_names(named(&M::VELOCITIES), named(&M::INPUTS))
+    form.with_names(displacements::<M, NQ, NV, NU>(0..NV), input_names::<M, NQ, NV, NU>())
 }

@@ -1,9 +1,9 @@
 //! Flight, lags, rotors and satellites from mechanisms to modes, against closed forms.
 
 use linkwork::prelude::*;
-use linkwork_design::StateSpace;
-use linkwork_design::mechanism::{linear_system, measured_system};
-use linkwork_design::steady::equilibrium;
+use linkwork_design::mechanism::{constrained_system, linear_system, measured_system, second_order_form};
+use linkwork_design::steady::{constrained_equilibrium, equilibrium};
+use linkwork_design::{Signal, StateSpace};
 use nalgebra::Complex;
 
 #[track_caller]
@@ -237,4 +237,59 @@ fn outputs_see_states_of_first_order() {
             assert!((found - expected).norm() < 1e-14, "expected {expected}, found {found}");
         }
     }
+}
+
+/// A carriage on a parabola whose motor is late, in a wind that changes.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Carriage {
+    mass: f64,
+    #[body(mass = mass)]
+    carriage: Body,
+    #[joint(ground -> carriage, along = (x, y))]
+    place: Stage,
+    #[constraint(place.y == place.x * place.x)]
+    wire: Holonomic,
+    #[acts(on = place.x)]
+    push: Force,
+    #[output(norm(v(carriage / ground / ground)))]
+    speed: Scalar,
+}
+
+fn written(signals: &[Signal]) -> Vec<String> {
+    signals.iter().map(ToString::to_string).collect()
+}
+
+/// Names and units of a tree with a state of first order, of a mechanism that is driven in time, and under constraints.
+#[test]
+fn signals_have_names_and_units() {
+    let sled = Sled { mass: 2.0, lag: 0.5, thrust: 0.0 };
+    let whole = sled.extended();
+    let system =
+        measured_system(&at(&whole, 0.0), 0.0, &[0.0].into(), &[3.0, 5.0].into(), &[5.0].into()).unwrap();
+    assert_eq!(written(system.states()), ["rail, m", "rail', m/s", "thrust, N"]);
+    assert_eq!(written(system.inputs()), ["throttle, N"]);
+    assert_eq!(written(system.outputs()), ["felt, m/s²", "gauge, N"]);
+
+    let satellite = Satellite { mu: 4e14, radius: 7e6, rate: 1e-3, ixx: 100.0, iyy: 420.0, izz: 500.0 };
+    let now = at(&satellite, 3.0);
+    let system = linear_system(&now, &now.neutral(), &SVector::zeros(), &[].into()).unwrap();
+    assert_eq!(written(system.states())[2..4], ["attitude.wz, rad", "attitude.wx', rad/s"]);
+
+    let (carriage, zero) = (Carriage { mass: 2.0 }, SVector::zeros());
+    let linear = carriage.linearize(&zero, &zero, &[0.0].into(), &[0]).unwrap();
+    let of_state = constrained_system(&carriage, &linear).unwrap();
+    let problem = constrained_equilibrium(&carriage).moving([0.1, 0.0].into()).fix(["place.x"]);
+    let of_states = problem.linear_system(&constrained_equilibrium(&carriage).find().unwrap()).unwrap();
+    for system in [&of_state, &of_states] {
+        assert_eq!(written(system.states()), ["place.x, m", "place.x', m/s"]);
+        assert_eq!(written(system.inputs()), ["push, N"]);
+    }
+    assert_eq!(<Carriage as linkwork::Outputs<2, 2, 1, 1>>::OUTPUT_UNITS, ["m/s"]);
+    let form = second_order_form(
+        &Boat { mass: 1.0, drag: 0.0, lag: 1.0, thrust: 0.0 },
+        &[0.0].into(),
+        &[0.0].into(),
+        &[0.0].into(),
+    );
+    assert_eq!(written(form.unwrap().state_space().unwrap().states()), ["way, m", "way', m/s"]);
 }

@@ -49,6 +49,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const CONTACTING: bool = M::CONTACTING;

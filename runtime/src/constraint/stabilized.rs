@@ -77,6 +77,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const FEEDBACK: bool = true;
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;

@@ -41,6 +41,7 @@ where
 {
     type Scalar = T;
     const OUTPUTS: [&'static str; NY] = M::OUTPUTS;
+    const OUTPUT_UNITS: [&'static str; NY] = M::OUTPUT_UNITS;
 
     fn outputs(
         &self,

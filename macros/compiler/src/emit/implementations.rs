@@ -105,6 +105,14 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
     }
+    // A mechanism that failed to compile has none.
+    for (name, units, n) in
+        [("VELOCITY_UNITS", &i.units.velocities, s.nv), ("INPUT_UNITS", &i.units.inputs, s.nu)]
+    {
+        if units.len() == n {
+            let _ = writeln!(out, "const {name}: [&'static str; {n}] = {units:?};");
+        }
+    }
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     for (row, arguments) in catalogue::of_trait() {
         let (name, result) = (row.name, s.shape((row.declare)(&i.facts).shape));

@@ -42,10 +42,16 @@ pub fn write_impls(
     let vector = s.vector(count);
     let names: Vec<String> =
         outputs.iter().flat_map(|f| entries(f)).map(|name| format!("{name:?}")).collect();
+    let unit = |f: &Function| {
+        let place = i.outputs.iter().position(|name| *name == f.name);
+        place.and_then(|k| i.units.outputs.get(k)).map_or("", |unit| unit)
+    };
+    let units: Vec<&str> = outputs.iter().flat_map(|f| std::iter::repeat_n(unit(f), rows(f))).collect();
     begin(out, "Outputs");
     let _ = writeln!(
         out,
         "type Scalar = {};\nconst OUTPUTS: [&'static str; {count}] = [{}];
+        const OUTPUT_UNITS: [&'static str; {count}] = {units:?};
         #[inline]\nfn outputs({parameters}) -> {vector} {{\nlet mut all = <{vector}>::zeros();",
         s.scalar.name(),
         names.join(", "),

@@ -66,9 +66,12 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
     });
     let fields: Vec<String> = fields.collect();
     let values: Vec<String> = rates.iter().map(|f| call(f, "")).collect();
+    let unit = |k: usize| i.units.parameters.get(k).map_or("", |unit| unit);
+    let units: Vec<&str> = i.states.iter().map(|(_, k)| unit(*k)).collect();
     let _ = writeln!(
         out,
         "const STATES: [&'static str; {n}] = [{}];
+        const STATE_UNITS: [&'static str; {n}] = {units:?};
         #[inline]\nfn states(&self) -> {vector} {{ <{vector}>::from([{}]) }}
         #[inline]\nfn with_states(&self, x: &{vector}) -> Self {{ Self {{ {} }} }}
         #[inline]\nfn state_rates({parameters}) -> {vector} {{ <{vector}>::from([{}]) }}",

@@ -2,7 +2,7 @@
 
 use super::problem::{Place, Problem, dynamic};
 use super::{SteadyState, Trim};
-use crate::mechanism::{effective_mass, named, state_names};
+use crate::mechanism::{effective_mass, input_names, named, state_names};
 use crate::{Error, StateSpace};
 use linkwork::{OutputDerivatives, Rheonomic, RheonomicDerivatives};
 use nalgebra::{DMatrix, SVector};
@@ -185,15 +185,13 @@ where
     /// [`Error::NotFinite`] where the mass matrix is singular.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
         let system = Self::system(&linear(self, found)?)?;
-        Ok(system.with_inputs(named(&M::INPUTS))?.with_states_as_outputs())
+        Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
     }
 
     fn system(Linear { coordinates, speeds, a, b, .. }: &Linear) -> Result<StateSpace, Error> {
-        let names = |all: &[usize]| all.iter().map(|k| M::VELOCITIES[*k]).collect::<Vec<_>>();
         let n = a.nrows();
         let system = StateSpace::new(a.clone(), b.clone(), DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
-        let first_order = speeds.iter().filter(|k| **k + M::FIRST_ORDER >= NV).count();
-        system.with_states(state_names(&names(coordinates), &names(speeds), first_order))
+        system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
     }
 
     /// [`linear_system`](Self::linear_system) with the declared outputs of the mechanism: `y = C x + D δu`, with what constraints,
@@ -252,6 +250,7 @@ where
         let d = dynamic(&seen.by_u) + of_a * by_u;
         let names = Self::system(&linear)?;
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
-        system.with_inputs(named(&M::INPUTS))?.with_outputs(named(&M::OUTPUTS))
+        let outputs = named(&M::OUTPUTS, &M::OUTPUT_UNITS);
+        system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 }
