@@ -1,7 +1,7 @@
 //! What the words of the language mean, by values that can be worked out by hand: names, expressions, solids,
 //! particles on joints, scalar types.
 
-use linkwork::nalgebra::{SVector, Vector3};
+use linkwork::nalgebra::{Rotation3, SVector, Vector3};
 use linkwork::{Mechanism, Real, frame, mechanism};
 use linkwork_models::SliderCrank;
 use support::compare::assert_close;
@@ -281,6 +281,115 @@ fn extremes_are_exact() {
         assert_eq!(by_q[0], slope / 2.0);
     }
     assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
+}
+
+/// A carriage with a buffer that it reaches late, a valve that saturates, and a law that is not defined on the other side.
+#[mechanism(derivatives)]
+struct Pieces {
+    gap: f64,
+    k: f64,
+    least: f64,
+    most: f64,
+    #[body(mass = 2)]
+    carriage: Body,
+    #[joint(ground -> carriage, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, force = if stretch > gap { k * (stretch - gap) } else { 0 })]
+    buffer: Spring,
+    #[acts(on = rail, value = if rail < 0 { 40 * pow(-rail, 1.5) } else { 0 })]
+    hertz: Force,
+    #[define(2 * rate(rail))]
+    opening: Scalar,
+    #[acts(on = rail, value = -valve)]
+    oil: Force,
+    #[output(if opening <= least { least } else if opening < most { opening } else { most })]
+    saturated: Scalar,
+    #[define(if 0.1 < rate(rail) { 0.3 + (rate(rail) - 0.1) } else { 3 * rate(rail) })]
+    valve: Scalar,
+    #[output(rate(slope))]
+    speeding: Scalar,
+    #[define(if rail < gap { pow(rail, 2) } else { 2 * gap * rail - pow(gap, 2) })]
+    slope: Scalar,
+}
+
+#[test]
+fn pieces_are_themselves_on_their_sides() {
+    let m = Pieces { gap: 0.5, k: 80.0, least: -0.4, most: 0.6 };
+    let force = |x: f64, v: f64| -m.bias_forces(&[x].into(), &[v].into())[0];
+    let valve = |v: f64| if v > 0.1 { 0.2 + v } else { 3.0 * v };
+    for x in [-0.7_f64, -0.01, 0.2, 0.49, 0.51, 1.4] {
+        for v in [-2.0, -0.1, 0.05, 0.2, 3.0] {
+            let buffer = if x > 0.5 { 80.0 * (x - 0.5) } else { 0.0 };
+            let hertz = if x < 0.0 { 40.0 * (-x).powf(1.5) } else { 0.0 };
+            assert_close("force", &[force(x, v)], &[hertz - buffer - valve(v)], 1e-13);
+            assert_eq!(m.saturated(&[x].into(), &[v].into()), (2.0 * v).clamp(-0.4, 0.6));
+            let speeding = if x < 0.5 { 2.0 * x * v } else { v };
+            assert_close("rate", &[m.speeding(&[x].into(), &[v].into())], &[speeding], 1e-14);
+            let (by_q, by_v, _) = m.forward_dynamics_derivatives(&[x].into(), &[v].into(), &[0.0].into());
+            let stiffness = if x > 0.5 {
+                -80.0
+            } else if x < 0.0 {
+                -60.0 * (-x).sqrt()
+            } else {
+                0.0
+            };
+            assert_close("by q", &[2.0 * by_q[0]], &[stiffness], 1e-13);
+            assert_close("by v", &[2.0 * by_v[0]], &[if v > 0.1 { -1.0 } else { -3.0 }], 1e-13);
+        }
+        // The energy of the buffer is that of its force, from zero on.
+        let energy = if x > 0.5 { 40.0 * (x - 0.5) * (x - 0.5) } else { 0.0 };
+        assert_close("energy", &[m.potential_energy(&[x].into())], &[energy], 1e-13);
+    }
+}
+
+/// Something that flies, with vectors by their components in its axes of stability and of wind.
+#[mechanism]
+struct Winged {
+    #[body(mass = 2, inertia = diagonal(1, 1, 1))]
+    airframe: Body,
+    #[joint(ground -> airframe)]
+    flight: Free,
+    #[define(v(airframe / ground / ground))]
+    velocity: Vector,
+    #[define(angle_of_attack(airframe, velocity))]
+    alpha: Scalar,
+    #[define(sideslip(airframe, velocity))]
+    beta: Scalar,
+    #[output(wind_axes(airframe, velocity, [2, 3, 5]), resolved_in = airframe)]
+    in_wind: Vector,
+    #[output(stability_axes(airframe, velocity, [2, 3, 5]), resolved_in = airframe)]
+    in_stability: Vector,
+    #[output(wind_axes(airframe, velocity, [1, 0, 0]))]
+    along: Vector,
+    #[output(alpha)]
+    attack: Scalar,
+    #[output(beta)]
+    slip: Scalar,
+    #[acts(on = airframe, value = wind_axes(airframe, velocity, [-4, 0.5, -7]))]
+    air: Force,
+}
+
+/// The rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix A.7: by the sideslip about z, then by the angle of attack
+/// about y.
+#[test]
+fn stability_and_wind_axes_turn_by_their_angles() {
+    let (m, mut random) = (Winged {}, support::random::Random::new(5));
+    for _ in 0..10 {
+        let q = random.configuration(&m);
+        let v: SVector<f64, 6> = random.vector(30.0);
+        let (alpha, beta) = (m.attack(&q, &v), m.slip(&q, &v));
+        let about_y = Rotation3::from_axis_angle(&Vector3::y_axis(), -alpha);
+        let both = about_y * Rotation3::from_axis_angle(&Vector3::z_axis(), beta);
+        let parts = Vector3::new(2.0, 3.0, 5.0);
+        assert_close("wind", m.in_wind(&q, &v).as_slice(), (both * parts).as_slice(), 1e-12);
+        assert_close("stability", m.in_stability(&q, &v).as_slice(), (about_y * parts).as_slice(), 1e-12);
+        let linear = v.fixed_rows::<3>(0).into_owned();
+        assert_close("forward", (both * Vector3::x()).as_slice(), linear.normalize().as_slice(), 1e-12);
+        // What it takes of the power is drag alone.
+        let still: SVector<f64, 6> = SVector::from([v[0], v[1], v[2], 0.0, 0.0, 0.0]);
+        let force = -m.bias_forces(&q, &still);
+        assert_close("power", &[force.dot(&still)], &[-4.0 * linear.norm()], 1e-12);
+    }
 }
 
 /// Two bodies in space with a thruster between points of them, and two carts on one rail.

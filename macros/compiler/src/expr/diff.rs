@@ -91,10 +91,13 @@ impl<'g> Derivative<'g> {
                 })
             }
             Node::Pow(a, b) => {
-                let base = if d(a).is_zero() { self.graph.zero() } else { at(b) * d(a) / at(a) };
-                let exponent =
-                    if d(b).is_zero() { self.graph.zero() } else { d(b) * at(a).call(Function::Ln) };
-                at(id) * (base + exponent)
+                // Finite at a base of zero, where a law begins.
+                let slope = |b: Expr<'g>| b * at(a).pow(b - self.graph.one());
+                let base = if d(a).is_zero() { self.graph.zero() } else { slope(at(b)) * d(a) };
+                match d(b).is_zero() {
+                    true => base,
+                    false => base + at(id) * d(b) * at(a).call(Function::Ln),
+                }
             }
         }
     }

@@ -27,6 +27,13 @@ pub fn replace_calls<'g>(
     e.iter().map(|e| replace_one(*e, &mut known, by, call)).collect()
 }
 
+/// An expression in which a part of it, wherever it is a node, is another.
+pub fn replace_part<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
+    let mut known = Memo::new(e.graph());
+    known.set(part.id(), by.id());
+    replace_one(e, &mut known, &|_| None, &|f, x| x.call(f))
+}
+
 fn replace_one<'g>(
     e: Expr<'g>,
     known: &mut Memo<'g>,

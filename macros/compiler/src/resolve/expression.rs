@@ -7,7 +7,7 @@ use super::slips::{DOMAIN, VECTOR, check_angle, degrees, wrong_count};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
 use crate::kinematics::unit;
-use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
+use crate::syntax::{self, BinaryOp, ExprKind, IF, Name, words};
 
 impl<'a, 'g> Scope<'a, 'g> {
     /// A scalar.
@@ -98,6 +98,9 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 
     fn any_value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let Some(symbol) = self.deciding(e) {
+            return Some(Value::Scalar(symbol));
+        }
         match &e.kind {
             ExprKind::Number(n) => {
                 let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
@@ -237,6 +240,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             _ => wrong_count(function, 2, cx),
         };
         match text {
+            IF => self.pieces(arguments, cx).map(Value::Scalar),
             "degrees" => match arguments {
                 [angle] => self.scalar(angle, cx).map(|angle| Value::Scalar(degrees(angle))),
                 _ => wrong_count(function, 1, cx),
@@ -297,6 +301,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             "gradient" => self.gradient(function, arguments, cx),
             "power" => self.power(function, arguments, cx),
             "rate" => self.rate_of(function, arguments, cx),
+            "stability_axes" | "wind_axes" => self.in_flight_axes(function, arguments, cx),
             _ if OF_HEIGHT.contains(&text) => self.air(function, arguments, cx),
             _ if ANGLES.contains(&text) => self.flight_angle(function, arguments, cx),
             _ => {
@@ -352,7 +357,8 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
+/// A sum of vectors by their axes.
+pub fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
     for (axes, v) in b {
         match a.iter_mut().find(|(known, _)| *known == axes) {
             Some((_, sum)) => *sum += v,

@@ -1,6 +1,7 @@
 //! Functions of flight: the standard atmosphere, and the angles of bodies and velocities whose axes are forward, right and
 //! down, the ground's north, east and down.
 
+use super::expression::sum;
 use super::scope::{Scope, Value};
 use super::slips::wrong_count;
 use crate::diag::Diagnostics;
@@ -76,6 +77,44 @@ impl<'g> Scope<'_, 'g> {
             }
             _ => return wrong_count(function, 1, cx),
         }))
+    }
+
+    /// A vector by its components in the axes of stability, which turn with the angle of attack, or of wind, which turn with the
+    /// sideslip, too: forward along the velocity, right, down (Etkin and Reid, *Dynamics of Flight*, 1996, § 1.6 and appendix A.7).
+    pub fn in_flight_axes(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let [body, velocity, list] = arguments else { return wrong_count(function, 3, cx) };
+        let ExprKind::Array(items) = &list.kind else {
+            cx.error(list.place.clone(), "expected the three components in a list")
+                .help(format!("as in `{}(airframe, velocity, [-drag, side, -lift])`", function.text));
+            return None;
+        };
+        let [ahead, aside, below] = items.as_slice() else { return self.value(list, cx) };
+        let [forward, right, down] = self.components(velocity, body, cx)?;
+        let parts = [self.scalar(ahead, cx), self.scalar(aside, cx), self.scalar(below, cx)];
+        let [ahead, aside, below] = [parts[0]?, parts[1]?, parts[2]?];
+        let plane = length(forward, down);
+        let (cosine, sine) = (forward / plane, down / plane);
+        // In the plane of symmetry along the velocity, then to the right.
+        let (along, across) = match function.text.as_str() {
+            "wind_axes" => {
+                let speed = length(plane, right);
+                let (straight, slip) = (plane / speed, right / speed);
+                (ahead * straight - aside * slip, ahead * slip + aside * straight)
+            }
+            _ => (ahead, aside),
+        };
+        let in_body = [along * cosine - below * sine, across, along * sine + below * cosine];
+        let mut total = Vec::new();
+        for (k, part) in in_body.into_iter().enumerate() {
+            let along = self.vector(&axis(body, k), cx)?;
+            total = sum(total, along.into_iter().map(|(axes, v)| (axes, v * part)).collect());
+        }
+        Some(Value::Vector(total))
     }
 
     /// The components of a vector along the axes of a body.

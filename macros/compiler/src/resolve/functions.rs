@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 54] = [
+pub const FUNCTIONS: [&str; 56] = [
     "atan2",
     "degrees",
     "pow",
@@ -58,6 +58,8 @@ pub const FUNCTIONS: [&str; 54] = [
     "bank",
     "course",
     "flight_path",
+    "stability_axes",
+    "wind_axes",
 ];
 
 /// True for a function of the language that has a value.

@@ -34,6 +34,7 @@ mod motion;
 mod names;
 mod numbering;
 mod outline;
+mod pieces;
 mod place;
 mod power;
 mod quantities;

@@ -254,6 +254,7 @@ impl<'g> Scope<'_, 'g> {
         let mut context = self.context.borrow().clone();
         context.defining.push(name.clone());
         context.locals.clear();
+        context.deciding.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
         let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
         if value.rank() == d.rank {

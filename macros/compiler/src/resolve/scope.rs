@@ -125,6 +125,8 @@ pub struct Context<'g> {
     pub axes: Option<(Option<LinkId>, Pose<'g>)>,
     /// Names of the place, such as `stretch`.
     pub locals: Vec<(&'static str, Expr<'g>)>,
+    /// What decides between pieces of a law that are being read, as written, and the symbols that stand for it in them.
+    pub deciding: Vec<(syntax::Expr, Expr<'g>)>,
     /// Definitions that are being looked up.
     pub defining: Vec<String>,
 }
@@ -132,7 +134,7 @@ pub struct Context<'g> {
 impl<'g> Context<'g> {
     /// A context without names of its own.
     pub fn new(allowed: Allowed, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
-        Context { allowed, axes, locals: Vec::new(), defining: Vec::new() }
+        Context { allowed, axes, locals: Vec::new(), deciding: Vec::new(), defining: Vec::new() }
     }
 
     /// The context with these names of its own.

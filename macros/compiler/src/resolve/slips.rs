@@ -74,6 +74,7 @@ pub fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Op
         "atan2" => "write `atan2(y, x)`".to_string(),
         "pow" => "write `pow(a, n)`".to_string(),
         "degrees" => "write `degrees(90)`".to_string(),
+        "stability_axes" | "wind_axes" => format!("write `{text}(body, velocity, [a, b, c])`"),
         "norm" | "unit" => format!("write `{text}(v)`"),
         _ if count == 1 => format!("write `{text}(a)`"),
         _ => format!("write `{text}(a, b)`"),

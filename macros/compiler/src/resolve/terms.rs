@@ -10,10 +10,10 @@ use crate::expr::diff::Derivative;
 use crate::expr::eval::eval;
 use crate::expr::replace::replace;
 use crate::expr::sample::sample;
-use crate::expr::{Expr, Function, Node, Symbol, Vec3};
+use crate::expr::{Expr, Extreme, Function, Node, Symbol, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, Inertance, LinkId, Load, OutputValue, Pose, Quantity, Rule};
-use crate::syntax::{self, Definition, ExprKind, Law, Rank};
+use crate::syntax::{self, Definition, ExprKind, IF, Law, Rank};
 use std::collections::BTreeSet;
 
 /// Regularisation speed of friction, unless given.
@@ -138,14 +138,43 @@ impl<'g> Builder<'_, 'g> {
             Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
             Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
             Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
-            Law::Force(e) => {
-                let force = self.scope.in_context(context, |scope| scope.scalar(e, cx));
-                force.and_then(|force| self.integral(force, e, cx))
-            }
+            Law::Force(e) => self.energy_of(e, &context, cx),
         };
         if let Some(energy) = energy {
             self.model.potentials.push(replace(energy, &|s| (s == symbol).then_some(value)));
         }
+    }
+
+    /// The energy of a force: that of its pieces, if they are told apart by the stretch or the length.
+    fn energy_of(&self, e: &syntax::Expr, context: &Context<'g>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
+            self.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
+        };
+        let force = read(e, cx)?;
+        let local = |e: &syntax::Expr| {
+            context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
+        };
+        if let ExprKind::Call(name, arguments) = &e.kind
+            && let [left, right, below, above] = arguments.as_slice()
+            && name.text == IF
+        {
+            let found = match (local(left), local(right)) {
+                (Some(x), None) => Some((x, right, [below, above])),
+                (None, Some(x)) => Some((x, left, [above, below])),
+                _ => None,
+            };
+            if let Some((own, border, pieces)) = found {
+                let symbol = Quantity::Given(0).symbol();
+                let x = self.scope.graph.symbol(symbol);
+                let border = read(border, cx)? - (own - x);
+                let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
+                let with = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+                let (below, above) = (below?, above?);
+                let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
+                return Some(with(below, low) + with(above, high) - with(above, border));
+            }
+        }
+        self.integral(force, e, cx)
     }
 
     /// The energy of a force that is a polynomial in the stretch: its Taylor series, integrated.

@@ -6,10 +6,15 @@ use crate::diag::{Place, syn_error};
 use proc_macro2::{Span, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
-use syn::{Ident, Lit, Token, bracketed, parenthesized, token};
+use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 
 /// Deepest expression; a sum of this many terms counts as deep.
 const MAX_DEPTH: usize = 400;
+
+/// The name of calls that stand for laws in two pieces, which no function can have.
+pub const IF: &str = "if";
+
+const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
 /// A parsed expression with its depth.
 struct Parsed(Expr, usize);
@@ -149,7 +154,10 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let (items, deepest, _) = parse_list(&content)?;
         return node(ExprKind::Array(items), place, deepest + 1);
     }
-    let keyword = input.peek(Token![if]) || input.peek(Token![match]) || input.peek(Token![let]);
+    if input.peek(Token![if]) {
+        return parse_pieces(input);
+    }
+    let keyword = input.peek(Token![match]) || input.peek(Token![let]);
     if input.peek(Ident::peek_any) && !keyword {
         let name = parse_name(input)?;
         let place = name.place.clone();
@@ -160,6 +168,65 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         return node(ExprKind::Name(name.text), place, 1);
     }
     Err(no_expression(input))
+}
+
+/// `if a < b { below } else { above }`, as a call with the operands of the comparison, then the piece where it holds and the other
+/// one, or with the pieces in the other order for `a > b`.
+fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
+    let keyword = input.parse::<Token![if]>()?.span;
+    let left = behind(keyword, input, parse_sum)?;
+    let is_less = input.peek(Token![<]) || input.peek(Token![<=]);
+    if input.peek(Token![<=]) {
+        input.parse::<Token![<=]>()?;
+    } else if is_less {
+        input.parse::<Token![<]>()?;
+    } else if input.peek(Token![>=]) {
+        input.parse::<Token![>=]>()?;
+    } else if input.peek(Token![>]) {
+        input.parse::<Token![>]>()?;
+    } else {
+        return Err(syn_error(
+            input.span(),
+            "expected `<` or `>`: a condition compares two quantities",
+            PIECES,
+        ));
+    }
+    let right = parse_sum(input)?;
+    if !input.peek(token::Brace) {
+        return Err(syn_error(input.span(), "expected `{` and what holds where the comparison does", PIECES));
+    }
+    let first = parse_piece(input)?.0;
+    if !input.peek(Token![else]) {
+        let message = "an `if` needs an `else`: it has a value on both sides";
+        return Err(syn_error(keyword, message, PIECES));
+    }
+    input.parse::<Token![else]>()?;
+    let (second, end) = match input.peek(Token![if]) {
+        true => {
+            let second = parse_pieces(input)?;
+            let end = second.0.place.clone();
+            (second, end)
+        }
+        false if input.peek(token::Brace) => parse_piece(input)?,
+        false => return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECES)),
+    };
+    let depth = [&left, &right, &first, &second].map(|part| part.1).into_iter().fold(0, usize::max) + 1;
+    let pieces = if is_less { [first.0, second.0] } else { [second.0, first.0] };
+    let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
+    let place = Place::from(keyword);
+    let name = Name { text: IF.to_string(), place: place.clone() };
+    node(ExprKind::Call(name, arguments), place.to(&end), depth)
+}
+
+/// An expression in braces, and where they close.
+fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
+    let content;
+    let close = braced!(content in input).span.close();
+    if content.is_empty() {
+        return Err(syn_error(close, "expected an expression in these braces", PIECES));
+    }
+    let piece = parse_sum(&content)?;
+    if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected(&content)) }
 }
 
 /// An expression that a macro of the user's hands on: it stays together without parentheses.
@@ -187,8 +254,8 @@ fn no_expression(input: ParseStream<'_>) -> syn::Error {
         "write `parent -> child`"
     } else if input.peek(Token![&]) {
         "parameters are named as they are: remove the `&`"
-    } else if input.peek(token::Brace) || input.peek(Token![if]) || input.peek(Token![match]) {
-        "an expression has no conditions and no blocks; `min`, `max`, `abs` and `signum` may serve"
+    } else if input.peek(token::Brace) || input.peek(Token![match]) {
+        "an expression has no blocks; `if a < b { … } else { … }` chooses between pieces that meet"
     } else if input.is_empty() {
         return input.error(message);
     } else {
@@ -205,7 +272,7 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     } else if input.peek(Token![<]) && input.peek2(Token![-]) || input.peek(Token![=>]) {
         "write `parent -> child`"
     } else if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![!=]) {
-        "there are no comparisons: `min`, `max` and `signum` may serve, and a constraint is an equation, `a = b`"
+        "comparisons stand in `if a < b { … } else { … }`, and a constraint is an equation, `a = b`"
     } else if input.peek(Token![::]) {
         "names have no path: the number π is `pi`, a vector `[a, b, c]`, a constant a parameter"
     } else if input.peek(token::Bracket) {

@@ -26,6 +26,7 @@ mod table;
 pub mod words;
 
 pub use attribute::parse_mechanism;
+pub use expression::IF;
 pub use joint_kind::JointKind;
 pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests,

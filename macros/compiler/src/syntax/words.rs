@@ -189,6 +189,11 @@ impl Expr {
         let text = spell(self);
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
+
+    /// Whether another expression is written in the same words.
+    pub fn is_like(&self, other: &Expr) -> bool {
+        spell(self) == spell(other)
+    }
 }
 
 fn spell(e: &Expr) -> String {
@@ -198,6 +203,12 @@ fn spell(e: &Expr) -> String {
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, member) => format!("{}.{}", spell(base), member.text),
         ExprKind::Method(base, method, items) => format!("{}.{}({})", spell(base), method.text, list(items)),
+        ExprKind::Call(function, items) if function.text == super::IF => match items.as_slice() {
+            [a, b, below, above] => {
+                format!("if {} < {} {{ {} }} else {{ {} }}", spell(a), spell(b), spell(below), spell(above))
+            }
+            _ => function.text.clone(),
+        },
         ExprKind::Call(function, items) => format!("{}({})", function.text, list(items)),
         ExprKind::Neg(inner) => format!("-{}", spell(inner)),
         ExprKind::Binary(op, left, right, _) => {

@@ -27,6 +27,8 @@ pub enum Reason<'a> {
     Components,
     /// The arguments of a function that are compared.
     Alike(&'a str),
+    /// The pieces of a law.
+    Pieces,
 }
 
 /// Where an equation stands.

@@ -199,6 +199,7 @@ fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> 
         Reason::Sum(BinaryOp::Sub) => format!("{found} cannot be subtracted from {expected}"),
         Reason::Sum(_) => format!("{found} cannot be added to {expected}"),
         Reason::Components => format!("this component is {found}, but another is {expected}"),
+        Reason::Pieces => format!("this piece is {found}, but the other is {expected}"),
         Reason::Alike(function) => format!("`{function}` cannot compare {expected} with {found}"),
         Reason::Argument => format!("expected a plain number or an angle, found {found}"),
         Reason::Unit | Reason::Place => format!("expected {expected}, found {found}"),

@@ -9,7 +9,7 @@ use super::si::{
 use super::unify::{Dimension, Variable};
 use super::value::{Value, product};
 use crate::expr::Function;
-use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
+use crate::syntax::{BinaryOp, Expr, ExprKind, IF, Name};
 
 impl<'a> Inference<'a> {
     /// The dimension of an expression.
@@ -164,6 +164,11 @@ impl<'a> Inference<'a> {
                 other => other.power(Ratio::new(1, 2)),
             },
             ("pow", [a, n]) => self.power(a, n),
+            (IF, [_, _, _, _]) => {
+                let (compared, pieces) = arguments.split_at(2);
+                self.all_alike(compared, Reason::Alike(text));
+                self.all_alike(pieces, Reason::Pieces)
+            }
             ("min" | "max", _) => self.all_alike(arguments, Reason::Alike(text)),
             ("atan2", _) => match self.all_alike(arguments, Reason::Alike(text)) {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
@@ -277,6 +282,10 @@ impl<'a> Inference<'a> {
                     // There are no temperatures among the units.
                     _ => Value::Unknown,
                 }
+            }
+            ("stability_axes" | "wind_axes", [_, velocity, components]) => {
+                self.value(velocity);
+                self.value(components)
             }
             (
                 "angle_of_attack" | "sideslip" | "heading" | "elevation" | "bank" | "course" | "flight_path",

@@ -372,10 +372,7 @@ pub const FUNCTIONS: Words = &[
         "rotations stand in `.rotated(z(angle))` and in `#[frame(ground, z(angle))]`",
     ),
     ("diag", "diagonal"),
-    (
-        "if ifelse where piecewise select",
-        "an expression has no conditions; `min`, `max`, `abs` and `signum` may serve",
-    ),
+    ("ifelse where when piecewise pieces select", "a law in pieces is written `if a < b { … } else { … }`"),
 ];
 
 const SI: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`";
