@@ -1,6 +1,7 @@
 //! Implicit methods on generated derivatives: the motion is that by differences, for fewer evaluations of the dynamics.
 
-use linkwork::integrate::{Method, Rodas, Rosenbrock};
+use linkwork::contact::{self, Touch};
+use linkwork::integrate::{DormandPrince8, Method, Rodas, Rosenbrock};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{ByMotion, ConstraintError, Rheonomic, at, constraint::stabilized};
@@ -153,6 +154,40 @@ struct FourBar {
     motor: Torque,
 }
 
+/// A trunk on a leg that stands.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Hopper {
+    #[body(mass = 5)]
+    trunk: Body,
+    #[joint(ground -> trunk, along = (x, y))]
+    air: Stage,
+    #[body(mass = 0.4, com = -0.2 * y, inertia = rod(0.4, 0.4, y))]
+    leg: Body,
+    #[joint(trunk -> leg, about = z)]
+    hip: Pin,
+    #[acts(on = hip)]
+    motor: Torque,
+    #[acts(on = hip, stiffness = 1e4)]
+    buffer: Spring,
+    #[acts(on = hip, damping = 1e3)]
+    oil: Dashpot,
+    #[contact(leg.at(-0.4 * y), ground.plane(y), friction = 0.9)]
+    foot: Contact,
+}
+
+/// A bob that a constraint holds on a circle, pushed.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct OnCircle {
+    #[particle(mass = 2)]
+    bob: Particle,
+    #[joint(ground -> bob, along = (x, y))]
+    place: Stage,
+    #[constraint(norm(r(bob / ground)) = 1)]
+    rod: Holonomic,
+    #[acts(on = place.x)]
+    push: Force,
+}
+
 /// How many evaluations of the dynamics a single step of RODAS takes.
 fn evaluations<M, const NQ: usize, const NV: usize>(
     m: &M,
@@ -233,6 +268,9 @@ fn the_motion_is_that_by_differences() {
     agree(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
     let bar = FourBar {};
     agree(&bar, closed(&bar));
+    let hopper = Hopper {};
+    let stance = contact::hold(&hopper, [Touch::Sticks]).stabilized(20.0);
+    agree(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
 }
 
 #[test]
@@ -247,6 +285,19 @@ fn the_order_is_four() {
     assert!((order - 4.0).abs() < 0.4, "{order}: {:e}", error(0.05));
 }
 
+/// Under constraints the order is that of the method, by generated derivatives and by differences.
+#[test]
+fn the_order_is_four_under_constraints() {
+    let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
+    let precise = ends(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
+    let equal = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
+    let errors = |h: f64| ends(&OnCircle {}, start, equal(h)).map(|end| (end.0 - precise.0).norm());
+    for (coarse, fine) in errors(0.05).into_iter().zip(errors(0.0125)) {
+        let order = (coarse / fine).log2() / 2.0;
+        assert!(order > 3.6, "{order}: {coarse:e}, {fine:e}");
+    }
+}
+
 #[test]
 fn derivatives_spare_two_evaluations_for_each_velocity() {
     let [known, differences] = evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
@@ -257,6 +308,10 @@ fn derivatives_spare_two_evaluations_for_each_velocity() {
     let bar = FourBar {};
     let (q, v) = closed(&bar);
     let [known, differences] = evaluations(&bar, q, v);
+    assert_eq!((known, differences - known), (8, 6));
+    let hopper = Hopper {};
+    let stance = contact::hold(&hopper, [Touch::Sticks]);
+    let [known, differences] = evaluations(&stance, [0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into());
     assert_eq!((known, differences - known), (8, 6));
 }
 

@@ -26,6 +26,7 @@
 //! until it does not.
 
 use crate::constraint::ConstraintError;
+use crate::derivatives::ByMotion;
 use crate::integrate::{Dynamics, Error, State, Steered, System, guided, holding, positive, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
@@ -44,7 +45,7 @@ mod total;
 
 pub use apart::{Apart, apart};
 #[doc(hidden)]
-pub use derivatives::Columns;
+pub use derivatives::{Columns, held_derivatives};
 pub use derivatives::{
     ContactDerivatives, FirstOrder, HeldDerivatives, forward_dynamics_derivatives, linear_motion,
 };
@@ -146,6 +147,19 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         Self: Sized,
     {
         response::responses(self, t, q, closed)
+    }
+
+    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) while contacts do what `touches` says, with
+    /// gaps and rates of what is held decaying at `decay`, 1/s; `None` without [`ContactDerivatives`].
+    fn held_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _state: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        _u: &SVector<Self::Scalar, NU>,
+        _touches: &[Touch; NK],
+        _decay: Self::Scalar,
+    ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
+        None
     }
 
     /// The coefficients of every contact.

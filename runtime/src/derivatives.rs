@@ -150,7 +150,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
 }
 
 /// Derivatives of the accelerations by state and inputs, of those by state and forces and of the forces'.
-fn under_inputs<T: Real, const NV: usize, const NU: usize>(
+pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (mut by_q, mut by_v, by_force): ByMotion<T, NV, NV>,
     (force_by_q, force_by_v, force_by_u): &ByMotion<T, NV, NU>,
 ) -> ByMotion<T, NV, NU> {

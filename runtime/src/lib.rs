@@ -177,6 +177,7 @@ pub mod __private {
         pressing_solution, regular_solution, slipping_response, slipping_solution, with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
+    pub use crate::contact::held_derivatives;
     pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;
     pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};

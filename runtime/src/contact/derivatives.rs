@@ -6,7 +6,7 @@ use super::problem::{Problem, entry};
 use super::{Contacts, Touch};
 use crate::blocks::{add_product, product, transposed, zeros};
 use crate::constraint::ConstraintError;
-use crate::derivatives::LinearMotion;
+use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
 use crate::private::constant;
 use crate::{Real, RheonomicDerivatives};
 use core::ops::Range;
@@ -166,6 +166,33 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     derivatives(mechanism, t, (q, v), tau, touches, T::zero())
+}
+
+/// [`Contacts::held_derivatives`] of mechanisms with derivatives.
+pub fn held_derivatives<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    u: &SVector<T, NU>,
+    touches: &[Touch; NK],
+    decay: T,
+) -> Option<ByMotion<T, NV, NU>>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let tau = mechanism.generalized_forces(t, q, v, u);
+    let found = derivatives(mechanism, t, (q, v), &tau, touches, decay).ok()?;
+    let by_force = (found.by_q, found.by_v, found.by_tau);
+    Some(under_inputs(by_force, &mechanism.generalized_forces_derivatives(t, q, v, u)))
 }
 
 /// [`forward_dynamics_derivatives`] where gaps and rates of what is held decay.

@@ -88,6 +88,8 @@ where
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
     const CONSTRAINED: bool = false;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = true;
@@ -149,15 +151,14 @@ where
         self.mechanism.is_nearly_singular(t, q, dv)
     }
 
-    /// None: methods take differences.
     fn acceleration_derivatives(
         &self,
-        _t: T,
-        _q: &SVector<T, NQ>,
-        _v: &SVector<T, NV>,
-        _u: &SVector<T, NU>,
-    ) -> Option<crate::ByMotion<T, NV, NU>> {
-        None
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Option<ByMotion<T, NV, NU>> {
+        self.mechanism.held_derivatives(t, (q, v), u, &self.touches, self.decay)
     }
 
     fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {

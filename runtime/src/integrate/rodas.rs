@@ -1,7 +1,7 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
 use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::rosenbrock::{Slopes, slopes};
+use super::rosenbrock::{Along, Slopes, slopes};
 use super::stages::Rates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -64,7 +64,8 @@ const TERMS: [[f64; 5]; 2] = [
 /// A step solves six linear systems with one matrix of size `NV`, and evaluates the dynamics eight times and their derivatives once:
 /// those that the word `derivatives` generates, or else differences, which are `2 NV` evaluations more. A trial that is repeated
 /// with a shorter step evaluates the dynamics five times. L-stable: what is fast and stiff is damped away. Errors are measured as
-/// [`DormandPrince`](super::DormandPrince) says, and constraints are kept as by [`Rosenbrock`](super::Rosenbrock). For
+/// [`DormandPrince`](super::DormandPrince) says, and constraints are kept as by [`Rosenbrock`](super::Rosenbrock), with derivatives along
+/// all motions. For
 /// tolerances of about 1e-3 to 1e-8; where nothing is stiff the explicit methods are faster.
 ///
 /// [`Error::NotConverged`] means that the matrix of a step is singular.
@@ -147,7 +148,7 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     before: Option<Slopes<T, NV>>,
 ) -> Linear<T, NV> {
     let Attempt { start, acceleration, h, .. } = *attempt;
-    let mut slopes = slopes(system, start, acceleration, h).or(before).unwrap_or(Slopes::zero());
+    let mut slopes = slopes(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
     // Order 4 asks for more than a forward difference in time; inputs may jump at the start.
     let later = h * constant(1e-3);
     let [first, second] =

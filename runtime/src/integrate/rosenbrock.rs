@@ -44,6 +44,16 @@ impl<T: Real, const NV: usize> Slopes<T, NV> {
     }
 }
 
+/// Along which motions derivatives are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Along {
+    /// Those that constraints let through: for methods whose order does not depend on the matrix.
+    Allowed,
+    /// All: stages leave the constraints as their curvature and centripetal accelerations have it, and a method that takes the matrix
+    /// for the derivatives has its order by all of them.
+    All,
+}
+
 /// Slopes at the start of a step, those in time left zero; `None` in singular positions and so near to them that branches of the
 /// motion part there.
 pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
@@ -51,6 +61,7 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
     h: T,
+    along: Along,
 ) -> Option<Slopes<T, NV>> {
     let State { t, q, v } = start;
     if system.is_nearly_singular(*t, q, &(v * h)) {
@@ -58,8 +69,9 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     }
     let mut out = Slopes::<T, NV>::zero();
     let known = system.acceleration_derivatives(*t, q, v);
+    let is_part = along == Along::Allowed && system.is_constrained();
     if let Some((by_q, by_v)) = known
-        && !system.is_constrained()
+        && !is_part
     {
         return Some(Slopes { by_q, by_v, ..out });
     }
@@ -68,7 +80,7 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     for k in 0..NV {
         let mut direction = SVector::<T, NV>::zeros();
         direction[k] = T::one();
-        if system.is_constrained() {
+        if is_part {
             // What constraints let through of it: elsewhere branches that the motion is not on part from its own.
             let p = system.momentum(*t, q, &(v + direction)) - momentum;
             direction = system.impulse(*t, q, v, T::zero(), &p);
@@ -147,7 +159,8 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let mut slopes = slopes(system, start, &before, h).or(*memory).unwrap_or(Slopes::zero());
+        let mut slopes =
+            slopes(system, start, &before, h, Along::Allowed).or(*memory).unwrap_or(Slopes::zero());
         let later = h * constant(1e-3);
         slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / later;
         let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);

@@ -2,7 +2,7 @@
 
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::Need;
+use crate::catalogue::{Need, Shape};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -90,6 +90,16 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     } else {
         String::new()
     };
+    if i.facts.requests.derivatives {
+        let (u, square) = (s.vector(s.nu), s.shape(Shape::Square(nv)));
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: &[::linkwork::contact::Touch; {count}], decay: {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+                ::linkwork::__private::held_derivatives(self, t, state, u, touches, decay)
+            }}",
+            inputs = s.shape(Shape::Matrix(nv, s.nu)),
+        );
+    }
     let _ = writeln!(
         out,
         "const CONTACTS: [&'static str; {count}] = Self::CONTACTS;
