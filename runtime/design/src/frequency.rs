@@ -59,6 +59,11 @@ impl FrequencyMap {
         Ok(complex(&self.c) * x + complex(&self.d))
     }
 
+    /// The direct way of a single channel: the response at an infinite frequency.
+    pub(crate) fn direct(&self) -> C {
+        self.d.iter().next().map_or(C::new(0.0, 0.0), |d| C::new(*d, 0.0))
+    }
+
     /// The response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
     ///
     /// # Errors

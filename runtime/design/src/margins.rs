@@ -3,6 +3,7 @@
 use crate::frequency::{FrequencyMap, boundary};
 use crate::matrices::C;
 use crate::{Error, StateSpace, TransferFunction};
+use nalgebra::DMatrix;
 
 /// Where a loop's response is real and negative: the factor that would bring it to the border of stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,7 @@ impl PhaseMargin {
 pub struct StabilityMargin {
     /// The distance: one over the peak of the sensitivity.
     pub distance: f64,
-    /// rad/s.
+    /// rad/s; infinite where high frequencies come near it.
     pub frequency: f64,
 }
 
@@ -175,13 +176,11 @@ impl StateSpace {
     pub fn margins(&self) -> Result<Margins, Error> {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
-        let mut grid = self.natural_frequencies(1500)?;
-        // Far out, where a small or a large gain alone crosses one.
-        if let (Some(first), Some(last)) = (grid.first().copied(), grid.last().copied()) {
-            let below = (1..=200).rev().map(|k| first * 10f64.powf(-f64::from(k) / 25.0));
-            let above = (1..=200).map(|k| last * 10f64.powf(f64::from(k) / 25.0));
-            grid = below.chain(grid.iter().copied()).chain(above.filter(|_| self.period.is_none())).collect();
-        }
+        let known = if self.period.is_none() { self.margin_frequencies() } else { None };
+        let grid = match &known {
+            Some((grid, _)) => grid.clone(),
+            None => self.margin_grid()?,
+        };
         let response: Vec<C> = grid.iter().map(|w| open.at(*w)).collect();
         let mut gain = Vec::new();
         let mut take = |frequency: f64, value: C| {
@@ -207,11 +206,73 @@ impl StateSpace {
             .into_iter()
             .map(|w| PhaseMargin { degrees: (-open.at(w)).arg().to_degrees(), frequency: w });
         gain.dedup_by(|a, b| (a.frequency - b.frequency).abs() <= 1e-9 * b.frequency);
-        Ok(Margins { gain, phase: phase.collect(), stability: open.stability(&grid, &response) })
+        let stability = match known {
+            Some((_, nearest)) => open.stability_at(nearest),
+            None => open.stability(&grid, &response),
+        };
+        Ok(Margins { gain, phase: phase.collect(), stability })
+    }
+
+    /// Frequencies close together, over all that the system does and eight decades beyond, where a small or a large gain alone
+    /// crosses one.
+    fn margin_grid(&self) -> Result<Vec<f64>, Error> {
+        let grid = self.natural_frequencies(1500)?;
+        let (Some(first), Some(last)) = (grid.first().copied(), grid.last().copied()) else {
+            return Ok(grid);
+        };
+        let below = (1..=200).rev().map(|k| first * 10f64.powf(-f64::from(k) / 25.0));
+        let above = (1..=200).map(|k| last * 10f64.powf(f64::from(k) / 25.0));
+        let above = above.filter(|_| self.period.is_none());
+        Ok(below.chain(grid.iter().copied()).chain(above).collect())
+    }
+
+    /// Frequencies between all crossings of a continuous system, and where the sensitivity `1 / (1 + G)` is largest. The magnitude
+    /// is one at imaginary eigenvalues of a Hamiltonian matrix, and the response is real at the imaginary zeros of
+    /// `G(s) − G(−s)`. `None` where these are not to be had: of direct ways of magnitude one, or a sensitivity with poles on the
+    /// border.
+    fn margin_frequencies(&self) -> Option<(Vec<f64>, f64)> {
+        const NEAR: f64 = 1e-3;
+        let n = self.order();
+        let mut found = self.level_crossings(1.0, NEAR).ok()?;
+        let mut a = DMatrix::zeros(2 * n, 2 * n);
+        a.view_mut((0, 0), (n, n)).copy_from(&self.a);
+        a.view_mut((n, n), (n, n)).copy_from(&-&self.a);
+        let (mut b, mut c) = (DMatrix::zeros(2 * n, 1), DMatrix::zeros(1, 2 * n));
+        for k in [0, n] {
+            b.view_mut((k, 0), (n, 1)).copy_from(&self.b);
+            c.view_mut((0, k), (1, n)).copy_from(&self.c);
+        }
+        let odd = StateSpace::new(a, b, c, DMatrix::zeros(1, 1)).ok()?;
+        found.extend(odd.zeros().ok()?.iter().filter(|s| s.re.abs() <= NEAR * s.norm()).map(|s| s.im.abs()));
+        found.extend(self.poles().ok()?.iter().chain(&self.zeros().ok()?).map(|s| s.norm()));
+        found.retain(|w| *w > 0.0 && w.is_finite());
+        found.sort_by(f64::total_cmp);
+        found.dedup_by(|a, b| *a - *b <= 1e-10 * *a);
+        let between = found.windows(2).map(|pair| (pair[0] * pair[1]).sqrt());
+        let ends = found.first().map(|w| 0.1 * w).into_iter().chain(found.last().map(|w| 10.0 * w));
+        let mut grid: Vec<f64> = between.chain(ends).collect();
+        grid.sort_by(f64::total_cmp);
+        // `S = 1 / (1 + G)`, in the states of `G`.
+        let factor = 1.0 / (1.0 + self.d[(0, 0)]);
+        let closed = &self.a - &self.b * &self.c * factor;
+        let (b, c) = (&self.b * factor, &self.c * -factor);
+        let sensitivity = StateSpace::new(closed, b, c, DMatrix::from_element(1, 1, factor)).ok()?;
+        Some((grid, sensitivity.largest_gain().ok()?.frequency))
     }
 }
 
 impl Loop {
+    /// The least distance from −1, which is taken near a frequency.
+    fn stability_at(&self, near: f64) -> StabilityMargin {
+        let distance = |w: f64| {
+            let at = if w.is_finite() { self.at(w) } else { self.map.direct() };
+            (at + 1.0).norm()
+        };
+        let polished = if near > 0.0 && near.is_finite() { self.polish(near) } else { near };
+        let frequency = if distance(polished) <= distance(near) { polished } else { near };
+        StabilityMargin { distance: distance(frequency), frequency }
+    }
+
     fn stability(&self, grid: &[f64], response: &[C]) -> StabilityMargin {
         let distance = |w: f64| (self.at(w) + 1.0).norm();
         let values: Vec<f64> = response.iter().map(|value| (value + 1.0).norm()).collect();

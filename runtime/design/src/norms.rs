@@ -43,6 +43,11 @@ impl StateSpace {
             let PeakGain { gain, frequency } = self.undiscretize(Hold::Tustin)?.peak_gain()?;
             return Ok(PeakGain { gain, frequency: 2.0 / h * (0.5 * frequency * h).atan() });
         }
+        self.largest_gain()
+    }
+
+    /// The largest gain at real frequencies of a continuous system, stable or not.
+    pub(crate) fn largest_gain(&self) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain = |w: f64| -> Result<f64, Error> {
             let m = map.response(w)?;
@@ -66,15 +71,17 @@ impl StateSpace {
             if level == 0.0 {
                 break;
             }
-            let crossings = self.level_crossings(level)?;
+            // Where the level is nearly the peak, two eigenvalues that nearly coincide may lie beside the axis.
+            let crossings = self.level_crossings(level, 1e-4)?;
             let mut higher = best;
-            for pair in crossings.windows(2) {
+            let between = crossings.windows(2).flat_map(|pair| {
                 let w = (pair[0] * pair[1]).sqrt().max(0.5 * pair[0]);
-                for w in [w, 0.5 * (pair[0] + pair[1])] {
-                    let gain = gain(w)?;
-                    if gain > higher.gain {
-                        higher = PeakGain { gain, frequency: w };
-                    }
+                [w, 0.5 * (pair[0] + pair[1])]
+            });
+            for w in between.chain(crossings.iter().copied()) {
+                let gain = gain(w)?;
+                if gain > higher.gain {
+                    higher = PeakGain { gain, frequency: w };
                 }
             }
             if higher.gain <= best.gain * (1.0 + 1e-13) {
@@ -85,8 +92,9 @@ impl StateSpace {
         Ok(best)
     }
 
-    /// Frequencies at which a singular value is `level`, from low to high.
-    fn level_crossings(&self, level: f64) -> Result<Vec<f64>, Error> {
+    /// Frequencies at which a singular value is `level`, from low to high: eigenvalues as near to the imaginary axis, beside their
+    /// size, as is said.
+    pub(crate) fn level_crossings(&self, level: f64, near: f64) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = crate::matrices::balance_system(&self.a, &self.b, &self.c);
         let (n, m) = b.shape();
         let d = &self.d;
@@ -101,7 +109,7 @@ impl StateSpace {
         h.view_mut((n, 0), (n, n)).copy_from(&(lower * (-1.0 / level)));
         h.view_mut((n, n), (n, n)).copy_from(&-f.transpose());
         let size = a.norm();
-        let near = |s: &C| s.re.abs() <= 1e-8 * (size + s.norm());
+        let near = |s: &C| s.re.abs() <= near * s.norm() + 1e-8 * size;
         let mut all: Vec<f64> =
             eigenvalues(&h)?.iter().filter(|s| near(s) && s.im >= 0.0).map(|s| s.im).collect();
         all.sort_by(f64::total_cmp);

@@ -1,7 +1,7 @@
 //! Published and exact figures.
 
-use linkwork_design::matrices::{Cost, eigenvalues, riccati};
-use linkwork_design::{Polynomial, StateSpace, TransferFunction};
+use linkwork_design::matrices::{Cost, discrete_riccati, eigenvalues, riccati};
+use linkwork_design::{Polynomial, Special, StateSpace, TransferFunction};
 use nalgebra::{Complex, DMatrix, dmatrix};
 
 type C = Complex<f64>;
@@ -235,4 +235,100 @@ fn whipple_bicycle() {
     {
         assert_eq!(at(v).is_stable().unwrap(), stable, "at {v} m/s");
     }
+}
+
+/// Benner, Laub and Mehrmann, *A collection of benchmark examples for the numerical solution of algebraic Riccati equations* (1995):
+/// those of continuous time with exact solutions, from examples 1, 2, 7 and 12.
+#[test]
+fn riccati_benchmarks() {
+    let same = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
+        assert!(
+            (found - expected).norm() <= tolerance * expected.norm(),
+            "expected {expected}, found {found}"
+        );
+    };
+    let x = riccati(&dmatrix![0.0, 1.0; 0.0, 0.0], &dmatrix![0.0; 1.0], &Cost::diagonal(&[1.0, 2.0], &[1.0]));
+    same(&x.unwrap().x, &dmatrix![2.0, 1.0; 1.0, 2.0], 1e-14);
+    let q = dmatrix![9.0, 6.0; 6.0, 4.0];
+    let x = riccati(
+        &dmatrix![4.0, 3.0; -4.5, -3.5],
+        &dmatrix![1.0; -1.0],
+        &Cost::new(q.clone(), DMatrix::identity(1, 1)),
+    );
+    same(&x.unwrap().x, &(q * (1.0 + 2.0_f64.sqrt())), 1e-13);
+    // Nearly uncontrollable.
+    for epsilon in [1.0, 1e-2, 1e-4, 1e-6_f64] {
+        let (a, b) = (dmatrix![1.0, 0.0; 0.0, -2.0], dmatrix![epsilon; 0.0]);
+        let found = riccati(&a, &b, &Cost::new(DMatrix::from_element(2, 2, 1.0), DMatrix::identity(1, 1)));
+        let found = found.unwrap().x;
+        let root = (1.0 + epsilon * epsilon).sqrt();
+        let across = 1.0 / (2.0 + root);
+        close(found[(0, 0)], (1.0 + root) / (epsilon * epsilon), 1e-10);
+        close(found[(0, 1)], across, 1e-6);
+        close(found[(1, 1)], 0.25 * (1.0 - epsilon * epsilon * across * across), 1e-6);
+    }
+    // Eigenvalues and costs of very different sizes.
+    let turn = DMatrix::identity(3, 3) - DMatrix::from_element(3, 3, 2.0 / 3.0);
+    for e in [1e-2_f64, 1.0, 1e2, 1e4] {
+        let diagonal = |d: [f64; 3]| &turn * DMatrix::from_diagonal(&d.to_vec().into()) * &turn;
+        let cost = Cost::new(diagonal([1.0 / e, 1.0, e]), DMatrix::identity(3, 3) * e);
+        let found = riccati(&diagonal([e, 2.0 * e, 3.0 * e]), &DMatrix::identity(3, 3), &cost).unwrap();
+        let (square, four) = (e * e, e.powi(4));
+        let x = [
+            square + (four + 1.0).sqrt(),
+            2.0 * square + (4.0 * four + e).sqrt(),
+            3.0 * square + (9.0 * four + square).sqrt(),
+        ];
+        same(&found.x, &diagonal(x), 1e-12);
+    }
+}
+
+/// Benner, Laub and Mehrmann's collection of discrete time, with exact solutions; the weight of inputs may vanish there.
+#[test]
+fn discrete_riccati_benchmarks() {
+    let (a, b) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0]);
+    let q = dmatrix![1.0, 2.0; 2.0, 4.0];
+    let x = discrete_riccati(&a, &b, &Cost::new(q, DMatrix::identity(1, 1))).unwrap().x;
+    let expected = dmatrix![1.0, 2.0; 2.0, 2.0 + 5.0_f64.sqrt()];
+    assert!((x - expected).norm() < 1e-12);
+    let (a, b) = (dmatrix![2.0, -1.0; 1.0, 0.0], dmatrix![1.0; 0.0]);
+    let x = discrete_riccati(&a, &b, &Cost::diagonal(&[0.0, 1.0], &[0.0])).unwrap().x;
+    assert!((x - DMatrix::identity(2, 2)).norm() < 1e-12);
+}
+
+/// `K / (s + 1)ⁿ` crosses the axis at `tan(π/n)`, where its gain is `cosⁿ(π/n)`; `K / (s (s + 1) (s + 5))` at `√5`, with `K / 30`.
+#[test]
+fn repeated_poles_have_their_margins() {
+    for n in [3_usize, 4, 5, 8] {
+        let roots = vec![C::new(-1.0, 0.0); n];
+        let denominator = Polynomial::from_roots(&roots);
+        let open = TransferFunction::quotient(&Polynomial::constant(0.9), &denominator).unwrap();
+        let margin = open.margins().unwrap().gain_increase().unwrap();
+        let angle = std::f64::consts::PI / n as f64;
+        close(margin.frequency, angle.tan(), 1e-9);
+        close(margin.factor, angle.cos().powi(-(n as i32)) / 0.9, 1e-9);
+        assert!(open.margins().unwrap().phase.is_empty());
+    }
+    for gain in [10.0, 100.0] {
+        let margins = TransferFunction::new([gain], [1.0, 6.0, 5.0, 0.0]).unwrap().margins().unwrap();
+        let margin = margins.nearest_gain().unwrap();
+        close(margin.factor, 30.0 / gain, 1e-12);
+        close(margin.frequency, 5.0_f64.sqrt(), 1e-12);
+        let phase = margins.nearest_phase().unwrap();
+        let w = phase.frequency;
+        close(phase.degrees, 90.0 - w.atan().to_degrees() - (w / 5.0).atan().to_degrees(), 1e-10);
+        close(w * (w * w + 1.0).sqrt() * (w * w + 25.0).sqrt(), gain, 1e-12);
+    }
+}
+
+/// Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, one of zeros, and its roots on the border.
+#[test]
+fn routh_of_ogata() {
+    let right = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;
+    assert_eq!(right(&[1.0, 2.0, 3.0, 4.0, 5.0]), 2);
+    assert_eq!(right(&[1.0, 2.0, 1.0, 2.0]), 0);
+    assert_eq!(right(&[1.0, 0.0, -3.0, 2.0]), 2);
+    let table = Polynomial::new([1.0, 2.0, 24.0, 48.0, -25.0, -50.0]).routh().unwrap();
+    assert_eq!(table.right, 1);
+    assert!(table.special.contains(&Special::ZeroRow));
 }

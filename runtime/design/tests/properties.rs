@@ -346,3 +346,47 @@ fn poles_are_put_where_they_should_be() {
     assert_eq!(fixed.place(&[one, alone]), Err(Error::Unpaired { pole: alone }));
     assert!(matches!(fixed.place(&[one]), Err(Error::Count { expected: 2, found: 1, .. })));
 }
+
+/// Every crossing that a fine grid sees is found, and is one; at the least distance from −1 the sensitivity is largest.
+#[test]
+fn margins_miss_no_crossing() {
+    let mut random = Random(7);
+    for k in 0..21 {
+        let system = random.stable(2 + k % 7, 1, 1, if k % 3 == 0 { 2.0 } else { 0.0 });
+        let size = 10f64.powf(2.0 * random.next());
+        let loose = StateSpace::gain(dmatrix![size]).unwrap().series(&system).unwrap();
+        let margins = loose.margins().unwrap();
+        let grid = loose.natural_frequencies(1500).unwrap();
+        let values = loose.frequency_response(0, 0, &grid).unwrap().values;
+        let (mut real, mut one) = (Vec::new(), Vec::new());
+        for (pair, w) in values.windows(2).zip(&grid) {
+            if pair[0].im * pair[1].im < 0.0 && pair[0].re < 0.0 && pair[1].re < 0.0 {
+                real.push(*w);
+            }
+            if (pair[0].norm() - 1.0) * (pair[1].norm() - 1.0) < 0.0 {
+                one.push(*w);
+            }
+        }
+        for w in real {
+            assert!(margins.gain.iter().any(|m| (m.frequency / w - 1.0).abs() < 1e-2), "{k}: gain at {w}");
+        }
+        for w in one {
+            assert!(margins.phase.iter().any(|m| (m.frequency / w - 1.0).abs() < 1e-2), "{k}: phase at {w}");
+        }
+        let at = |w: f64| loose.at(C::new(0.0, w)).unwrap()[(0, 0)];
+        for m in &margins.gain {
+            assert!((at(m.frequency) * m.factor + 1.0).norm() < 1e-6, "{k}: {m:?}");
+        }
+        for m in &margins.phase {
+            assert!((at(m.frequency).norm() - 1.0).abs() < 1e-9, "{k}: {m:?}");
+        }
+        let ends = [at(0.0), at(1e9 * grid[grid.len() - 1])];
+        let least = values.iter().chain(&ends).map(|x| (x + 1.0).norm()).fold(f64::INFINITY, f64::min);
+        assert!(
+            margins.stability.distance <= least * (1.0 + 1e-9),
+            "{k}: {} {least}",
+            margins.stability.distance
+        );
+        assert!(margins.stability.distance >= least * 0.99, "{k}: {} {least}", margins.stability.distance);
+    }
+}

@@ -207,14 +207,19 @@ pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
 
 /// The discrete equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0` by doubling that keeps the structure
 /// (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time algebraic Riccati equations*, 2004),
-/// which needs no inverse of `A`; then Newton's method.
+/// which needs no inverse of `A`; then Newton's method. `R` may be singular where `R + Bᵀ X B` is not.
 ///
 /// # Errors
 ///
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`] and
 /// [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    cost.check(a, b)?;
+    match cost.check(a, b) {
+        Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
+            return with_free_inputs(a, b, cost);
+        }
+        checked => checked?,
+    };
     check_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
     let [f, g, q] = cost.without_products(a, b)?;
     // Symplectic matrices lose digits where A is near to singular, doubling where it is far from stable.
@@ -228,6 +233,18 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
         }
     }
     best
+}
+
+/// Where inputs cost nothing: Newton's method from the solution for inputs that cost little.
+fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
+    let little = 1e-6 * (cost.r.norm() + cost.q.norm() * b.norm_squared());
+    if little == 0.0 {
+        return Err(Error::Singular { what: "R" });
+    }
+    let m = b.ncols();
+    let near = Cost { r: &cost.r + DMatrix::identity(m, m) * little, ..cost.clone() };
+    let found = discrete_riccati(a, b, &near)?;
+    Ok(refined(a, b, cost, found.x)?.0)
 }
 
 /// The limit of the doubled equation.
