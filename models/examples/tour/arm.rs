@@ -1,10 +1,10 @@
 //! A Panda arm draws a figure eight with a load that its controller does not know of.
 
-use crate::plot::{Plot, Series};
-use crate::report::{Check, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use crate::scene::{Part, Point, Scene, Tone, View, point};
 use linkwork::nalgebra::{IsometryMatrix3, Vector3, Vector6};
 use linkwork::prelude::*;
+use linkwork_design::picture::Chart;
 use linkwork_models::{LoadedPanda, PandaArm};
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::hint::black_box;
@@ -93,32 +93,22 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         rows: timings(&observed.samples).map(call).into(),
     };
     let scene = scene(observed);
-    let curve = |(name, run): &(&str, Run)| {
-        let points = run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| [s.t, 1e3 * e]);
-        Series::new(*name, points.collect())
+    let curve = |chart: Chart, (name, run): &(&str, Run)| {
+        chart.curve(*name, run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| (s.t, 1e3 * e)))
     };
-    let plots = vec![
-        Plot {
-            title: "Tracking error of the fingertips",
-            x: "time, s",
-            y: "error, mm",
-            logarithmic: true,
-            series: cases.iter().map(curve).collect(),
-            marks: vec![(DRAWING, "at rest")],
-        },
-        Plot {
-            title: "Torques of the first four motors, unknown load, observed",
-            x: "time, s",
-            y: "torque, N·m",
-            logarithmic: false,
-            series: (0..4)
-                .map(|k| {
-                    let points = observed.samples.iter().step_by(10).map(|s| [s.t, s.u[k]]);
-                    Series::new(format!("joint {}", k + 1), points.collect())
-                })
-                .collect(),
-            marks: Vec::new(),
-        },
+    let torque = |chart: Chart, k: usize| {
+        let points = observed.samples.iter().step_by(10).map(|s| (s.t, s.u[k]));
+        chart.curve(format!("joint {}", k + 1), points)
+    };
+    let pictures = vec![
+        Picture::over_time("Tracking error of the fingertips", "error, mm", |chart| {
+            cases.iter().fold(chart.logarithmic(), curve).instant(DRAWING, "at rest")
+        })?,
+        Picture::over_time(
+            "Torques of the first four motors, unknown load, observed",
+            "torque, N·m",
+            |chart| (0..4).fold(chart, torque),
+        )?,
     ];
     Ok(Section {
         title: "A seven-axis arm draws a figure eight".into(),
@@ -133,7 +123,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         tables: vec![table, calls],
         checks,
         scenes: vec![scene],
-        plots,
+        pictures,
     })
 }
 

@@ -1,11 +1,11 @@
 //! A cart-pole: swung up by its energy, caught and held by a linear–quadratic regulator.
 
-use crate::lqr::gains;
-use crate::plot::{Plot, Series};
-use crate::report::{Check, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use crate::scene::{Part, Scene, Tone, View, corners, faces, point};
 use linkwork::nalgebra::IsometryMatrix3;
 use linkwork::prelude::*;
+use linkwork_design::matrices::Cost;
+use linkwork_design::mechanism::linear_system;
 use linkwork_models::CartPole;
 use std::f64::consts::{PI, TAU};
 
@@ -31,8 +31,10 @@ struct Controller {
 }
 
 pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
-    let linear = CART_POLE.linearize(&State::zeros(), &State::zeros(), &SVector::zeros());
-    let gains = gains(&linear, PERIOD, [20.0, 10.0, 1.0, 1.0], [0.05]).ok_or("no gains")?;
+    let upright_system = linear_system(&CART_POLE, &State::zeros(), &State::zeros(), &SVector::zeros())?;
+    // Riccati's equation for inputs that are held over a period.
+    let best = upright_system.lqr_held(&Cost::diagonal(&[20.0, 10.0, 1.0, 1.0], &[0.05]), PERIOD)?;
+    let gains = SMatrix::<f64, 1, 4>::from_iterator(best.gain.iter().copied());
     let mut controller = Controller { gains, caught: None };
     let mut forces = Vec::new();
     let run = simulate(&CART_POLE)
@@ -72,34 +74,21 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     ];
     // Upright is a multiple of a full turn; the one that was reached is drawn as zero.
     let turns = samples.last().map_or(0.0, |s| (s.q[1] / TAU).round() * TAU);
-    let column = |f: &dyn Fn(&State) -> f64| samples.iter().map(|s| [s.t, f(&s.q)]).collect();
-    let marks = vec![(caught, "caught"), (SHOVE.start, "shove")];
-    let plots = vec![
-        Plot {
-            title: "Cart and pole",
-            x: "time, s",
-            y: "position, m; angle, rad",
-            logarithmic: false,
-            series: vec![
-                Series::new("cart x", column(&|q| q[0])),
-                Series::new("pole θ from upright", column(&|q| q[1] - turns)),
-            ],
-            marks: marks.clone(),
-        },
-        Plot {
-            title: "Force of the motor on the cart",
-            x: "time, s",
-            y: "force, N",
-            logarithmic: false,
-            series: vec![Series::new("push", forces)],
-            marks,
-        },
+    let pictures = vec![
+        Picture::over_time("Cart and pole", "position, m; angle, rad", |chart| {
+            let cart = chart.curve("cart x, m", samples.iter().map(|s| (s.t, s.q[0])));
+            let both = cart.curve("pole θ from upright, rad", samples.iter().map(|s| (s.t, s.q[1] - turns)));
+            both.instant(caught, "caught").instant(SHOVE.start, "shove")
+        })?,
+        Picture::over_time("Force of the motor on the cart", "force, N", |chart| {
+            chart.curve("", pairs(&forces)).instant(caught, "caught").instant(SHOVE.start, "shove")
+        })?,
     ];
     Ok(Section {
         title: "A cart-pole swings itself up".into(),
         text: format!(
             "It hangs down; a digital controller at {:.0} Hz pumps energy into the pole, catches it upright with a \
-             linear–quadratic regulator (gains from the linearised generated equations) and holds it against a shove.",
+             linear–quadratic regulator (Riccati's equation on the linearised generated equations) and holds it against a shove.",
             1.0 / PERIOD
         ),
         declaration: declaration(include_str!("../../src/cart_pole.rs"), "CartPole"),
@@ -107,7 +96,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         tables: vec![table],
         checks,
         scenes: vec![scene(&samples, caught)],
-        plots,
+        pictures,
     })
 }
 

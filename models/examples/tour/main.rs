@@ -1,4 +1,4 @@
-//! A tour of Linkwork: five mechanisms, each simulated from generated equations and held against what mechanics
+//! A tour of Linkwork: six mechanisms, each simulated from generated equations and held against what mechanics
 //! says about it.
 //!
 //! ```text
@@ -8,12 +8,11 @@
 //! It prints a report, writes `index.html` with animations and plots (into `target/tour`, or the folder given as the
 //! only argument), and fails if any check does.
 
+mod aircraft;
 mod arm;
 mod cart_pole;
-mod lqr;
 mod page;
 mod pendulum;
-mod plot;
 mod quadruped;
 mod report;
 mod scene;
@@ -31,9 +30,9 @@ type Stop = fn() -> Result<Section, Box<dyn Error>>;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
-    let stops: [Stop; 5] = [pendulum::run, cart_pole::run, arm::run, quadruped::run, top::run];
+    let stops: [Stop; 6] = [pendulum::run, cart_pole::run, arm::run, quadruped::run, aircraft::run, top::run];
     println!(
-        "Linkwork: mechanisms as annotated structs, compiled to equations of motion. A tour in five stops.\n"
+        "Linkwork: mechanisms as annotated structs, compiled to equations of motion. A tour in six stops.\n"
     );
     let mut sections = Vec::new();
     for (k, stop) in stops.iter().enumerate() {

@@ -55,9 +55,13 @@ fn write_section(out: &mut String, number: usize, s: &Section) {
             scene.json()
         );
     }
-    for plot in &s.plots {
-        let _ =
-            writeln!(out, "<figure><figcaption>{}</figcaption>{}</figure>", escape(plot.title), plot.svg());
+    for picture in &s.pictures {
+        let _ = writeln!(
+            out,
+            "<figure class='plot'><figcaption>{}</figcaption>{}</figure>",
+            escape(picture.title),
+            picture.svg
+        );
     }
     out.push_str("</div>\n");
     out.push_str("<div class='tables'>");

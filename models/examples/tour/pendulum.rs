@@ -1,9 +1,9 @@
 //! A pendulum over a thousand seconds: what three integrators make of its energy and its phase.
 
-use crate::plot::{Plot, Series};
-use crate::report::{Check, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
+use linkwork_design::picture::Chart;
 use linkwork_models::Pendulum;
 use std::time::Instant;
 
@@ -58,22 +58,14 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             1e-2,
         ),
     ];
-    let energy = Plot {
-        title: "Energy error of the pendulum",
-        x: "time, s",
-        y: "|E − E₀| / mgl",
-        logarithmic: true,
-        series: methods.each_ref().map(|(name, _, run)| Series::new(*name, run.energy.clone())).into(),
-        marks: Vec::new(),
-    };
-    let phase = Plot {
-        title: "Angle against the exact solution",
-        x: "time, s",
-        y: "|θ − θ exact|, rad",
-        logarithmic: true,
-        series: methods.map(|(name, _, run)| Series::new(name, run.angle)).into(),
-        marks: Vec::new(),
-    };
+    let energy = Picture::over_time("Energy error of the pendulum", "|E − E₀| / mgl", |chart| {
+        let add = |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.energy));
+        methods.iter().fold(chart.logarithmic(), add)
+    })?;
+    let phase = Picture::over_time("Angle against the exact solution", "|θ − θ exact|, rad", |chart| {
+        let add = |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.angle));
+        methods.iter().fold(chart.logarithmic(), add)
+    })?;
     Ok(Section {
         title: format!("A pendulum swings for {DURATION} s"),
         text: format!(
@@ -86,7 +78,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         tables: vec![table],
         checks,
         scenes: Vec::new(),
-        plots: vec![energy, phase],
+        pictures: vec![energy, phase],
     })
 }
 

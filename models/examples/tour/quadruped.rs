@@ -1,11 +1,11 @@
 //! A quadruped turns a somersault: nothing holds it, so its centre of mass and its angular momentum obey Newton alone.
 
-use crate::plot::{Plot, Series};
-use crate::report::{Check, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use crate::scene::{Part, Point, Scene, Tone, View, corners, faces, point};
 use linkwork::integrate::Method;
 use linkwork::nalgebra::{Matrix3, Vector3};
 use linkwork::prelude::*;
+use linkwork_design::picture::Chart;
 use linkwork_models::Solo12;
 
 type Sample12 = Sample<f64, 19, 18, 12>;
@@ -58,31 +58,17 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         Check::new("trunk against level at landing, rad", landing, 1e-6),
         Check::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
     ];
-    let marks = vec![(TUCKING[0] * FLIGHT, "tuck"), (OPENING[0] * FLIGHT, "open")];
-    let plots = vec![
-        Plot {
-            title: "Angular velocity of the trunk",
-            x: "time, s",
-            y: "angular velocity, rad/s",
-            logarithmic: false,
-            series: ["roll", "pitch", "yaw"]
-                .iter()
-                .enumerate()
-                .map(|(k, n)| Series::new(*n, rates(k)))
-                .collect(),
-            marks,
-        },
-        Plot {
-            title: "Conservation (Dormand–Prince)",
-            x: "time, s",
-            y: "deviation",
-            logarithmic: true,
-            series: vec![
-                Series::new("centre of mass off parabola, m", parabola(samples)),
-                Series::new("angular momentum, relative", drift(samples)),
-            ],
-            marks: Vec::new(),
-        },
+    let pictures = vec![
+        Picture::over_time("Angular velocity of the trunk", "angular velocity, rad/s", |chart| {
+            let add = |chart: Chart, (k, name): (usize, &str)| chart.curve(name, pairs(&rates(k)));
+            let chart = ["roll", "pitch", "yaw"].into_iter().enumerate().fold(chart, add);
+            chart.instant(TUCKING[0] * FLIGHT, "tuck").instant(OPENING[0] * FLIGHT, "open")
+        })?,
+        Picture::over_time("Conservation (Dormand–Prince)", "deviation", |chart| {
+            let fallen =
+                chart.logarithmic().curve("centre of mass off parabola, m", pairs(&parabola(samples)));
+            fallen.curve("angular momentum, relative", pairs(&drift(samples)))
+        })?,
     ];
     Ok(Section {
         title: "A quadruped turns a somersault".into(),
@@ -97,7 +83,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         tables: vec![table],
         checks,
         scenes: vec![scene(samples)],
-        plots,
+        pictures,
     })
 }
 

@@ -1,7 +1,7 @@
 //! One stop of the tour as data, and as text for the terminal; [`crate::page`] makes a web page of the same.
 
-use crate::plot::Plot;
 use crate::scene::Scene;
+use linkwork_design::picture::Chart;
 use std::fmt::Write;
 
 /// What one stop has to show.
@@ -20,8 +20,32 @@ pub struct Section {
     pub checks: Vec<Check>,
     /// Moving pictures.
     pub scenes: Vec<Scene>,
-    /// Plots.
-    pub plots: Vec<Plot>,
+    /// Pictures that stand still.
+    pub pictures: Vec<Picture>,
+}
+
+/// A picture as SVG.
+pub struct Picture {
+    /// Heading.
+    pub title: &'static str,
+    /// The picture.
+    pub svg: String,
+}
+
+impl Picture {
+    /// Curves over time with a label for what they show; `draw` adds them.
+    pub fn over_time(
+        title: &'static str,
+        y: &str,
+        draw: impl FnOnce(Chart) -> Chart,
+    ) -> Result<Self, linkwork_design::Error> {
+        Ok(Self { title, svg: draw(Chart::over_time("", y)).svg()? })
+    }
+}
+
+/// Points for a curve.
+pub fn pairs(points: &[[f64; 2]]) -> impl Iterator<Item = (f64, f64)> {
+    points.iter().map(|[x, y]| (*x, *y))
 }
 
 /// A table; the first column holds names, the others figures.

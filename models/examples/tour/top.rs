@@ -1,7 +1,6 @@
 //! A heavy top: its precession and its nutation against Lagrange's closed forms.
 
-use crate::plot::{Plot, Series};
-use crate::report::{Check, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use crate::scene::{Part, Point, Scene, Tone, View, point};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
@@ -70,19 +69,18 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         .duration(SHOWN)
         .sample_every(1.0 / RATE)
         .collect::<Result<_, _>>()?;
-    let nutation = vec![
-        Series::new("simulated", samples.iter().map(|s| [s.t, axis(&s.q).z.acos()]).collect()),
-        level("closed form, highest", TILT),
-        level("closed form, lowest", lowest.acos()),
-    ];
+    let nutation = Picture::over_time("Inclination of the axis", "inclination, rad", |chart| {
+        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, axis(&s.q).z.acos())));
+        simulated
+            .curve("closed form, highest", level(TILT))
+            .curve("closed form, lowest", level(lowest.acos()))
+    })?;
     // Both angular momenta are constant: φ̇ = (L − C n cos θ) / (A sin²θ), and L = C n cos θ₀.
     let fastest = spin * (TILT.cos() - lowest) / (across * (1.0 - lowest * lowest));
-    let precession = vec![
-        Series::new("simulated", samples.iter().map(|s| [s.t, precession(s)]).collect()),
-        level("closed form, fastest", fastest),
-    ];
-    let plot =
-        |title, y, series| Plot { title, x: "time, s", y, logarithmic: false, series, marks: Vec::new() };
+    let precession = Picture::over_time("Rate of precession: zero at the cusps", "rate, rad/s", |chart| {
+        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, precession(s))));
+        simulated.curve("closed form, fastest", level(fastest))
+    })?;
 
     let vertical = |s: &Sample<f64, 4, 3, 0>| (rotation(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
     let momentum =
@@ -103,15 +101,12 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         tables: vec![table],
         checks,
         scenes: vec![scene(&samples)],
-        plots: vec![
-            plot("Inclination of the axis", "inclination, rad", nutation),
-            plot("Rate of precession: zero at the cusps", "rate, rad/s", precession),
-        ],
+        pictures: vec![nutation, precession],
     })
 }
 
-fn level(name: &str, value: f64) -> Series {
-    Series::new(name, vec![[0.0, value], [SHOWN, value]])
+fn level(value: f64) -> [(f64, f64); 2] {
+    [(0.0, value), (SHOWN, value)]
 }
 
 fn rotation(q: &SVector<f64, 4>) -> UnitQuaternion<f64> {

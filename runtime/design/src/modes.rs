@@ -92,6 +92,12 @@ impl Mode {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
 
+    /// The unit of a state, if one was said.
+    pub(crate) fn unit_of(&self, state: &str) -> Option<&str> {
+        let found = self.states.iter().find(|s| s.name == state)?;
+        Some(found.unit.as_str()).filter(|unit| !unit.is_empty())
+    }
+
     /// How much a state takes part, between zero and one; `None` if there is none of this name.
     pub fn participation_of(&self, state: &str) -> Option<f64> {
         let k = self.states.iter().position(|s| s.name == state)?;

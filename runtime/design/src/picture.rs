@@ -17,10 +17,13 @@ use crate::{Error, FrequencyResponse, Response, RootLocus, StateSpace};
 use panel::{Curve, Mark, Panel};
 use std::f64::consts::TAU;
 
+mod axis;
+mod chart;
 mod modes;
 mod panel;
 
-pub use modes::modes;
+pub use chart::Chart;
+pub use modes::{modes, named_modes};
 
 fn title(response: &FrequencyResponse) -> String {
     format!("from {} to {}", response.input.name, response.output.name)
@@ -55,24 +58,69 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
 ///
 /// [`Error::Picture`] for values that are not finite, or none.
 pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
-    let mut sizes: Vec<f64> = response.values.iter().map(|x| x.norm()).collect();
+    let mut sizes: Vec<f64> = response.values.iter().map(|x| x.norm()).filter(|x| x.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);
-    let within = |x: &&C| x.norm() <= 10.0 * typical;
-    let curve = |sign: f64| response.values.iter().filter(within).map(|x| (x.re, sign * x.im)).collect();
+    let reach = (-10.0 * typical, 10.0 * typical);
+    let smooth = smooth(&response.values);
+    let curve = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
     let panel = Panel {
         title: format!("Nyquist diagram, {}", title(response)),
         x: "real part".into(),
         y: "imaginary part".into(),
         equal: true,
+        window: Some([reach, reach]),
         curves: vec![
             Curve { name: "ω > 0".into(), points: curve(1.0) },
             Curve { name: "ω < 0".into(), points: curve(-1.0) },
         ],
         marks: vec![(Mark::Cross, -1.0, 0.0)],
+        mark_names: vec![(Mark::Cross, "−1")],
         ..Panel::default()
     };
     panel::draw(&[panel], (640, 640))
+}
+
+/// Points on a smooth curve through others, so close together that no corners are seen: splines of Catmull and Rom by the square roots
+/// of chords, which bend evenly where points are unevenly spread (Barry and Goldman, *SIGGRAPH*, 1988).
+fn smooth(values: &[C]) -> Vec<C> {
+    const PARTS: u32 = 8;
+    let mut all = Vec::with_capacity(values.len() * PARTS as usize);
+    for (k, pair) in values.windows(2).enumerate() {
+        let [from, to] = [pair[0], pair[1]];
+        let before = k.checked_sub(1).and_then(|k| values.get(k)).copied().unwrap_or(from * 2.0 - to);
+        let after = values.get(k + 2).copied().unwrap_or(to * 2.0 - from);
+        let points = [before, from, to, after];
+        let mut knots = [0.0; 4];
+        for i in 1..4 {
+            knots[i] = knots[i - 1] + (points[i] - points[i - 1]).norm().sqrt();
+        }
+        all.push(from);
+        if !knots.windows(2).all(|pair| pair[1] > pair[0]) {
+            continue;
+        }
+        for part in 1..PARTS {
+            let t = knots[1] + (knots[2] - knots[1]) * f64::from(part) / f64::from(PARTS);
+            let mut row = points;
+            for level in 1..4 {
+                for i in 0..4 - level {
+                    // The middle level lies between the inner knots.
+                    let (low, high) = if level == 2 {
+                        (i, i + 2)
+                    } else if level == 1 {
+                        (i, i + 1)
+                    } else {
+                        (1, 2)
+                    };
+                    let share = (t - knots[low]) / (knots[high] - knots[low]);
+                    row[i] = row[i] * (1.0 - share) + row[i + 1] * share;
+                }
+            }
+            all.push(row[0]);
+        }
+    }
+    all.extend(values.last());
+    all
 }
 
 /// The border of stability: the imaginary axis or the unit circle.
@@ -82,6 +130,8 @@ fn border(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
         None => vec![(0.0, -reach), (0.0, reach)],
     }
 }
+
+const MARKS: [(Mark, &str); 2] = [(Mark::Cross, "poles"), (Mark::Circle, "zeros")];
 
 fn marks(mark: Mark, roots: &[C]) -> impl Iterator<Item = (Mark, f64, f64)> {
     roots.iter().map(move |x| (mark, x.re, x.im))
@@ -113,6 +163,7 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
     let panel = Panel {
         lines: vec![border(system.period(), reach(&all))],
         marks: marks(Mark::Cross, &poles).chain(marks(Mark::Circle, &zeros)).collect(),
+        mark_names: MARKS.into(),
         ..plane("Poles and zeros", system.period())
     };
     panel::draw(&[panel], (640, 640))
@@ -134,6 +185,7 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
         curves: locus.branches.iter().map(curve).collect(),
         lines: vec![border(locus.period, reach(&all))],
         marks: marks(Mark::Cross, &locus.poles).chain(marks(Mark::Circle, &locus.zeros)).collect(),
+        mark_names: MARKS.into(),
         ..plane("Root locus", locus.period)
     };
     panel::draw(&[panel], (640, 640))
@@ -145,26 +197,33 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
 ///
 /// [`Error::Picture`] for values that are not finite, or none.
 pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
-    let mut panels: Vec<(String, Panel)> = Vec::new();
+    let mut panels: Vec<(&str, Vec<(&crate::Signal, usize)>)> = Vec::new();
     for (k, signal) in response.output_signals.iter().enumerate() {
-        let points = response.times.iter().copied().zip(response.outputs.row(k).iter().copied()).collect();
-        let curve = Curve { name: signal.name.clone(), points };
         match panels.iter_mut().find(|(unit, _)| *unit == signal.unit) {
-            Some((unit, panel)) => {
-                panel.y = unit.clone();
-                panel.curves.push(curve);
-            }
-            None => {
-                let title = if panels.is_empty() { heading.into() } else { String::new() };
-                let (x, y) = ("time, s".into(), signal.to_string());
-                panels.push((
-                    signal.unit.clone(),
-                    Panel { title, x, y, curves: vec![curve], ..Panel::default() },
-                ));
-            }
+            Some((_, signals)) => signals.push((signal, k)),
+            None => panels.push((&signal.unit, vec![(signal, k)])),
         }
     }
-    let panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
-    let height = 80 + 240 * u32::try_from(panels.len()).unwrap_or(1);
+    let panel = |(place, (unit, signals)): (usize, &(&str, Vec<(&crate::Signal, usize)>))| {
+        // One curve has its name on the axis.
+        let (y, alone) = match signals.as_slice() {
+            [(signal, _)] => (signal.to_string(), true),
+            _ if unit.is_empty() => ("value".to_owned(), false),
+            _ => ((*unit).to_owned(), false),
+        };
+        let curve = |(signal, k): &(&crate::Signal, usize)| Curve {
+            name: if alone { String::new() } else { signal.name.clone() },
+            points: response.times.iter().copied().zip(response.outputs.row(*k).iter().copied()).collect(),
+        };
+        Panel {
+            title: if place == 0 { heading.into() } else { String::new() },
+            x: "time, s".into(),
+            y,
+            curves: signals.iter().map(curve).collect(),
+            ..Panel::default()
+        }
+    };
+    let panels: Vec<Panel> = panels.iter().enumerate().map(panel).collect();
+    let height = 60 + 240 * u32::try_from(panels.len()).unwrap_or(1);
     panel::draw(&panels, (720, height))
 }

@@ -50,4 +50,23 @@ fn every_picture() {
     let modes = picture::modes(&transport.modes().unwrap()).unwrap();
     assert!(modes.contains("bank: takes part") && modes.contains("animateTransform"));
     keep("modes", &modes);
+    let all = transport.modes().unwrap();
+    let named =
+        picture::named_modes(&[("spiral", &all[0]), ("roll", &all[1]), ("Dutch roll", &all[2])]).unwrap();
+    assert!(named.contains("Dutch roll: -0.03294") && named.contains("bank: takes part"));
+    assert!(picture::named_modes(&[]).is_err());
+    // An integrator leaves Nyquist's picture, and its curves end at the border.
+    let integrator = TransferFunction::new([2.0], [1.0, 3.0, 2.0, 0.0]).unwrap().state_space().unwrap();
+    let response =
+        integrator.frequency_response(0, 0, &integrator.natural_frequencies(300).unwrap()).unwrap();
+    keep("nyquist_integrator", &picture::nyquist(&response).unwrap());
+    // Powers of ten, zeros among what is drawn, and marks.
+    let falls = (0..500).map(|k| (0.1 * f64::from(k), (-f64::from(k) / 20.0).exp())).chain([(50.0, 0.0)]);
+    let chart = picture::Chart::over_time("Decay", "error, m").logarithmic().curve("falls", falls);
+    let svg = chart.instant(20.0, "caught").svg().unwrap();
+    for word in ["time, s", "error, m", "falls", "caught", "10⁻⁶"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    keep("chart", &svg);
+    assert!(picture::Chart::over_time("", "").curve("", [(0.0, f64::NAN)]).svg().is_err());
 }

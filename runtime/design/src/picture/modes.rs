@@ -1,6 +1,5 @@
 //! Modes as phasors that turn.
 
-use crate::polynomial::number;
 use crate::{Error, Mode};
 use std::fmt::Write;
 
@@ -21,6 +20,16 @@ fn escaped(text: &str) -> String {
 ///
 /// [`Error::Picture`] if there are none.
 pub fn modes(modes: &[Mode]) -> Result<String, Error> {
+    let all: Vec<(&str, &Mode)> = modes.iter().map(|mode| ("", mode)).collect();
+    named_modes(&all)
+}
+
+/// [`modes`] with a name before each, as [`FlightModes::named`](crate::flight::FlightModes::named) gives them.
+///
+/// # Errors
+///
+/// [`Error::Picture`] if there are none.
+pub fn named_modes(modes: &[(&str, &Mode)]) -> Result<String, Error> {
     if modes.is_empty() {
         return Err(Error::Picture("there are no modes".into()));
     }
@@ -29,14 +38,14 @@ pub fn modes(modes: &[Mode]) -> Result<String, Error> {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"{height}\" viewBox=\"0 0 720 {height}\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"{height}\" fill=\"white\"/>\n"
     );
-    for (k, mode) in modes.iter().enumerate() {
-        write_mode(&mut out, mode, ROW * (k as f64 + 0.5) + 5.0);
+    for (k, (name, mode)) in modes.iter().enumerate() {
+        write_mode(&mut out, name, mode, ROW * (k as f64 + 0.5) + 5.0);
     }
     out.push_str("</svg>\n");
     Ok(out)
 }
 
-fn write_mode(out: &mut String, mode: &Mode, y: f64) {
+fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     let x = 90.0;
     let _ = writeln!(
         out,
@@ -59,18 +68,26 @@ fn write_mode(out: &mut String, mode: &Mode, y: f64) {
     };
     let text = mode.to_string();
     let heading = text.rsplit_once(": ").map_or(text.as_str(), |(heading, _)| heading);
-    say(out, 0.0, "#000", heading);
+    let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
+    say(out, 0.0, "#000", &format!("{before}{heading}"));
     for (row, (name, part)) in mode.participants().into_iter().take(5).enumerate() {
         let place = mode.place_of(name);
         let shape = mode.shape.get(place).copied().unwrap_or_default();
+        let unit = mode.unit_of(name).map_or(String::new(), |unit| format!(" {unit}"));
         let words = format!(
-            "{name}: takes part {:.1} %, phasor {} at {:.0}°",
+            "{name}: takes part {:.1} %, phasor {}{unit} at {:.0}°",
             100.0 * part,
-            number(shape.norm()),
+            significant(shape.norm()),
             shape.arg().to_degrees()
         );
         say(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
     }
+}
+
+/// Three digits that count.
+fn significant(x: f64) -> String {
+    let decimals = if x > 0.0 { (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
+    format!("{x:.decimals$}")
 }
 
 /// A turn, or a decay, in the mode's own time where that can be watched.

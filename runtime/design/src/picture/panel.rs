@@ -1,8 +1,10 @@
 //! Panels with axes, curves and marks, by plotters.
 
+use super::axis::{Axis, Ticked};
 use crate::Error;
-use crate::polynomial::number;
+use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Colours that are told apart by those who see few.
 const COLOURS: [RGBColor; 6] = [
@@ -13,15 +15,31 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(200, 150, 0),
     RGBColor(90, 90, 90),
 ];
+const GREY: RGBColor = RGBColor(140, 140, 140);
 const FONT: &str = "sans-serif";
+/// Plotters draws at whole units; so many are a pixel.
+const UNITS: u32 = 10;
+/// Of a heading and of the row of names, pixels.
+const HEADING: u32 = 26;
+const NAMES: u32 = 22;
+/// Points drawn of a curve at the most: more would be closer together than a pixel.
+const MOST: usize = 3000;
 
-#[derive(Clone, Copy)]
+fn units(pixels: u32) -> u32 {
+    pixels * UNITS
+}
+
+fn text(size: u32) -> TextStyle<'static> {
+    (FONT, units(size)).into_font().color(&BLACK)
+}
+
+#[derive(Clone, Copy, PartialEq)]
 pub enum Mark {
     Cross,
     Circle,
 }
 
-/// A curve; without a name it is not in the legend.
+/// A curve; without a name it is not among the names above.
 pub struct Curve {
     pub name: String,
     pub points: Vec<(f64, f64)>,
@@ -32,27 +50,22 @@ pub struct Panel {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// The first coordinates are logarithms.
+    /// The first coordinates are decimal logarithms.
     pub logarithmic: bool,
+    /// The second coordinates are decimal logarithms.
+    pub decades: bool,
     /// Both axes have one scale.
     pub equal: bool,
+    /// What the axes are to show, if not all; curves that leave it end at the border.
+    pub window: Option<[(f64, f64); 2]>,
     pub curves: Vec<Curve>,
     /// Thin grey lines.
     pub lines: Vec<Vec<(f64, f64)>>,
     pub marks: Vec<(Mark, f64, f64)>,
-}
-
-type Range = (f64, f64);
-
-fn range(values: impl Iterator<Item = f64>, margin: f64) -> Option<Range> {
-    let (low, high) = values
-        .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    if low > high {
-        return None;
-    }
-    let width = if high - low > 1e-12 * (1.0 + high.abs()) { high - low } else { 1.0 + high.abs() };
-    Some((low - margin * width, high + margin * width))
+    /// What marks mean.
+    pub mark_names: Vec<(Mark, &'static str)>,
+    /// First coordinates with a line and a word.
+    pub instants: Vec<(f64, String)>,
 }
 
 impl Panel {
@@ -62,99 +75,213 @@ impl Panel {
         curves.chain(lines).chain(self.marks.iter().map(|(_, x, y)| (*x, *y)))
     }
 
-    /// Ranges of both axes; with one scale the smaller one is widened to `width / height` of the other.
-    fn ranges(&self, (width, height): (u32, u32)) -> Option<(Range, Range)> {
-        let along = if self.logarithmic || !self.equal { 0.0 } else { 0.06 };
-        let (mut x, mut y) =
-            (range(self.points().map(|p| p.0), along)?, range(self.points().map(|p| p.1), 0.06)?);
-        if self.equal {
-            // What labels take away.
-            let shape = (f64::from(width) - 90.0) / (f64::from(height) - 95.0);
-            let (have_x, have_y) = (x.1 - x.0, y.1 - y.0);
-            let (want_x, want_y) = (have_x.max(have_y * shape), have_y.max(have_x / shape));
-            x = (x.0 - 0.5 * (want_x - have_x), x.1 + 0.5 * (want_x - have_x));
-            y = (y.0 - 0.5 * (want_y - have_y), y.1 + 0.5 * (want_y - have_y));
+    /// Both axes; with one scale the smaller one is widened to `width / height` of the other.
+    fn axes(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
+        let within = |k: usize| {
+            let window = self.window.map(|window| window[k]);
+            move |v: f64| window.is_none_or(|(low, high)| (low..=high).contains(&v))
+        };
+        let along = if self.equal { 0.06 } else { 0.0 };
+        let (in_x, in_y) = (within(0), within(1));
+        let shown: Vec<_> = self.points().filter(|(x, y)| in_x(*x) && in_y(*y)).collect();
+        let x = Axis::of(shown.iter().map(|p| p.0), along, self.logarithmic)?;
+        let y = Axis::of(shown.iter().map(|p| p.1), 0.06, self.decades)?;
+        if !self.equal {
+            return Some((x, y));
         }
-        Some((x, y))
+        let shape = f64::from(width) / f64::from(height.max(1));
+        let (have_x, have_y) = (x.high - x.low, y.high - y.low);
+        Some((x.widened(have_x.max(have_y * shape)), y.widened(have_y.max(have_x / shape))))
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, plotters::coord::Shift>) -> Result<(), Error> {
-        let Some((x, y)) = self.ranges(area.dim_in_pixel()) else {
+    fn draw<DB: DrawingBackend>(&self, area: DrawingArea<DB, Shift>) -> Result<(), Error> {
+        let mut area = area;
+        if !self.title.is_empty() {
+            let (top, rest) = area.split_vertically(units(HEADING));
+            let middle =
+                (i32::try_from(top.dim_in_pixel().0).unwrap_or(0) / 2, as_i32(units(HEADING / 2 + 2)));
+            let style = text(16).pos(Pos::new(HPos::Center, VPos::Center));
+            top.draw_text(&self.title, &style, middle).map_err(failed)?;
+            area = rest;
+        }
+        if self.curves.iter().any(|c| !c.name.is_empty()) || !self.mark_names.is_empty() {
+            let (top, rest) = area.split_vertically(units(NAMES));
+            self.draw_names(&top)?;
+            area = rest;
+        }
+        let (width, height) = area.dim_in_pixel();
+        let (left, below, border) = (units(74), units(46), units(10));
+        let inner =
+            (width.saturating_sub(left + border + units(24)), height.saturating_sub(below + 2 * border));
+        let Some((x, y)) = self.axes(inner) else {
             return Err(Error::Picture("nothing to draw that is finite".into()));
         };
-        let mut builder = ChartBuilder::on(area);
-        builder.margin(10).x_label_area_size(40).y_label_area_size(64);
-        if !self.title.is_empty() {
-            builder.caption(&self.title, (FONT, 16));
-        }
-        let mut chart = builder.build_cartesian_2d(x.0..x.1, y.0..y.1).map_err(failed)?;
-        let label = |x: &f64| if self.logarithmic { number(10f64.powf(*x)) } else { number(clean(*x)) };
-        let decades = (x.1 - x.0).ceil().max(3.0) as usize + 1;
+        let most_x = (inner.0 / units(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
+        let most_y = (inner.1 / units(36)).max(2) as usize;
+        let (across, up) = (x.clone(), y.clone());
+        let mut chart = ChartBuilder::on(&area)
+            .margin(border)
+            .margin_right(units(24))
+            .x_label_area_size(below)
+            .y_label_area_size(left)
+            .build_cartesian_2d(
+                Ticked { axis: x.clone(), most: most_x },
+                Ticked { axis: y.clone(), most: most_y },
+            )
+            .map_err(failed)?;
         chart
             .configure_mesh()
             .x_desc(&self.x)
             .y_desc(&self.y)
-            .axis_desc_style((FONT, 14))
-            .label_style((FONT, 12))
+            .axis_desc_style(text(14))
+            .label_style(text(13))
             .light_line_style(TRANSPARENT)
-            .x_labels(if self.logarithmic { decades } else { 9 })
-            .y_labels(8)
-            .x_label_formatter(&label)
-            .y_label_formatter(&|y| number(clean(*y)))
+            .bold_line_style(RGBColor(225, 228, 232).stroke_width(UNITS))
+            .axis_style(GREY.stroke_width(UNITS))
+            .set_all_tick_mark_size(units(4))
+            .x_labels(100)
+            .y_labels(100)
+            .x_label_formatter(&|v| across.label(*v, most_x))
+            .y_label_formatter(&|v| up.label(*v, most_y))
             .draw()
             .map_err(failed)?;
         for line in &self.lines {
-            let grey = RGBColor(140, 140, 140);
-            chart.draw_series(LineSeries::new(line.iter().copied(), &grey)).map_err(failed)?;
-        }
-        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
-            let points = curve.points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite());
-            let drawn = chart.draw_series(LineSeries::new(points, colour.stroke_width(2))).map_err(failed)?;
-            if !curve.name.is_empty() {
-                let sample =
-                    move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], colour.stroke_width(2));
-                drawn.label(&curve.name).legend(sample);
+            for run in clipped(line, &x, &y) {
+                chart.draw_series(LineSeries::new(run, GREY.stroke_width(UNITS))).map_err(failed)?;
             }
         }
-        let style = BLACK.stroke_width(2);
+        for (at, word) in self.instants.iter().filter(|(at, _)| (x.low..=x.high).contains(at)) {
+            let line = [(*at, y.low), (*at, y.high)];
+            let dashed =
+                DashedLineSeries::new(line, units(4) as i32, units(4) as i32, GREY.stroke_width(UNITS));
+            chart.draw_series(dashed).map_err(failed)?;
+            let place = (at + 0.008 * (x.high - x.low), y.high - 0.03 * (y.high - y.low));
+            chart.draw_series([Text::new(word.clone(), place, text(13))]).map_err(failed)?;
+        }
+        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
+            for run in clipped(&thinned(&curve.points), &x, &y) {
+                let series = LineSeries::new(run, colour.stroke_width(2 * UNITS));
+                chart.draw_series(series).map_err(failed)?;
+            }
+        }
+        let style = BLACK.stroke_width(2 * UNITS);
         for (mark, x, y) in &self.marks {
             match mark {
-                Mark::Cross => chart.draw_series([Cross::new((*x, *y), 5, style)]),
-                Mark::Circle => chart.draw_series([Circle::new((*x, *y), 6, style)]),
+                Mark::Cross => chart.draw_series([Cross::new((*x, *y), units(5), style)]),
+                Mark::Circle => chart.draw_series([Circle::new((*x, *y), units(6), style)]),
             }
             .map_err(failed)?;
         }
-        if self.curves.iter().any(|c| !c.name.is_empty()) {
-            let mut legend = chart.configure_series_labels();
-            legend
-                .label_font((FONT, 13))
-                .background_style(WHITE.mix(0.85))
-                .border_style(RGBColor(200, 200, 200));
-            legend.draw().map_err(failed)?;
+        Ok(())
+    }
+
+    /// Names of curves and marks in a row.
+    fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
+        let (mut x, y) = (as_i32(units(84)), as_i32(units(NAMES / 2 + 2)));
+        let style = text(14).pos(Pos::new(HPos::Left, VPos::Center));
+        let say = |x: &mut i32, word: &str| {
+            let place = (*x + as_i32(units(26)), y);
+            *x += as_i32(units(26 + 20)) + (word.chars().count() * units(8) as usize) as i32;
+            area.draw_text(word, &style, place).map_err(failed)
+        };
+        let end = |x: i32| x + as_i32(units(20));
+        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
+            if !curve.name.is_empty() {
+                let line = PathElement::new([(x, y), (end(x), y)], colour.stroke_width(2 * UNITS));
+                area.draw(&line).map_err(failed)?;
+                say(&mut x, &curve.name)?;
+            }
+        }
+        let thick = BLACK.stroke_width(2 * UNITS);
+        for (mark, name) in &self.mark_names {
+            let middle = (x + as_i32(units(12)), y);
+            match mark {
+                Mark::Cross => area.draw(&Cross::new(middle, units(5), thick)),
+                Mark::Circle => area.draw(&Circle::new(middle, units(6), thick)),
+            }
+            .map_err(failed)?;
+            say(&mut x, name)?;
         }
         Ok(())
     }
 }
 
-/// Ticks that are rounding off zero.
-fn clean(x: f64) -> f64 {
-    if x.abs() < 1e-12 { 0.0 } else { x }
+fn as_i32(n: u32) -> i32 {
+    i32::try_from(n).unwrap_or(i32::MAX)
+}
+
+/// The lowest and the highest of each bunch of points, so that thinning hides no peak.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    if points.len() <= MOST {
+        return points.to_vec();
+    }
+    let mut out = Vec::with_capacity(MOST + 2);
+    for bunch in points.chunks(2 * points.len().div_ceil(MOST)) {
+        let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        if let (Some(low), Some(high)) = (bunch.iter().min_by(by_height), bunch.iter().max_by(by_height)) {
+            let (first, second) = if low.0 < high.0 { (low, high) } else { (high, low) };
+            out.extend([*first, *second]);
+        }
+    }
+    out
+}
+
+/// The parts of a curve that are in the picture, up to its border; points that are not finite interrupt it.
+fn clipped(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
+    let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut open = false;
+    for pair in points.windows(2) {
+        let Some((from, to)) = part_within(pair[0], pair[1], x, y) else {
+            open = false;
+            continue;
+        };
+        match runs.last_mut().filter(|_| open) {
+            Some(run) => run.push(to),
+            None => runs.push(vec![from, to]),
+        }
+        open = to == pair[1];
+    }
+    runs
+}
+
+/// The part of a line within the axes (Liang and Barsky).
+fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64, f64), (f64, f64))> {
+    if ![a.0, a.1, b.0, b.1].iter().all(|v| v.is_finite()) {
+        return None;
+    }
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for (rate, room) in [(-dx, a.0 - x.low), (dx, x.high - a.0), (-dy, a.1 - y.low), (dy, y.high - a.1)] {
+        if rate == 0.0 {
+            if room < 0.0 {
+                return None;
+            }
+        } else if rate < 0.0 {
+            first = first.max(room / rate);
+        } else {
+            last = last.min(room / rate);
+        }
+    }
+    let at = |part: f64| (a.0 + part * dx, a.1 + part * dy);
+    let from = if first > 0.0 { at(first) } else { a };
+    (first <= last).then(|| (from, if last < 1.0 { at(last) } else { b }))
 }
 
 fn failed(error: impl std::fmt::Display) -> Error {
     Error::Picture(error.to_string())
 }
 
-/// Panels below each other.
-pub fn draw(panels: &[Panel], size: (u32, u32)) -> Result<String, Error> {
-    let mut text = String::new();
+/// Panels below each other, in pixels.
+pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Error> {
+    let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (units(width), units(height))).into_drawing_area();
         root.fill(&WHITE).map_err(failed)?;
         for (panel, area) in panels.iter().zip(root.split_evenly((panels.len().max(1), 1))) {
-            panel.draw(&area)?;
+            panel.draw(area)?;
         }
         root.present().map_err(failed)?;
     }
-    Ok(text)
+    let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(svg.replacen(&size(units(width), units(height)), &size(width, height), 1))
 }

@@ -1,0 +1,151 @@
+//! Axes: ranges, ticks at round numbers, and how they are written.
+
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use std::ops::Range;
+
+/// An axis of numbers, or of their decimal logarithms, from low to high.
+#[derive(Clone)]
+pub struct Axis {
+    pub low: f64,
+    pub high: f64,
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// What values span, and a part of it more on both sides; `None` without finite values.
+    pub fn of(values: impl Iterator<Item = f64>, margin: f64, logarithmic: bool) -> Option<Self> {
+        let (low, high) = values
+            .filter(|v| v.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        if low > high {
+            return None;
+        }
+        let width = if high - low > 1e-9 * (low.abs().max(high.abs()) + 1e-300) {
+            high - low
+        } else {
+            // A constant stands in the middle.
+            let width = if logarithmic || low == 0.0 { 1.0 } else { low.abs() };
+            return Some(Self { low: low - 0.5 * width, high: high + 0.5 * width, logarithmic });
+        };
+        Some(Self { low: low - margin * width, high: high + margin * width, logarithmic })
+    }
+
+    /// Wider, about its middle.
+    pub fn widened(&self, width: f64) -> Self {
+        let more = 0.5 * (width - (self.high - self.low));
+        Self { low: self.low - more, high: self.high + more, ..*self }
+    }
+
+    /// Places of ticks, not more than so many by far.
+    pub fn ticks(&self, most: usize) -> Vec<f64> {
+        let width = self.high - self.low;
+        let rough = width / most.max(2) as f64;
+        if self.logarithmic && width >= 1.0 {
+            let every = rough.ceil().max(1.0);
+            return multiples(self.low, self.high, every);
+        }
+        if self.logarithmic {
+            let decades = multiples(self.low.floor(), self.high.ceil(), 1.0);
+            let within = decades.iter().flat_map(|k| [1.0, 2.0, 5.0].map(|m: f64| k + m.log10()));
+            return within.filter(|x| (self.low..=self.high).contains(x)).collect();
+        }
+        let power = 10f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough * 0.999);
+        multiples(self.low, self.high, step.unwrap_or(rough))
+    }
+
+    /// How a tick is written beside the others.
+    pub fn label(&self, x: f64, most: usize) -> String {
+        if self.logarithmic {
+            let nearest = x.round();
+            return match (x - nearest).abs() < 1e-9 && nearest.abs() > 3.0 {
+                true => format!("10{}", superscript(nearest as i64)),
+                false => plain(10f64.powf(x), 10f64.powf(x)),
+            };
+        }
+        let ticks = self.ticks(most);
+        let step = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let largest = ticks.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let x = if x.abs() < 1e-9 * largest { 0.0 } else { x };
+        if largest >= 1e5 || (largest < 1e-3 && largest > 0.0) {
+            return scientific(x, step);
+        }
+        plain(x, step)
+    }
+}
+
+fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
+    let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+    let count = (last - first).clamp(-1.0, 100.0) as i64;
+    (0..=count).map(|k| (first + k as f64) * step).collect()
+}
+
+/// As many decimals as the step asks for.
+fn plain(x: f64, step: f64) -> String {
+    let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
+    format!("{x:.decimals$}").replace('-', "−")
+}
+
+fn scientific(x: f64, step: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let power = x.abs().log10().floor();
+    let part = plain(x / 10f64.powf(power), step / 10f64.powf(power));
+    format!("{part}·10{}", superscript(power as i64))
+}
+
+fn superscript(k: i64) -> String {
+    let raise = |c: char| match c.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
+    };
+    k.to_string().chars().map(raise).collect()
+}
+
+/// An axis with so many ticks at most, as plotters wants it.
+pub struct Ticked {
+    pub axis: Axis,
+    pub most: usize,
+}
+
+impl Ranged for Ticked {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let part = (value - self.axis.low) / (self.axis.high - self.axis.low);
+        (f64::from(from) + part * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() { Vec::new() } else { self.axis.ticks(self.most) }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.axis.low..self.axis.high
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round() {
+        let labels = |axis: &Axis, most| -> Vec<String> {
+            axis.ticks(most).into_iter().map(|x| axis.label(x, most)).collect()
+        };
+        let axis = |low, high, logarithmic| Axis { low, high, logarithmic };
+        assert_eq!(labels(&axis(-0.26, 0.31, false), 6), ["−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
+        assert_eq!(labels(&axis(0.0, 61.0, false), 7), ["0", "10", "20", "30", "40", "50", "60"]);
+        assert_eq!(labels(&axis(-2.0, 1.0, true), 8), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(labels(&axis(-0.1, 0.8, true), 8), ["1", "2", "5"]);
+        assert_eq!(labels(&axis(-16.0, -4.0, true), 3), ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴"]);
+        assert_eq!(labels(&axis(0.0, 4e6, false), 4), ["0", "1·10⁶", "2·10⁶", "3·10⁶", "4·10⁶"]);
+        // A constant.
+        let flat = Axis::of([3.0, 3.0].into_iter(), 0.06, false).unwrap();
+        assert!(flat.low < 3.0 && flat.high > 3.0 && !flat.ticks(6).is_empty());
+        assert!(Axis::of([f64::NAN].into_iter(), 0.0, false).is_none());
+    }
+}
