@@ -73,6 +73,49 @@ PEERS = {
 }
 
 
+def beside(residual, *sizes):
+    return linalg.norm(residual) / sum(map(linalg.norm, sizes))
+
+
+def square(s, x):
+    return np.reshape(x, (s.nstates, s.nstates))
+
+
+def lyapunov_residual(s, x, q):
+    x = square(s, x)
+    ax = s.A @ x
+    return beside(ax + ax.T + q, linalg.norm(s.A) * x, q)
+
+
+def care_residual(s, x):
+    x = square(s, x)
+    ax, xb = s.A.T @ x, x @ s.B
+    return beside(ax + ax.T - xb @ xb.T + np.eye(s.nstates), linalg.norm(s.A) * x, xb @ xb.T)
+
+
+def dare_residual(s, x):
+    h, x = s.sample(0.1), square(s, x)
+    ax, bx = h.A.T @ x @ h.A, h.B.T @ x @ h.A
+    gain = linalg.solve(h.B.T @ x @ h.B + np.eye(s.ninputs), bx)
+    return beside(ax - x - bx.T @ gain + np.eye(s.nstates), ax, x, bx.T @ gain)
+
+
+def pole_residual(s, x):
+    roots = np.reshape(x, (-1, 2)) @ [1, 1j]
+    least = [linalg.svdvals(s.A - root * np.eye(s.nstates))[-1] for root in roots]
+    return max(least) / linalg.norm(s.A)
+
+
+# How far a result is from the exact one of a neighbouring problem, and how far that is from this.
+RESIDUALS = {
+    "poles": pole_residual,
+    "lyap": lambda s, x: lyapunov_residual(s, x, np.eye(s.nstates)),
+    "care": care_residual,
+    "dare": dare_residual,
+    "gram": lambda s, x: lyapunov_residual(s, x, s.B @ s.B.T),
+}
+
+
 def matched(found, expected):
     """Roots in the order of the others; the difference beside the largest."""
     x, y = found[::2] + 1j * found[1::2], list(expected[::2] + 1j * expected[1::2])
@@ -107,9 +150,9 @@ def main():
     lines = [line.split() for line in lines if not line.startswith("time")]
     print(f"python-control {control.__version__}, slycot {__import__('slycot').__version__}, {len(systems)} systems")
     print("differences beside the size of the result; time of one system")
-    print(f"{'':10} {'median':>9} {'largest':>9}  of kind         refused  theirs refused   µs  times slower there")
+    print(f"{'':10} {'median':>9} {'largest':>9}  of kind         refused  theirs refused   µs  times slower there  residual  theirs")
     for name, peer in PEERS.items():
-        worst, all_, refused, theirs, spent = (0.0, ""), [], 0, 0, 0.0
+        worst, all_, refused, theirs, spent, residuals = (0.0, ""), [], 0, 0, 0.0, [0.0, 0.0]
         mine = [line for line in lines if line[0] == name]
         for (kind, a, b, c, d), line in zip(systems, mine):
             s = control.ss(a, b, c, d)
@@ -125,11 +168,18 @@ def main():
             if expected is None:
                 theirs += 1
                 continue
+            if name in RESIDUALS:
+                both = [RESIDUALS[name](s, [float(x) for x in line[1:]]), RESIDUALS[name](s, expected)]
+                residuals = [max(pair) for pair in zip(residuals, both)]
             off = difference(name, [float(x) for x in line[1:]], expected)
             all_.append(off)
             worst = max(worst, (off, kind))
         micro = 1e6 * ours[name] / len(systems)
-        print(f"{name:10} {np.median(all_):9.1e} {worst[0]:9.1e}  {worst[1]:15} {refused:7} {theirs:15} {micro:6.1f} {spent / ours[name]:8.1f}")
+        shown = " ".join(f"{x:9.1e}" for x in residuals) if name in RESIDUALS else ""
+        print(
+            f"{name:10} {np.median(all_):9.1e} {worst[0]:9.1e}  {worst[1]:15} {refused:7} {theirs:15} {micro:6.1f} "
+            f"{spent / ours[name]:8.1f}           {shown}"
+        )
 
 
 main()

@@ -9,6 +9,7 @@ pub mod generic;
 pub mod operations;
 pub mod pairs;
 pub mod peers;
+pub mod precision;
 pub mod random;
 pub mod robots;
 pub mod states;

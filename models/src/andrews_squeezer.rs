@@ -8,7 +8,7 @@ use linkwork::mechanism;
 ///
 /// - Coordinates: seven angles `β`, `Θ`, `γ`, `Φ`, `δ`, `Ω`, `ε`, rad. The pins `e3`, `e4` and `e6` close loops, all at one
 ///   point of `k2`.
-#[mechanism]
+#[mechanism(derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AndrewsSqueezer {
     #[body(mass = 0.04325, com = 92e-5 * x, inertia = diagonal(1.097e-6, 1.097e-6, 2.194e-6))]

@@ -11,7 +11,7 @@ use linkwork::mechanism;
 ///   first.
 /// - All numbers are those of the test set: masses of 0.5 g, springs of 1 N/m and 0.5 m, a bar of 1 m, and gravity of
 ///   1 m/s².
-#[mechanism(gravity = -1 * y)]
+#[mechanism(gravity = -1 * y, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarAxle {
     xl: Coordinate,

@@ -1,0 +1,301 @@
+//! Problems on which methods of integration are compared: two that are stiff or constrained, one of three bodies and more.
+
+use linkwork::integrate::Method;
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+use linkwork::{ByMotion, ConstraintError, Rheonomic};
+use linkwork_models::{AndrewsSqueezer, CarAxle};
+use std::cell::Cell;
+use std::time::Instant;
+
+/// Seven stars in a plane that attract each other and pass close by (Hairer, Nørsett and Wanner, *Solving Ordinary Differential
+/// Equations I*, 1993, II.10).
+#[mechanism(derivatives)]
+pub struct Pleiades {
+    #[particle(mass = 1 + i)]
+    star: [Particle; 7],
+    #[joint(ground -> star[i], along = (x, y))]
+    place: [Stage; 7],
+    #[acts(between = (star[0], star[1]), strength = 2)]
+    pull_0_1: Attraction,
+    #[acts(between = (star[0], star[2]), strength = 3)]
+    pull_0_2: Attraction,
+    #[acts(between = (star[0], star[3]), strength = 4)]
+    pull_0_3: Attraction,
+    #[acts(between = (star[0], star[4]), strength = 5)]
+    pull_0_4: Attraction,
+    #[acts(between = (star[0], star[5]), strength = 6)]
+    pull_0_5: Attraction,
+    #[acts(between = (star[0], star[6]), strength = 7)]
+    pull_0_6: Attraction,
+    #[acts(between = (star[1], star[2]), strength = 6)]
+    pull_1_2: Attraction,
+    #[acts(between = (star[1], star[3]), strength = 8)]
+    pull_1_3: Attraction,
+    #[acts(between = (star[1], star[4]), strength = 10)]
+    pull_1_4: Attraction,
+    #[acts(between = (star[1], star[5]), strength = 12)]
+    pull_1_5: Attraction,
+    #[acts(between = (star[1], star[6]), strength = 14)]
+    pull_1_6: Attraction,
+    #[acts(between = (star[2], star[3]), strength = 12)]
+    pull_2_3: Attraction,
+    #[acts(between = (star[2], star[4]), strength = 15)]
+    pull_2_4: Attraction,
+    #[acts(between = (star[2], star[5]), strength = 18)]
+    pull_2_5: Attraction,
+    #[acts(between = (star[2], star[6]), strength = 21)]
+    pull_2_6: Attraction,
+    #[acts(between = (star[3], star[4]), strength = 20)]
+    pull_3_4: Attraction,
+    #[acts(between = (star[3], star[5]), strength = 24)]
+    pull_3_5: Attraction,
+    #[acts(between = (star[3], star[6]), strength = 28)]
+    pull_3_6: Attraction,
+    #[acts(between = (star[4], star[5]), strength = 30)]
+    pull_4_5: Attraction,
+    #[acts(between = (star[4], star[6]), strength = 35)]
+    pull_4_6: Attraction,
+    #[acts(between = (star[5], star[6]), strength = 42)]
+    pull_5_6: Attraction,
+}
+
+impl Pleiades {
+    /// Where they are first, and how fast.
+    pub const START: ([f64; 14], [f64; 14]) = (
+        [3.0, 3.0, 3.0, -3.0, -1.0, 2.0, -3.0, 0.0, 2.0, 0.0, -2.0, -4.0, 2.0, 4.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.25, 0.0, 1.0, 1.75, 0.0, -1.5, 0.0],
+    );
+}
+
+/// A centrifugal governor whose sleeve sits on a stiff spring in thick oil: its motion dies away within a millisecond, the balls swing
+/// for seconds.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+pub struct StiffGovernor {
+    #[body(mass = 2, inertia = diagonal(0.01, 0.01, 0.02))]
+    sleeve: Body,
+    #[body]
+    arm: Body,
+    #[particle(mass = 1, at = arm.at(-0.4 * z))]
+    ball: Particle,
+    #[joint(ground -> sleeve, along = z, about = z)]
+    collar: Collar,
+    #[joint(sleeve -> arm, about = x)]
+    hinge: Pin,
+    #[acts(on = collar.slide, stiffness = 1e6)]
+    coil: Spring,
+    #[acts(on = collar.slide, damping = 1e4)]
+    oil: Dashpot,
+    #[acts(on = hinge, damping = 0.02)]
+    air: Dashpot,
+}
+
+/// A mechanism whose evaluations are counted.
+struct Counted<'m, M> {
+    mechanism: &'m M,
+    evaluations: &'m Cell<usize>,
+    derivatives: &'m Cell<usize>,
+}
+
+fn count(cell: &Cell<usize>) {
+    cell.set(cell.get() + 1);
+}
+
+macro_rules! pass {
+    ($($name:ident($($argument:ident: $n:ident),*) -> $result:ty;)*) => {$(
+        fn $name(&self, t: f64, $($argument: &SVector<f64, $n>),*) -> $result {
+            self.mechanism.$name(t, $($argument),*)
+        }
+    )*};
+}
+
+impl<M, const NQ: usize, const NV: usize> Rheonomic<NQ, NV, 0> for Counted<'_, M>
+where
+    M: Rheonomic<NQ, NV, 0, Scalar = f64>,
+{
+    type Scalar = f64;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
+    const INPUTS: [&'static str; 0] = [];
+    const CONSTRAINED: bool = M::CONSTRAINED;
+
+    fn neutral(&self) -> SVector<f64, NQ> {
+        self.mechanism.neutral()
+    }
+    fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
+        self.mechanism.integrate(q, dv)
+    }
+    fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
+        self.mechanism.difference(from, to)
+    }
+    fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        self.mechanism.tangent_rate(dv, v)
+    }
+    fn forward_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        count(self.evaluations);
+        self.mechanism.forward_dynamics(t, q, v, tau)
+    }
+    fn impulse(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        h: f64,
+        p: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        self.mechanism.impulse(t, q, v, h, p)
+    }
+    fn generalized_forces(
+        &self,
+        _t: f64,
+        _q: &SVector<f64, NQ>,
+        _v: &SVector<f64, NV>,
+        _u: &SVector<f64, 0>,
+    ) -> SVector<f64, NV> {
+        SVector::zeros()
+    }
+    fn acceleration_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        u: &SVector<f64, 0>,
+    ) -> Option<ByMotion<f64, NV, 0>> {
+        count(self.derivatives);
+        self.mechanism.acceleration_derivatives(t, q, v, u)
+    }
+    pass! {
+        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
+        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
+        kinetic_energy(q: NQ, v: NV) -> f64;
+        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
+        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
+        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
+        potential_energy(q: NQ) -> f64;
+        project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
+        is_nearly_singular(q: NQ, dv: NV) -> bool;
+    }
+}
+
+/// What a method made of a problem.
+pub struct Found {
+    /// The configuration at the end.
+    pub q: Vec<f64>,
+    /// Evaluations of the accelerations.
+    pub evaluations: usize,
+    /// Evaluations of their derivatives.
+    pub derivatives: usize,
+    /// The least of some times, s.
+    pub seconds: f64,
+}
+
+/// The problems by number.
+pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "stiff governor"];
+
+/// What is done with a problem whose type is known.
+trait Visit {
+    type Result;
+    fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
+    where
+        M: Rheonomic<N, N, 0, Scalar = f64>;
+}
+
+fn with<V: Visit>(problem: usize, visit: V) -> V::Result {
+    match problem {
+        0 => visit.visit(&Pleiades {}, Pleiades::START, 3.0),
+        1 => visit.visit(&CarAxle {}, ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]), 3.0),
+        2 => visit.visit(&AndrewsSqueezer {}, (AndrewsSqueezer::START, [0.0; 7]), 0.03),
+        _ => visit.visit(&StiffGovernor {}, ([0.01, 0.0, 0.8], [0.0, 6.0, 0.0]), 5.0),
+    }
+}
+
+struct Solve<S>(S);
+
+impl<S: Method<f64> + Clone> Visit for Solve<S> {
+    type Result = Result<Found, Error>;
+
+    fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
+    where
+        M: Rheonomic<N, N, 0, Scalar = f64>,
+    {
+        let mut best: Option<Found> = None;
+        for _ in 0..5 {
+            let (evaluations, derivatives) = (Cell::new(0), Cell::new(0));
+            let counted = Counted { mechanism: m, evaluations: &evaluations, derivatives: &derivatives };
+            let clock = Instant::now();
+            let run =
+                simulate(&counted).from(start.0, start.1).method(self.0.clone()).duration(end).finish()?;
+            let seconds = clock.elapsed().as_secs_f64();
+            if best.as_ref().is_none_or(|found| seconds < found.seconds) {
+                let q = run.q.iter().copied().collect();
+                best = Some(Found {
+                    q,
+                    evaluations: evaluations.get(),
+                    derivatives: derivatives.get(),
+                    seconds,
+                });
+            }
+        }
+        best.ok_or(Error::NotFinite { t: 0.0 })
+    }
+}
+
+/// Solves a problem.
+///
+/// # Errors
+///
+/// Those of simulations.
+pub fn solve<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
+    with(problem, Solve(method))
+}
+
+struct Start;
+
+impl Visit for Start {
+    type Result = (Vec<f64>, f64);
+
+    fn visit<M, const N: usize>(self, _: &M, (q, v): ([f64; N], [f64; N]), end: f64) -> Self::Result
+    where
+        M: Rheonomic<N, N, 0, Scalar = f64>,
+    {
+        (q.into_iter().chain(v).collect(), end)
+    }
+}
+
+/// The state at the beginning, configuration and velocity, and when a problem ends, s.
+pub fn start(problem: usize) -> (Vec<f64>, f64) {
+    with(problem, Start)
+}
+
+struct Rate<'a> {
+    t: f64,
+    y: &'a [f64],
+    rate: &'a mut [f64],
+}
+
+impl Visit for Rate<'_> {
+    type Result = ();
+
+    fn visit<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)
+    where
+        M: Rheonomic<N, N, 0, Scalar = f64>,
+    {
+        let (q, v) = self.y.split_at(N);
+        let (q, v) = (SVector::from_column_slice(q), SVector::from_column_slice(v));
+        let a = Rheonomic::forward_dynamics(m, self.t, &q, &v, &SVector::zeros());
+        let (place, change) = self.rate.split_at_mut(N);
+        place.copy_from_slice(v.as_slice());
+        change.copy_from_slice(a.as_slice());
+    }
+}
+
+/// How a state changes, with the accelerations that keep constraints: the right-hand side for other libraries.
+pub fn rate(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
+    with(problem, Rate { t, y, rate });
+}
