@@ -47,7 +47,8 @@ impl Neg for Hyper {
 impl Sub for Hyper {
     type Output = Hyper;
     fn sub(self, other: Hyper) -> Hyper {
-        self + -other
+        let ([a, b], [c, d]) = (self.first, other.first);
+        Hyper { value: self.value - other.value, first: [a - c, b - d], second: self.second - other.second }
     }
 }
 
