@@ -2,6 +2,7 @@
 //! energies written out in the ground frame. On random trees of every joint, with random bodies, parameters, springs,
 //! dashpots, inputs and states.
 
+mod random_speeds;
 mod random_tree;
 
 use linkwork_compiler::expr::diff::Derivative;

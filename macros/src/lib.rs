@@ -83,7 +83,7 @@ use std::path::PathBuf;
 /// | `drawing` | adds what the mechanism looks like as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
 /// | `equations = lagrange`, `hamilton`, `routh` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, those without cyclic coordinates, or no terms at all. If not given, Lagrange's where they are short enough to be read |
 /// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
-/// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given |
+/// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given. Speeds of your own are elements: `#[speed(…)] name: Speed` |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
 /// | `skip_passes = [pass, …]` | passes over the model that are left out, of `frames` (link frames moved to where placements are sparse), `regroup` (mass properties moved towards the base), `parallel` (links on parallel axes described in common ones) and `limbs` (alike limbs, and joints of one path, as SIMD lanes); none if not given. The functions are the same to rounding, and cost more |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; when it changes, the crate is compiled again |

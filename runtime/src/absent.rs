@@ -156,6 +156,22 @@ pub trait HasNoSlipping<'a> {}
 )]
 pub trait HasContacts<'a> {}
 
+/// A mechanism with generalized speeds that were declared.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no speeds of its own",
+    label = "only mechanisms with declared speeds have this",
+    note = "declare them: `#[speed(rate(psi) * sin(theta))] p: Speed`; without, the velocities are those of the joints"
+)]
+pub trait HasSpeeds<'a> {}
+
+/// A mechanism whose velocities are those of its joints.
+#[diagnostic::on_unimplemented(
+    message = "velocities of `{Self}` are declared speeds, which move a configuration by where it is",
+    label = "this does not depend on the configuration",
+    note = "`Mechanism::displacement_rate(&m, &q, &dv, &v)` is the rate of a displacement from `q`, and `Derivatives::displacement_rate_derivatives` and `Derivatives::integrate_derivatives_at` have its derivatives and those of `integrate`"
+)]
+pub trait HasNoSpeeds<'a> {}
+
 /// A mechanism whose mass matrix can be inverted.
 #[diagnostic::on_unimplemented(
     message = "the mass matrix of `{Self}` has no inverse",

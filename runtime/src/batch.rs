@@ -67,6 +67,16 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
+    /// [`displacement_rate`](Rheonomic::displacement_rate): rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from `q`.
+    fn displacement_rate_lanes<const L: usize>(
+        &self,
+        _q: &Column<Self::Scalar, L, NQ>,
+        dv: &Column<Self::Scalar, L, NV>,
+        v: &Column<Self::Scalar, L, NV>,
+    ) -> Column<Self::Scalar, L, NV> {
+        self.tangent_rate_lanes(dv, v)
+    }
+
     /// [`mass_matrix`](Rheonomic::mass_matrix): `M(t, q)`; kg, kg·m, kg·m².
     fn mass_matrix_lanes<const L: usize>(
         &self,

@@ -43,6 +43,39 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
+    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`, which does not depend on `q` unless speeds were declared ([`SPEEDS`](Mechanism::SPEEDS)):
+    /// [`integrate_derivatives`](Self::integrate_derivatives) is NaN then.
+    fn integrate_derivatives_at(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        self.integrate_derivatives(dv)
+    }
+
+    /// `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Mechanism::displacement_rate), whose first is zero unless speeds were declared.
+    fn displacement_rate_derivatives(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> ByMotion<Self::Scalar, NV, NV> {
+        let (by_dv, by_v) = self.tangent_rate_derivatives(dv, v);
+        (SMatrix::zeros(), by_dv, by_v)
+    }
+
+    /// The matrix `T` by which displacements between two neighbouring motions change, `δq̇ = T δq + δv`, since it is measured in axes or speeds
+    /// that turn along.
+    fn turning(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV> {
+        let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
+        // The tangent space moves along, so that the bracket counts twice.
+        turning * constant::<Self::Scalar>(2.0)
+    }
+
     /// A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces, N and N·m, and `Ṁ − 2 C` skew (Echeandia and Wensing,
     /// *Numerical methods to compute the Coriolis matrix and Christoffel symbols*, 2021).
     fn coriolis_matrix(
@@ -137,14 +170,12 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         let by_force = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
         let of_force = Derivatives::generalized_forces_derivatives(self, q, v, u);
         let (by_q, by_v, by_u) = under_inputs(by_force, &of_force);
-        let (turning, _) = Derivatives::tangent_rate_derivatives(self, &SVector::zeros(), v);
         LinearMotion {
             acceleration: Mechanism::forward_dynamics(self, q, v, &tau),
             by_q,
             by_v,
             by_u,
-            // The tangent space moves along, so that the bracket counts twice.
-            turning: turning * constant::<Self::Scalar>(2.0),
+            turning: Derivatives::turning(self, q, v),
         }
     }
 }
@@ -203,6 +234,37 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+
+    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q` ([`Derivatives::integrate_derivatives_at`]).
+    fn integrate_derivatives_at(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        self.integrate_derivatives(dv)
+    }
+
+    /// `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Rheonomic::displacement_rate) ([`Derivatives::displacement_rate_derivatives`]).
+    fn displacement_rate_derivatives(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> ByMotion<Self::Scalar, NV, NV> {
+        let (by_dv, by_v) = self.tangent_rate_derivatives(dv, v);
+        (SMatrix::zeros(), by_dv, by_v)
+    }
+
+    /// The matrix `T` by which displacements between two neighbouring motions change, `δq̇ = T δq + δv` ([`Derivatives::turning`]).
+    fn turning(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> Square<Self::Scalar, NV> {
+        let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
+        // The tangent space moves along, so that the bracket counts twice.
+        turning * constant::<Self::Scalar>(2.0)
+    }
 
     /// A matrix `C(t, q, v)` of Coriolis and centrifugal forces ([`Derivatives::coriolis_matrix`]).
     fn coriolis_matrix(

@@ -18,7 +18,7 @@
 //! | states of first order | [`State`] |
 //! | configurations at rest | [`Equilibrium`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
-//! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`Potential`], [`Rayleigh`] |
+//! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`Potential`], [`Rayleigh`], [`Speed`] |
 //!
 //! # Vectors and places
 //!
@@ -485,6 +485,22 @@ pub enum State {}
 /// What is no equilibrium does not compile, and the message says which force is left; nor does one where a force has a corner.
 pub enum Equilibrium {}
 
+/// Generalized speed (Kane's `u`): a velocity of the user's choice in place of one that a joint has.
+///
+/// `#[speed(expression)] p: Speed`: a combination of velocities that is linear in them, with coefficients of coordinates and
+/// parameters: `rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi)`, `dot(omega(body / ground), body.x)`. As many speeds are
+/// declared as velocities occur in them all together: they take the places of these in `v`, in the order of both, in all functions
+/// and in the printed equations, and other joints keep theirs. Any expression may name a speed. The matrix of the combinations must be
+/// invertible, but for single configurations: where it is singular there (Euler angles at `sin(theta) = 0`), the rates that follow
+/// from speeds are not finite.
+///
+/// The functions `rates_of_speeds` and `speeds_of_rates` lead from one to the other. Derivatives by `q` are along
+/// `integrate(q, dv)`, which moves all joints by what the speeds `dv` stand for at `q`.
+///
+/// Speeds are not the independent speeds of `formulation = speeds`, which are velocities that are chosen among those
+/// that there are where constraints bind them. Source: Kane and Levinson, *Dynamics: Theory and Applications* (1985), § 2.12.
+pub enum Speed {}
+
 /// Scalar expression with a name.
 ///
 /// `#[define(…)]`: for use in other expressions. `#[output(…)]`: a generated function of
@@ -548,5 +564,5 @@ macro_rules! derivable {
 derivable! {
     Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring Dashpot
     Inerter Force Torque Friction Gravity Attraction Coordinate Input Frame Point Potential Rayleigh
-    State Equilibrium Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Vector Matrix
+    State Equilibrium Limit Contact Holonomic Nonholonomic Rolling Slipping Scalar Speed Vector Matrix
 }

@@ -268,6 +268,7 @@ where
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = NX;
+    const SPEEDS: bool = M::SPEEDS;
 
     fn neutral(&self) -> SVector<M::Scalar, NQ> {
         self.mechanism.neutral()
@@ -292,6 +293,16 @@ where
     ) -> SVector<M::Scalar, NE> {
         let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
         together(&self.mechanism.tangent_rate(&dv, &v), &x)
+    }
+
+    fn displacement_rate(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
+        together(&self.mechanism.displacement_rate(q, &dv, &v), &x)
     }
 
     /// Of the states that the struct holds, should masses depend on them.
@@ -492,6 +503,34 @@ where
         let (by_dv, by_v) = self.mechanism.tangent_rate_derivatives(&dv, &v);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
         (with_diagonal::<_, NV, NX, NE>(&by_dv, zero), with_diagonal::<_, NV, NX, NE>(&by_v, one))
+    }
+
+    fn integrate_derivatives_at(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &apart::<_, NV, NX, NE>(dv).0);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        (with_diagonal::<_, NV, NX, NE>(&by_q, one), with_diagonal::<_, NV, NX, NE>(&by_dv, zero))
+    }
+
+    fn displacement_rate_derivatives(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> crate::ByMotion<M::Scalar, NE, NE> {
+        let (dv, v) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v).0);
+        let (by_q, by_dv, by_v) = self.mechanism.displacement_rate_derivatives(q, &dv, &v);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        let square = |m, diagonal| with_diagonal::<_, NV, NX, NE>(&m, diagonal);
+        (square(by_q, zero), square(by_dv, zero), square(by_v, one))
+    }
+
+    fn turning(&self, q: &SVector<M::Scalar, NQ>, v: &SVector<M::Scalar, NE>) -> SMatrix<M::Scalar, NE, NE> {
+        let v = apart::<_, NV, NX, NE>(v).0;
+        with_diagonal::<_, NV, NX, NE>(&self.mechanism.turning(q, &v), nalgebra::zero())
     }
 
     fn coriolis_matrix(

@@ -16,6 +16,7 @@ macro_rules! each_function {
             integrate(q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
             difference(from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
             tangent_rate(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+            displacement_rate(q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
         }
     };
     (dynamics, $($how:tt)+) => {
@@ -40,6 +41,9 @@ macro_rules! each_function {
         $crate::forward::write! { $($how)+;
             integrate_derivatives(dv: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
             tangent_rate_derivatives(dv: NV, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            integrate_derivatives_at(q: NQ, dv: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            displacement_rate_derivatives(q: NQ, dv: NV, v: NV) -> $crate::ByMotion<Self::Scalar, NV, NV>;
+            turning(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
         }
     };
     (derivatives, $($how:tt)+) => {

@@ -136,6 +136,7 @@ pub mod rotation;
 mod second;
 mod sensitivities;
 pub mod simulate;
+mod speeds;
 mod table;
 mod trigonometry;
 
@@ -149,7 +150,8 @@ pub mod prelude {
     pub use crate::elements::{
         Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Equilibrium, Force, Frame, Free,
         Friction, Gravity, Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential,
-        Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Spring, Stage, State, Torque, Universal, Weld,
+        Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Speed, Spring, Stage, State, Torque, Universal,
+        Weld,
     };
     pub use crate::integrate::{
         DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,
@@ -195,6 +197,7 @@ pub mod __private {
     pub use crate::private::{constant, put_block, put_rows};
     pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use crate::second::forward_second_derivatives;
+    pub use crate::speeds::{displacement_rate_derivatives_in_speeds, integrate_derivatives_in_speeds};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

@@ -67,6 +67,10 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     /// ([`Extended`](crate::Extended)).
     const FIRST_ORDER: usize = 0;
 
+    /// Some velocities are generalized speeds that were declared ([`Speed`](crate::elements::Speed)): how the entries of `v` move `q`
+    /// depends on `q`.
+    const SPEEDS: bool = false;
+
     /// The state nearest to a given one that fulfils the constraints, if there are any.
     ///
     /// # Errors
@@ -151,7 +155,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
 
     /// `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one unit of time.
     /// A sum for plain coordinates, the exponential of SO(3) for a ball and of SE(3) for a free joint. Quaternions
-    /// are normalised.
+    /// are normalised. With declared speeds the velocities of the joints are constant that `dv` stands for at `q`.
     fn integrate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -174,6 +178,18 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
+
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`: what methods of integration call. It is
+    /// [`tangent_rate`](Self::tangent_rate), which does not depend on `q`, unless speeds were declared ([`SPEEDS`](Self::SPEEDS)):
+    /// `tangent_rate` is NaN then.
+    fn displacement_rate(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        self.tangent_rate(dv, v)
+    }
 
     /// Mass matrix `M(q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
     fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
@@ -268,6 +284,7 @@ where
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = M::LOCATABLE;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     each_function!(space, plain Mechanism, self => *self);
     each_function!(dynamics, plain Mechanism, self => *self);

@@ -52,6 +52,9 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// How many of the last velocities are states of first order ([`Mechanism::FIRST_ORDER`]).
     const FIRST_ORDER: usize = 0;
 
+    /// Some velocities are generalized speeds that were declared ([`Mechanism::SPEEDS`]).
+    const SPEEDS: bool = false;
+
     /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
     ///
     /// # Errors
@@ -162,6 +165,16 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
+
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q` ([`Mechanism::displacement_rate`]).
+    fn displacement_rate(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+        dv: &SVector<Self::Scalar, NV>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        self.tangent_rate(dv, v)
+    }
 
     /// Mass matrix `M(t, q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
     fn mass_matrix(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
@@ -276,6 +289,7 @@ where
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = M::LOCATABLE;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     each_function!(space, plain Mechanism, self => self);
     each_function!(dynamics, drop Mechanism, self => self);
@@ -308,6 +322,7 @@ where
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     each_function!(space, plain Rheonomic, self => self.mechanism);
     each_function!(dynamics, at Rheonomic, self => self.mechanism, self.t);

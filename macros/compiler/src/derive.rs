@@ -10,10 +10,12 @@ use crate::mechanics::conserved::{self, Conserved};
 use crate::mechanics::equations::{Limits, linear, reduced};
 use crate::mechanics::hamilton::{self, Hamilton};
 use crate::mechanics::routh::{self, Routh};
+use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
 use crate::passes::Passes;
 use crate::syntax::{Printed, Requests, Skipped};
+use std::rc::Rc;
 
 mod constraints;
 mod derivation;
@@ -29,6 +31,7 @@ mod second;
 mod sensitivities;
 mod singular;
 mod specialisation;
+mod speeds;
 
 use derivation::Derivation;
 use derivatives::Derivatives;
@@ -53,11 +56,18 @@ pub fn derive_with<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Output> {
     let passes = without(passes, requests.skipped);
+    let speeds = InSpeeds::of(model).map(Rc::new);
+    let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
+    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::without(s, requests)) {
+        cx.error(model.place.clone(), what).help(help);
+        return None;
+    }
     if model.kinematic {
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
         let asked = Requests { drawing: requests.drawing, ..Requests::default() };
-        let functions = functions(model, asked, passes, &joints, &Extras::default(), Specialisation::None);
+        let own = (model, speeds.as_ref());
+        let functions = functions(own, asked, passes, &joints, &Extras::default(), Specialisation::None);
         let constants = drawing(model, requests);
         return sound(model, Output { constants, ..steps(model, &joints, functions) }, cx);
     }
@@ -78,13 +88,19 @@ pub fn derive_with<'g>(
     let cyclic = cyclic(model, requests, &joints, cx)?;
     let extras = Extras {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
-        entries: requests.packed.then(|| entries(&mass)),
+        entries: requests.packed.then(|| match &speeds {
+            Some(speeds) => entries(&speeds.metric(&mass)),
+            None => entries(&mass),
+        }),
         hamilton: (requests.hamilton && !has_massless(model))
             .then(|| hamilton::derive(model, &joints, &mass)),
         routh: cyclic.clone().filter(|_| requests.routh).map(|c| routh::derive(model, &joints, &mass, c)),
-        conserved: requests.conserved.then(|| conserved::conserved(model, &joints)),
+        conserved: requests
+            .conserved
+            .then(|| in_speeds(conserved::conserved(model, &joints), speeds.as_deref())),
     };
-    let all = |specialisation| functions(model, requests, passes, &joints, &extras, specialisation);
+    let own = (model, speeds.as_ref());
+    let all = |specialisation| functions(own, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
     if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
         cx.error(model.place.clone(), "the constraints of this mechanism depend on each other too much")
@@ -107,7 +123,7 @@ pub fn derive_with<'g>(
     constants.extend(drawing(model, requests));
     let linear = linear_equations(model, &joints, &mass, cx)?;
     constants.extend(Constant::linear_equations(&linear));
-    let equations = printed(model, &joints, &mass, (requests.equations, cyclic), cx)?;
+    let equations = printed((model, speeds.as_deref()), &joints, &mass, (requests.equations, cyclic), cx)?;
     let output = Output {
         equations,
         linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
@@ -116,6 +132,14 @@ pub fn derive_with<'g>(
         ..steps(model, &joints, functions)
     };
     sound(model, output, cx)
+}
+
+/// What is conserved, written in speeds where there are some.
+fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) -> Vec<Conserved<'g>> {
+    if let Some(speeds) = speeds {
+        kept.iter_mut().for_each(|c| c.value = speeds.written(&[c.value])[0]);
+    }
+    kept
 }
 
 /// The constant of the word `drawing`.
@@ -263,21 +287,25 @@ fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
 
 /// All functions with their programs.
 fn functions<'g>(
-    model: &Model<'g>,
+    (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
     requests: Requests,
     passes: Passes,
     joints: &[Joint<'g>],
     extras: &Extras<'_, 'g>,
     specialisation: Specialisation,
 ) -> Vec<Function> {
-    let given = passive::with_given_forces(model, requests.derivatives);
-    let model = given.as_ref().unwrap_or(model);
+    let given = match speeds {
+        Some(_) => None,
+        None => passive::with_given_forces(model, requests.derivatives),
+    };
+    let model = speeds.map_or(given.as_ref().unwrap_or(model), |speeds| &speeds.model);
     let facts = extras.facts(model, requests);
     let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
-    let derivation = Derivation::new(model, joints, passes, specialisation, &facts);
+    let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
     let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
     let functions = derivation.derive(outputs::declared(model, &facts), functions);
-    let forms = if facts.requests.derivatives { derivatives::forms(model, passes) } else { Vec::new() };
+    let by_forms = facts.requests.derivatives && speeds.is_none();
+    let forms = if by_forms { derivatives::forms(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &forms, passes, specialisation);
     // How the derivatives of a large mechanism are put together is known only now.
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
@@ -308,13 +336,15 @@ pub fn equations_latex(model: &Model<'_>) -> String {
 }
 
 fn written_alone(model: &Model<'_>) -> Written {
+    let speeds = InSpeeds::of(model);
+    let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
-    written(model, &joints, &crba::mass_matrix(model, &joints))
+    written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
 }
 
 /// The equations that are asked for; empty ones where readable ones would be too long, `None` where others are.
 fn printed<'g>(
-    model: &Model<'g>,
+    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
     (printed, cyclic): (Printed, Option<Vec<usize>>),
@@ -325,11 +355,12 @@ fn printed<'g>(
         None
     };
     match printed {
-        Printed::Readable => Some(written(model, joints, mass)),
+        Printed::Readable => Some(written((model, speeds), joints, mass)),
         Printed::Structure => Some(Written::default()),
         Printed::Lagrange => {
-            let equations = mechanics::equations::derive(model, joints, mass, &Limits::ASKED);
-            equations.map(|e| mechanics::equations::written(model, &e)).or_else(|| {
+            let equations = mechanics::equations::derive(model, joints, mass, speeds, &Limits::ASKED);
+            let named = speeds.map_or(model, |speeds| &speeds.model);
+            equations.map(|e| mechanics::equations::written(named, &e)).or_else(|| {
                 refuse(
                     "the equations of this mechanism have thousands of terms",
                     "`equations = structure` says how they are made up; the generated functions do not multiply them out",
@@ -348,6 +379,10 @@ fn printed<'g>(
         Printed::Hamilton if !model.constraints.is_empty() => refuse(
             "Hamilton's equations are printed for mechanisms without constraints",
             "write `equations = lagrange`; the word `hamilton` gives the functions under constraints, too",
+        ),
+        Printed::Hamilton if speeds.is_some() => refuse(
+            "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
+            "write `equations = lagrange`, which prints Kane's equations in speeds; the word `hamilton` gives the functions in speeds, too",
         ),
         Printed::Hamilton => {
             let canonical = mechanics::equations::canonical(model, joints, mass);
@@ -376,9 +411,15 @@ fn linear_equations<'g>(
     (all.len() == model.equilibria.len()).then_some(all)
 }
 
-fn written<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &crba::Matrix<'g>) -> Written {
-    let equations = mechanics::equations::derive(model, joints, mass, &Limits::READABLE);
-    equations.map_or_else(Written::default, |e| mechanics::equations::written(model, &e))
+fn written<'g>(
+    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
+    joints: &[Joint<'g>],
+    mass: &crba::Matrix<'g>,
+) -> Written {
+    let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
+    let equations = mechanics::equations::derive(model, joints, mass, speeds, &limits);
+    let named = speeds.map_or(model, |speeds| &speeds.model);
+    equations.map_or_else(Written::default, |e| mechanics::equations::written(named, &e))
 }
 
 /// A step from link to link.

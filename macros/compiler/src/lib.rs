@@ -93,6 +93,10 @@ pub fn export_c(
                     "CasADi has no functions of single precision".to_string(),
                     "export them in double precision".to_string(),
                 ),
+                export::c::Unfit::Speeds => (
+                    "C sources have no declared speeds yet".to_string(),
+                    "leave `#[speed(…)]` out, or call the mechanism from a library in Rust".to_string(),
+                ),
                 export::c::Unfit::Lanes(of) => (
                     format!("Linkwork made a mistake: `{of}` was derived with lanes"),
                     "this is no mistake of yours: please report it with the declaration of the mechanism"
@@ -477,6 +481,7 @@ impl Source {
             time: outline.time,
             velocity_inputs: outline.velocity_inputs,
             kinematic,
+            speeds: !description.speeds.is_empty(),
             requests: match kinematic {
                 true => {
                     let (batch, drawing) = (requests.batch, requests.drawing);

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Attribute, name and fields of mechanisms that have, between them, every function.
-const MECHANISMS: [(&str, &str, &str); 8] = [
+const MECHANISMS: [(&str, &str, &str); 9] = [
     (
         "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
@@ -55,6 +55,19 @@ const MECHANISMS: [(&str, &str, &str); 8] = [
         "#[joint(ground -> bead, along = x)] slide: Sleeve,
         #[particle(mass = 1)] bead: Particle,
         #[acts(on = slide, value = sin(t) - 3 * slide)] pull: Force,",
+    ),
+    (
+        "gravity = -9.81 * y, derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, packed, prepare, batch",
+        "InSpeeds",
+        "m: f64,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[body(mass = m)] cart: Body,
+        #[body(mass = m, com = x, inertia = rod(m, 2, x))] arm: Body,
+        #[acts(on = hinge)] motor: Torque,
+        #[speed(rate(rail) * cos(hinge))] along: Speed,
+        #[speed(rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,
+        #[output(along)] speed: Scalar,",
     ),
     (
         "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, prepare",

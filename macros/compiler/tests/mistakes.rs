@@ -36,6 +36,8 @@ mod rounds;
 mod several;
 #[path = "mistakes/slips.rs"]
 mod slips;
+#[path = "mistakes/speeds.rs"]
+mod speeds;
 #[path = "mistakes/tables.rs"]
 mod tables;
 

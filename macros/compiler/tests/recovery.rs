@@ -189,6 +189,7 @@ fn every_word_is_named_by_what_needs_it() {
                 "DeclaresEquilibria",
                 "AsksForRouth",
                 "HasContacts",
+                "HasSpeeds",
             ];
             let known = expected.contains(&reason.as_str()) || of_all.contains(&reason.as_str());
             assert!(known, "{}: {reason}", of(function));

@@ -55,6 +55,7 @@ where
     const SLIPPING: bool = M::SLIPPING;
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;
+    const SPEEDS: bool = M::SPEEDS;
 
     #[inline(always)]
     fn neutral(&self) -> SVector<Self::Scalar, NQ> {
@@ -177,6 +178,7 @@ where
         integrate = integrate_lanes[](q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
         difference = difference_lanes[](from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
         tangent_rate = tangent_rate_lanes[](dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        displacement_rate = displacement_rate_lanes[](q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
         mass_matrix = mass_matrix_lanes[t](q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
         bias_forces = bias_forces_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
         inverse_dynamics = inverse_dynamics_lanes[t](q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;

@@ -96,6 +96,7 @@ where
     const CONTACTING: bool = false;
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     each_function!(space, plain Rheonomic, self => self.mechanism);
     each_function!(dynamics, pass Rheonomic, self => self.mechanism);

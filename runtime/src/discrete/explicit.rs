@@ -74,12 +74,12 @@ where
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         let q = self.mechanism.integrate(self.q, &displacement.value);
-        if NQ == NV {
+        if NQ == NV && !M::SPEEDS {
             // Plain coordinates: a displacement is added.
             let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
             return (q, Sensitive { by_q, ..*displacement });
         }
-        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&displacement.value);
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(self.q, &displacement.value);
         let mut motion = Sensitive {
             value: displacement.value,
             by_q,
@@ -156,8 +156,8 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         let (mut q_by_q, mut q_by_v, mut q_by_u) = (displacement.by_q, displacement.by_v, displacement.by_u);
         let (mut by_q, mut by_displacement) = (SMatrix::identity(), SMatrix::identity());
         // q ⊕ h v⁺; in plain coordinates a displacement is added.
-        if NQ != NV {
-            (by_q, by_displacement) = mechanism.integrate_derivatives(&displacement.value);
+        if NQ != NV || M::SPEEDS {
+            (by_q, by_displacement) = mechanism.integrate_derivatives_at(q, &displacement.value);
             q_by_q = nearly_identity_times(&by_displacement, &q_by_q);
             q_by_v = nearly_identity_times(&by_displacement, &q_by_v);
             q_by_u = nearly_identity_times(&by_displacement, &q_by_u);
@@ -216,9 +216,13 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         let v = Sensitive::velocity(v);
         let stage = |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
             let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
-            let (by_dv, by_v) = mechanism.tangent_rate_derivatives(&displacement.value, &v.value);
-            let value = mechanism.tangent_rate(&displacement.value, &v.value);
-            let rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
+            let (by_q, by_dv, by_v) =
+                mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
+            let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
+            let mut rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
+            if M::SPEEDS {
+                rate.by_q += by_q;
+            }
             (rate, start.acceleration(h, &start.moved(&displacement), &v))
         };
         let half = h * constant(0.5);

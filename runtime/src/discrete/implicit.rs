@@ -330,6 +330,12 @@ impl<T: Real> ImplicitMidpoint<T> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
+        const {
+            assert!(
+                !M::SPEEDS,
+                "derivatives of this step take velocities for displacements, which declared speeds are not: take those of `Rk4`"
+            );
+        }
         let h = self.length();
         let (end, w) = advanced(m, self, t, q, v, u, h)?;
         let half = h * constant(0.5);
@@ -370,6 +376,12 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
+    const {
+        assert!(
+            !M::SPEEDS,
+            "derivatives of this step take velocities for displacements, which declared speeds are not: take those of `Rk4`"
+        );
+    }
     let (h, still) = (method.length(), SVector::zeros());
     let (end, w) = advanced(m, method, t, q, v, u, h)?;
     let half = h * constant(0.5);

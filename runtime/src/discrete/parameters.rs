@@ -56,6 +56,7 @@ where
     S: StepByParameters<T>,
 {
     const {
+        assert!(!M::SPEEDS, "steps in declared speeds have no derivatives by parameters");
         assert!(
             !M::CONSTRAINED,
             "a step with derivatives by parameters is one of a mechanism without constraints"

@@ -170,6 +170,9 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
+    const {
+        assert!(!M::SPEEDS, "steps in declared speeds have no derivatives under constraints");
+    }
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, &free.q, &free.v).map_err(failed)?;
     check_regular(m, t, &q)?;

@@ -58,7 +58,7 @@ where
     S: TwiceDifferentiableStep<T>,
 {
     const {
-        assert!(NQ == NV, "a step with second derivatives is one in plain coordinates");
+        assert!(NQ == NV && !M::SPEEDS, "a step with second derivatives is one in plain coordinates");
         assert!(
             !M::CONTACTING,
             "a step with second derivatives is one of a mechanism whose contacts do not open and close: leave them out by `contact::apart`"

@@ -14,7 +14,8 @@ use nalgebra::SVector;
 ///
 /// Symplectic in (q, p) for plain coordinates and time-reversible for all joints: over long runs without friction the
 /// energy oscillates and does not drift. Momenta are kept from step to step; those of plain coordinates that the forces
-/// leave alone are conserved to rounding, those of ball and free joints, which are given in turning axes, to second order.
+/// leave alone are conserved to rounding, those of ball and free joints, which are given in turning axes, to second order, and
+/// so are those of declared speeds, whose displacement to the midpoint is solved for along with its velocity.
 /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), II.1, VI.3.
 ///
 /// The equation is solved by fixed-point iteration to rounding, which converges while `h ω < 2` for the stiffest
@@ -40,8 +41,8 @@ pub struct MidpointMemory<T, const NV: usize> {
     ended: Ended,
 }
 
-/// A solved midpoint: configuration, velocity, rate of the momentum.
-type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>, SVector<T, NV>);
+/// A solved midpoint: configuration and the displacement to it, velocity, rate of the momentum.
+type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
 
 impl<T: Real> ImplicitMidpoint<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
@@ -55,6 +56,17 @@ impl<T: Real> ImplicitMidpoint<T> {
     }
 }
 
+/// The displacement from `q` to the midpoint after a time `half`, improved from an estimate: its rate there is that of the velocity.
+fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    q: &SVector<T, NQ>,
+    way: &SVector<T, NV>,
+    v: &SVector<T, NV>,
+    half: T,
+) -> SVector<T, NV> {
+    if system.has_speeds() { system.displacement_rate(q, way, v) * half } else { v * half }
+}
+
 /// Iterates from the estimate `v` of the midpoint's velocity.
 fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
@@ -64,8 +76,10 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     mut v: SVector<T, NV>,
 ) -> Result<Midpoint<T, NQ, NV>, Error> {
     let mut settling = Settling::new(half);
+    let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {
-        let q = system.integrate(&start.q, &(v * half));
+        way = displacement(system, &start.q, &way, &v, half);
+        let q = system.integrate(&start.q, &way);
         let rate = system.momentum_rate(start.t + half, &q, &v);
         let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
         if !is_finite(&next) {
@@ -74,8 +88,9 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         let change = largest(&(next - v));
         v = next;
         if settling.is_done(change, &q, &v) {
-            let q = system.integrate(&start.q, &(v * half));
-            return Ok((q, v, system.momentum_rate(start.t + half, &q, &v)));
+            way = displacement(system, &start.q, &way, &v, half);
+            let q = system.integrate(&start.q, &way);
+            return Ok((q, [way, v, system.momentum_rate(start.t + half, &q, &v)]));
         }
     }
     Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })
@@ -85,6 +100,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
     type Memory<const NV: usize> = MidpointMemory<T, NV>;
 
     const FIXED: bool = true;
+    const BY_VELOCITIES: bool = true;
 
     fn check(&self) -> Result<(), Error> {
         positive("the step", self.step)
@@ -112,7 +128,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let half = h * constant(0.5);
         let p = memory.momentum.unwrap_or_else(|| system.momentum(start.t, &start.q, &start.v));
         let guess = start.v + memory.change;
-        let (v, end, momentum) = if system.is_constrained() {
+        let (displacement, v, end, momentum) = if system.is_constrained() {
             let found = midpoint(system, D::momentum_rate, start, &p, h, guess);
             let crossing = is_crossing(system, start, h, &found, &mut memory.ended);
             let passed = if crossing { passing(system, start, t, h) } else { None };
@@ -126,15 +142,18 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
                 }
             };
             // The push at the end changes the momentum.
-            (v, end, None)
+            (v * h, v, end, None)
         } else {
-            let (q, v, rate) = solve(system, start, &p, half, guess)?;
-            let (q, p) = (system.integrate(&q, &(v * half)), p + rate * h);
+            let (q, [way, v, rate]) = solve(system, start, &p, half, guess)?;
+            let p = p + rate * h;
+            let (q, displacement) = match system.has_speeds() {
+                true => (system.integrate(&start.q, &(way * constant::<T>(2.0))), way * constant::<T>(2.0)),
+                false => (system.integrate(&q, &(v * half)), v * h),
+            };
             let end = State { t, q, v: system.velocity(t, &q, &p, &(v + v - start.v)) };
-            (v, settled(system, end, start.t)?, Some(p))
+            (displacement, v, settled(system, end, start.t)?, Some(p))
         };
         *memory = MidpointMemory { momentum, change: end.v - v, ended: memory.ended };
-        let displacement = v * h;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

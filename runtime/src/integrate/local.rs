@@ -29,6 +29,19 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.tangent_rate(dv, v)
     }
 
+    fn displacement_rate(
+        &self,
+        q: &SVector<T, NQ>,
+        dv: &SVector<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.system.displacement_rate(q, dv, v)
+    }
+
+    fn has_speeds(&self) -> bool {
+        self.system.has_speeds()
+    }
+
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.system.acceleration(self.origin + t, q, v)
     }

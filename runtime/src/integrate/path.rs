@@ -93,7 +93,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Step<T, NQ, NV> {
     ) -> Self {
         let h = self.end.t - self.start.t;
         let [before, after] = accelerations;
-        let rate = system.tangent_rate(displacement, &self.end.v);
+        let rate = system.displacement_rate(&self.start.q, displacement, &self.end.v);
         Self {
             displacement: Path::cubic(SVector::zeros(), *displacement, self.start.v * h, rate * h),
             velocity: Path::cubic(self.start.v, self.end.v, before * h, after * h),

@@ -39,7 +39,7 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let displacement = mean.0 * h;
     let v = start.v + mean.1 * h;
     let q = system.integrate(&start.q, &displacement);
-    (system.tangent_rate(&displacement, &v), system.acceleration(start.t + h, &q, &v))
+    (system.displacement_rate(&start.q, &displacement, &v), system.acceleration(start.t + h, &q, &v))
 }
 
 /// What leads through a step of `h` seconds, and the change of the velocity, with the acceleration `before` at its start and a

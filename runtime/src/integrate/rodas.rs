@@ -160,8 +160,8 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     for k in 0..NV {
         let mut direction = SVector::<T, NV>::zeros();
         direction[k] = size;
-        let rate: SVector<T, NV> =
-            system.tangent_rate(&direction, &start.v) - system.tangent_rate(&-direction, &start.v);
+        let rate: SVector<T, NV> = system.displacement_rate(&start.q, &direction, &start.v)
+            - system.displacement_rate(&start.q, &-direction, &start.v);
         turn.set_column(k, &(rate / (size * constant::<T>(2.0))));
     }
     Linear { slopes, turn }
@@ -202,7 +202,10 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
             _ => {
                 let time = if *part == 1.0 { t } else { start.t + h * constant(*part) };
                 let (q, v) = (system.integrate(&start.q, &change.displacement), start.v + change.velocity);
-                (system.tangent_rate(&change.displacement, &v), system.acceleration(time, &q, &v))
+                (
+                    system.displacement_rate(&start.q, &change.displacement, &v),
+                    system.acceleration(time, &q, &v),
+                )
             }
         };
         let added = sum(added, &u);

@@ -176,7 +176,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let (moved, v) = (first.0 * h, start.v + first.1 * h);
         let q = system.integrate(&start.q, &moved);
         let two = constant::<T>(2.0);
-        let rate = system.tangent_rate(&moved, &v) - first.0 * two;
+        let rate = system.displacement_rate(&start.q, &moved, &v) - first.0 * two;
         let force = system.acceleration(t, &q, &v) - slopes.by_t * part - first.1 * two;
         let second = stage(rate, force).ok_or(singular)?;
         let (three, half) = (constant::<T>(3.0), h * constant(0.5));

@@ -70,6 +70,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
     type Memory<const NV: usize> = Ended;
 
     const FIXED: bool = true;
+    const BY_VELOCITIES: bool = true;
 
     fn check(&self) -> Result<(), Error> {
         positive("the step", self.step)

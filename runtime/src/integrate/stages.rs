@@ -35,7 +35,7 @@ pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
 ) -> (Rates<T, NV>, State<T, NQ, NV>) {
     let v = start.v + change.velocity;
     let q = system.integrate(&start.q, &change.displacement);
-    let displacement = system.tangent_rate(&change.displacement, &v);
+    let displacement = system.displacement_rate(&start.q, &change.displacement, &v);
     let velocity = system.acceleration(t, &q, &v);
     (Rates { displacement, velocity }, State { t, q, v })
 }

@@ -97,6 +97,23 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
     fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
+    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`: that of [`tangent_rate`](Self::tangent_rate) unless
+    /// speeds were declared ([`Mechanism::displacement_rate`](crate::Mechanism::displacement_rate)).
+    fn displacement_rate(
+        &self,
+        _q: &SVector<T, NQ>,
+        dv: &SVector<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.tangent_rate(dv, v)
+    }
+
+    /// Whether speeds were declared ([`Mechanism::SPEEDS`](crate::Mechanism::SPEEDS)): a displacement with a constant velocity `v` is
+    /// not `h v` then.
+    fn has_speeds(&self) -> bool {
+        false
+    }
+
     /// `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
@@ -244,6 +261,12 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
                 "events at the contacts of this mechanism cannot be located, as those of lanes, states of first order and stabilised constraints: simulate it with `.method(TimeStepping::step(1e-3))`"
             );
         }
+        const {
+            assert!(
+                !(M::CONSTRAINED && M::SPEEDS && S::BY_VELOCITIES),
+                "under constraints this method of integration takes velocities for displacements, which declared speeds are not: simulate it with another, such as `.method(Rk4::step(1e-3))` or `.method(DormandPrince::new())`"
+            );
+        }
         self.undetermined = None;
         let mut local = Local { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
@@ -285,6 +308,19 @@ where
 
     fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.tangent_rate(dv, v)
+    }
+
+    fn displacement_rate(
+        &self,
+        q: &SVector<T, NQ>,
+        dv: &SVector<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.mechanism.displacement_rate(q, dv, v)
+    }
+
+    fn has_speeds(&self) -> bool {
+        M::SPEEDS
     }
 
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {

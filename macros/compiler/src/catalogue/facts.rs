@@ -60,13 +60,17 @@ pub enum Need {
     Calls,
     /// Passive forces that the other functions call.
     PassiveCalls,
+    /// Declared speeds.
+    Speeds,
+    /// None of those.
+    NoSpeeds,
     /// Contacts of a tree, few enough for a function of how the mechanism answers to them.
     FewContacts,
 }
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 28] = [
+    pub const ALL: [Need; 30] = [
         Need::Inertia,
         Need::Derivatives,
         Need::SecondDerivatives,
@@ -83,6 +87,8 @@ impl Need {
         Need::Drawing,
         Need::NoConstraints,
         Need::RegularMass,
+        Need::Speeds,
+        Need::NoSpeeds,
         Need::Constraints,
         Need::Slipping,
         Need::NoSlipping,
@@ -117,6 +123,8 @@ impl Need {
             Need::Batch => "AsksForBatch",
             Need::Drawing => "AsksForDrawing",
             Need::RegularMass => "HasRegularMass",
+            Need::Speeds => "HasSpeeds",
+            Need::NoSpeeds => "HasNoSpeeds",
             Need::Slipping => "HasSlipping",
             Need::NoSlipping => "HasNoSlipping",
             Need::Contacts => "HasContacts",
@@ -149,6 +157,8 @@ pub struct Facts {
     pub acceleration_forces: bool,
     /// There are no dynamics.
     pub kinematic: bool,
+    /// Speeds were declared.
+    pub speeds: bool,
     /// The words of the attribute.
     pub requests: Requests,
     /// Its constraints, if there are any.
@@ -216,6 +226,7 @@ impl Facts {
             velocity_inputs: model.velocity_inputs,
             acceleration_forces: !model.acceleration_forces.is_empty(),
             kinematic: model.kinematic,
+            speeds: model.speeds.is_some(),
             requests,
             constraints,
             contacts: [model.contacts.len(), model.contact_rates().len()],
@@ -256,6 +267,8 @@ impl Facts {
             Need::FileInertials => self.requests.file_inertials,
             Need::Equilibria => self.equilibria > 0,
             Need::Limits => self.limits > 0,
+            Need::Speeds => self.speeds,
+            Need::NoSpeeds => !self.speeds,
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),
             Need::FewContacts => {

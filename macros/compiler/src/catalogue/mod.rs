@@ -13,6 +13,7 @@ mod outputs;
 mod requested;
 mod row;
 mod shape;
+mod speeds;
 mod written;
 
 pub use constants::{absent_constants, is_constant};
@@ -22,12 +23,14 @@ pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows in the order in which functions are generated: outputs come between both lists.
-const TABLES: [&[Row]; 11] = [
+const TABLES: [&[Row]; 13] = [
     dynamics::ROWS,
+    speeds::ROWS,
     constraints::ROWS,
     contacts::ROWS,
     requested::CENTROIDAL,
     derivatives::ROWS,
+    speeds::DERIVATIVES,
     derivatives::MOMENTUM_ROWS,
     derivatives::SECOND_ROWS,
     requested::CANONICAL,
@@ -37,7 +40,7 @@ const TABLES: [&[Row]; 11] = [
 ];
 
 /// How many of the tables stand before the outputs.
-const BEFORE_OUTPUTS: usize = 4;
+const BEFORE_OUTPUTS: usize = 5;
 
 /// All rows.
 pub fn rows() -> impl Iterator<Item = &'static Row> {

@@ -79,6 +79,13 @@ pub enum Id {
     MassMatrixPacked,
     MassMatrixInto,
     Figures,
+    RatesOfSpeeds,
+    SpeedsOfRates,
+    RateMatrix,
+    SpeedMatrix,
+    RateChanges,
+    RateAccelerations,
+    Turning,
     PassiveForces,
     PassiveDerivatives,
     /// A step from a link or frame to the next, or the numbers of a prepared mechanism: private parts of what is written.

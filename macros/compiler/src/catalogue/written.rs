@@ -4,6 +4,7 @@ use super::facts::Need;
 use super::row::Row;
 
 const ASKED: &[Need] = &[Need::Inertia, Need::Derivatives];
+const ASKED_WITHOUT_SPEEDS: &[Need] = &[Need::Inertia, Need::Derivatives, Need::NoSpeeds];
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
 /// Constrained dynamics, assembly and projection.
@@ -29,14 +30,15 @@ pub const CONSTRAINED: &[Row] = &[
 pub const ROWS: &[Row] = &[
     Row::written("difference", &[]).and_batched(),
     Row::written("integrate", &[]).and_batched(),
-    Row::written("tangent_rate", &[]).and_batched(),
+    Row::written("displacement_rate", &[Need::Speeds]).and_batched(),
+    Row::written("tangent_rate", &[Need::NoSpeeds]).and_batched(),
     Row::written("generalized_forces_derivatives", ASKED),
     Row::written(
         "forward_dynamics_second_derivatives",
         &[Need::Inertia, Need::SecondDerivatives, Need::NoSlipping],
     ),
-    Row::written("integrate_derivatives", ASKED),
-    Row::written("tangent_rate_derivatives", ASKED),
+    Row::written("integrate_derivatives", ASKED_WITHOUT_SPEEDS),
+    Row::written("tangent_rate_derivatives", ASKED_WITHOUT_SPEEDS),
     Row::written("frame_acceleration", &[]),
     Row::written("frame_index", &[]),
     Row::written("frame_jacobian", &[]),

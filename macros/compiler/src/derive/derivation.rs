@@ -14,15 +14,19 @@ use crate::lower::{Program, pipeline};
 use crate::mechanics::derivatives::parameters;
 use crate::mechanics::hamilton::Hamilton;
 use crate::mechanics::routh::Routh;
+use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Chart, Model, PassiveForces};
 use crate::passes::Passes;
 use std::cell::OnceCell;
+use std::rc::Rc;
 
 /// The functions of a mechanism, derived when they are asked for; what several of them need is derived once.
 pub(super) struct Derivation<'a, 'g> {
-    model: &'a Model<'g>,
-    joints: &'a [Joint<'g>],
+    /// The model; with declared speeds what of it is written in these.
+    pub(super) model: &'a Model<'g>,
+    pub(super) joints: &'a [Joint<'g>],
+    speeds: Option<&'a Rc<InSpeeds<'g>>>,
     passes: Passes,
     specialisation: Specialisation,
     facts: &'a Facts,
@@ -38,6 +42,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     pub(super) fn new(
         model: &'a Model<'g>,
         joints: &'a [Joint<'g>],
+        speeds: Option<&'a Rc<InSpeeds<'g>>>,
         passes: Passes,
         specialisation: Specialisation,
         facts: &'a Facts,
@@ -47,6 +52,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         Derivation {
             model,
             joints,
+            speeds,
             passes,
             specialisation,
             facts,
@@ -81,7 +87,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     fn dynamics(&self) -> &Dynamics<'g> {
-        self.dynamics.get_or_init(|| Dynamics::new(self.model, self.passes, self.specialisation))
+        let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
+        self.dynamics.get_or_init(|| Dynamics::new(native, self.passes, self.specialisation, self.speeds))
     }
 
     fn sensitivities(&self) -> &Sensitivities<'g> {
@@ -97,12 +104,15 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// What a function of the word `regressor` gives; the word is given where one is declared.
-    fn identified(&self, outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    pub(super) fn identified(
+        &self,
+        outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>,
+    ) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.identification.as_ref()).map(outputs).unwrap_or_default()
     }
 
     /// What a function of the word `hamilton` gives.
-    fn canonical(&self, outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    pub(super) fn canonical(&self, outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
@@ -121,6 +131,9 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let of = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
         let (model, joints) = (self.model, self.joints);
         let known = |id: Id| done.iter().find(|f| f.id == id);
+        if let Some(outputs) = self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
+            return of(&outputs);
+        }
         match declared.id {
             Id::Neutral => of(&neutral(model)),
             Id::Limits => of(&model.limit_values()),
@@ -211,7 +224,15 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
             Id::PassiveForces => of(&self.passive(|passive| passive.forces.clone())),
             Id::PassiveDerivatives => of(&self.passive(|passive| passive.derivatives.clone())),
-            Id::Part => plain(Program::default()),
+            // Of mechanisms with speeds alone, which came before.
+            Id::RatesOfSpeeds
+            | Id::SpeedsOfRates
+            | Id::RateMatrix
+            | Id::SpeedMatrix
+            | Id::RateChanges
+            | Id::RateAccelerations
+            | Id::Turning
+            | Id::Part => plain(Program::default()),
         }
     }
 

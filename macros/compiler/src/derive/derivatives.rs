@@ -5,7 +5,7 @@ use super::output::Function;
 use super::second;
 use super::specialisation::Specialisation;
 use crate::catalogue::{InverseForm, Structure};
-use crate::expr::{Expr, Mat3, Vec3};
+use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
 use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
@@ -14,8 +14,9 @@ use crate::mechanics::derivatives::{
     symbolic,
 };
 use crate::mechanics::passive::passive_forces;
+use crate::mechanics::speeds::commutators;
 use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
-use crate::mechanism::{Chart, Model, Quantity};
+use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
 use crate::vectorise::{self, Limbs};
 
@@ -439,29 +440,4 @@ fn all_columns<'g>(l: &Linearized<'g>) -> Vec<Expr<'g>> {
     all.extend(columns(&l.inverse));
     all.extend(columns(&l.by_u));
     all
-}
-
-/// The matrix of `φ ↦ φ × v`: by this the displacement `φ` between two neighbouring motions changes, `φ̇ = δv + φ × v`,
-/// since it is measured in axes that turn (ball and free joints).
-fn commutators<'g>(model: &Model<'g>) -> crba::Matrix<'g> {
-    let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let v = mechanics::velocities(model);
-    let mut block = |row: usize, column: usize, first: usize| {
-        let minus = Mat3::skew(-Vec3([v[first], v[first + 1], v[first + 2]]));
-        for i in 0..3 {
-            m[row + i][column..column + 3].copy_from_slice(&minus.0[i]);
-        }
-    };
-    for chart in &model.charts {
-        match *chart {
-            Chart::Plain(..) => {}
-            Chart::Ball(_, b) => block(b, b, b),
-            Chart::Free(_, b) => {
-                block(b, b, b + 3);
-                block(b + 3, b + 3, b + 3);
-                block(b, b + 3, b);
-            }
-        }
-    }
-    m
 }

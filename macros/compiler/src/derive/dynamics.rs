@@ -9,12 +9,14 @@ use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::passive::passive_forces;
+use crate::mechanics::speeds::{InSpeeds, Role};
 use crate::mechanics::{
     self, aba, added_mass, constraints, crba, energy, frames, friction, ldl, massless, momentum, rnea,
 };
 use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Form, Passes};
 use crate::vectorise::{self, Limbs};
+use std::rc::Rc;
 
 /// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
 const SIMILAR: usize = 8;
@@ -26,6 +28,8 @@ const SIMILAR_AT_FIRST: usize = 24;
 pub(super) struct Dynamics<'g> {
     /// The model's forms with frames of each kind that may be good, the best first.
     kinds: Vec<Forms<'g>>,
+    /// Functions are in declared speeds.
+    in_speeds: bool,
     /// One algorithm of forward dynamics is taken without comparing.
     is_large: bool,
     specialisation: Specialisation,
@@ -37,8 +41,14 @@ pub(super) struct Dynamics<'g> {
 impl<'g> Dynamics<'g> {
     /// The forms that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
     /// axes.
-    pub(super) fn new(model: &Model<'g>, passes: Passes, specialisation: Specialisation) -> Dynamics<'g> {
-        let mut all = Kind::all(model, passes, specialisation);
+    /// With speeds what the algorithms give is written in these.
+    pub(super) fn new(
+        model: &Model<'g>,
+        passes: Passes,
+        specialisation: Specialisation,
+        speeds: Option<&Rc<InSpeeds<'g>>>,
+    ) -> Dynamics<'g> {
+        let mut all = Kind::all(model, passes, specialisation, speeds);
         all.sort_by_key(|kind| kind.size);
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
@@ -54,7 +64,8 @@ impl<'g> Dynamics<'g> {
             }
         }
         kinds.iter_mut().for_each(Forms::find_bias);
-        let wide = mass_matrices_in_lanes(&kinds, specialisation, passes.wide(model.nv()));
+        let wide = if speeds.is_none() { passes.wide(model.nv()) } else { &[] };
+        let wide = mass_matrices_in_lanes(&kinds, specialisation, wide);
         let side_by_side =
             in_lanes_of(specialisation, kinds.iter().flat_map(|forms| forms.recursions_in_lanes(true)));
         let biases = kinds.iter().map(|forms| &forms.bias.program);
@@ -66,6 +77,7 @@ impl<'g> Dynamics<'g> {
             bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
             is_large: model.nv() > COMPARED_VELOCITIES || least > COMPARED_OPERATIONS,
             kinds,
+            in_speeds: speeds.is_some(),
             specialisation,
         }
     }
@@ -83,35 +95,47 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn kinetic_energy(&self) -> Program {
-        self.smallest(|m, j, v| vec![energy::kinetic_energy(m, j, v)])
+        self.smallest(Role::Scalars, |m, j, v| vec![energy::kinetic_energy(m, j, v)])
     }
 
     pub(super) fn potential_energy(&self) -> Program {
-        self.smallest(|m, j, _| vec![energy::potential_energy(m, j)])
+        self.smallest(Role::Scalars, |m, j, _| vec![energy::potential_energy(m, j)])
     }
 
     pub(super) fn generalized_momentum(&self) -> Program {
-        self.smallest(momentum::generalized_momentum)
+        self.smallest(Role::Forces, momentum::generalized_momentum)
     }
 
     pub(super) fn momentum_rate(&self) -> Program {
-        self.smallest(momentum::momentum_rate)
+        self.smallest(Role::MomentumRate, |m, j, v| {
+            let mut rate = momentum::momentum_rate(m, j, v);
+            if self.in_speeds {
+                rate.extend(momentum::generalized_momentum(m, j, v));
+            }
+            rate
+        })
     }
 
     pub(super) fn center_of_mass(&self) -> Program {
-        self.smallest(|m, j, _| energy::center_of_mass(m, j).0.to_vec())
+        self.smallest(Role::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
     }
 
     pub(super) fn momentum(&self) -> Program {
-        self.smallest(|m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)))
+        self.smallest(Role::Scalars, |m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)))
     }
 
     pub(super) fn centroidal_momentum_matrix(&self) -> Program {
-        self.smallest(|m, j, _| momentum::centroidal_momentum_matrix(m, j))
+        self.smallest(Role::Columns(6), |m, j, _| momentum::centroidal_momentum_matrix(m, j))
     }
 
     pub(super) fn centroidal_momentum_bias(&self) -> Program {
-        self.smallest(|m, j, v| frames::flat(&momentum::centroidal_bias(m, j, v)))
+        self.smallest(Role::Bias(6), |m, j, v| {
+            let mut bias = frames::flat(&momentum::centroidal_bias(m, j, v)).to_vec();
+            if self.in_speeds {
+                bias.extend(momentum::centroidal_momentum_matrix(m, j));
+            }
+            bias
+        })
     }
 
     pub(super) fn constrained_dynamics(&self) -> Program {
@@ -129,7 +153,8 @@ impl<'g> Dynamics<'g> {
     /// What impulses along given rates do to the velocities and to these rates.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.of_best(|forms| {
-            forms.cheapest(|model| {
+            // Contacts and speeds exclude each other.
+            forms.cheapest(Role::Scalars, |model| {
                 let mass = crba::mass_matrix(model, &forms.joints);
                 Factor::of(&mass, &forms.joints).responses(rows)
             })
@@ -143,10 +168,11 @@ impl<'g> Dynamics<'g> {
     /// The program of the form in which these expressions of model, joints and velocities are the smallest.
     fn smallest(
         &self,
+        role: Role,
         expressions: impl Fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
     ) -> Program {
         self.of_best(|forms| {
-            forms.smallest(|model| expressions(model, &forms.joints, &mechanics::velocities(model)))
+            forms.smallest(role, |model| expressions(model, &forms.joints, &mechanics::velocities(model)))
         })
     }
 
@@ -180,7 +206,12 @@ struct Kind<'g> {
 
 impl<'g> Kind<'g> {
     /// Those with frames of every kind.
-    fn all(model: &Model<'g>, passes: Passes, specialisation: Specialisation) -> Vec<Kind<'g>> {
+    fn all(
+        model: &Model<'g>,
+        passes: Passes,
+        specialisation: Specialisation,
+        speeds: Option<&Rc<InSpeeds<'g>>>,
+    ) -> Vec<Kind<'g>> {
         let mut kinds = vec![passes::forms(model, passes)];
         if passes.frames && model.nv() <= COMPARED_VELOCITIES {
             kinds.push(passes::forms(model, Passes { frames: false, ..passes }));
@@ -191,7 +222,8 @@ impl<'g> Kind<'g> {
             kinds.extend(common.into_iter().filter(|forms| !forms.is_empty()));
         }
         let mut found: Vec<Kind<'g>> = Vec::new();
-        for forms in kinds.into_iter().map(|forms| Forms::new(forms, passes, specialisation)) {
+        for forms in kinds.into_iter().map(|forms| Forms::new(forms, passes, specialisation, speeds.cloned()))
+        {
             if found.first().is_none_or(|first| first.is_similar(&forms)) {
                 found.push(Kind::new(forms));
             }
@@ -266,6 +298,8 @@ struct Forms<'g> {
     all: Vec<Form<'g>>,
     joints: Vec<Joint<'g>>,
     specialisation: Specialisation,
+    /// What results are written in, if not in the velocities of the joints.
+    speeds: Option<Rc<InSpeeds<'g>>>,
     /// The forms with alike limbs as lanes, and whether they are anchored; none if there are no such limbs.
     limbs: Vec<(Limbs<'g>, bool)>,
     bias: Bias,
@@ -282,10 +316,15 @@ struct Bias {
 }
 
 impl<'g> Forms<'g> {
-    fn new(all: Vec<Form<'g>>, passes: Passes, specialisation: Specialisation) -> Forms<'g> {
+    fn new(
+        all: Vec<Form<'g>>,
+        passes: Passes,
+        specialisation: Specialisation,
+        speeds: Option<Rc<InSpeeds<'g>>>,
+    ) -> Forms<'g> {
         let joints = all.first().map_or(Vec::new(), |form| form.joints.clone());
         let groups = match all.first() {
-            Some(form) if passes.lanes && specialisation == Specialisation::None => {
+            Some(form) if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
                 vectorise::find(&form.model, &joints)
             }
             _ => Vec::new(),
@@ -295,7 +334,7 @@ impl<'g> Forms<'g> {
             Some((Limbs::of(&form.model, &joints, &groups, forces)?, form.anchored))
         };
         let limbs = all.iter().filter_map(in_lanes).collect();
-        Forms { all, joints, specialisation, limbs, bias: Bias::default() }
+        Forms { all, joints, specialisation, speeds, limbs, bias: Bias::default() }
     }
 
     fn find_bias(&mut self) {
@@ -318,32 +357,47 @@ impl<'g> Forms<'g> {
     /// The outputs of a function of any kind, form by form.
     fn candidates(
         &self,
+        role: Role,
         outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
     ) -> impl Iterator<Item = Candidate<'g>> {
-        self.plain().map(outputs).map(|list| self.specialisation.sized(list))
+        self.plain().map(outputs).map(move |list| self.candidate(role, list))
+    }
+
+    /// Outputs, written in speeds where there are some.
+    fn candidate(&self, role: Role, list: Vec<Expr<'g>>) -> Candidate<'g> {
+        match &self.speeds {
+            None => self.specialisation.sized(list),
+            Some(speeds) => self.specialisation.sized(speeds.results(role, &list)),
+        }
     }
 
     /// The program of the form in which a function of any kind takes the fewest operations.
-    fn cheapest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        self.specialisation.cheapest(self.candidates(outputs))
+    fn cheapest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        self.specialisation.cheapest(self.candidates(role, outputs))
     }
 
     /// The program of the form in which its outputs are the smallest, which is found quicker.
-    fn smallest(&self, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        let smallest = self.candidates(outputs).min_by_key(|list| list.size);
+    fn smallest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        let smallest = self.candidates(role, outputs).min_by_key(|list| list.size);
         smallest.map_or_else(Program::default, |list| self.specialisation.program(&list.outputs))
     }
 
     fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
-        self.candidates(|model| crba::mass_matrix(model, &self.joints).concat())
+        self.candidates(Role::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
     }
 
     /// Inverse dynamics, or the bias alone.
     fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         self.all.iter().map(move |form| {
             let (v, a) = (mechanics::velocities(&form.model), mechanics::accelerations(&form.model));
-            let a = accelerations.then_some(a.as_slice());
-            self.specialisation.sized(rnea::inverse_dynamics(&form.model, &self.joints, &v, a))
+            let Some(speeds) = &self.speeds else {
+                let a = accelerations.then_some(a.as_slice());
+                return self.specialisation.sized(rnea::inverse_dynamics(&form.model, &self.joints, &v, a));
+            };
+            // At zero rates of the speeds the joints may accelerate.
+            let all = rnea::inverse_dynamics(&form.model, &self.joints, &v, Some(&a));
+            let all = speeds.results(Role::Forces, &all);
+            self.specialisation.sized(if accelerations { all } else { speeds.without_accelerations(&all) })
         })
     }
 
@@ -359,7 +413,7 @@ impl<'g> Forms<'g> {
         let tau = efforts(bias);
         let all = self.plain().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(self.specialisation.sized(list))
+            Some(self.candidate(Role::Accelerations(0), list))
         });
         all.collect()
     }
@@ -381,7 +435,7 @@ impl<'g> Forms<'g> {
                 false => Factor::of(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
             }
         };
-        self.candidates(solve).collect()
+        self.candidates(Role::Accelerations(0), solve).collect()
     }
 
     /// `τ − h`.
@@ -390,6 +444,11 @@ impl<'g> Forms<'g> {
         let h = rnea::inverse_dynamics(bias, &self.joints, &mechanics::velocities(bias), None);
         efforts(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
     }
+}
+
+/// For how many multipliers it is told what each of them does.
+fn answers(model: &Model<'_>) -> usize {
+    if model.is_overdetermined() { model.constraints.len() } else { 0 }
 }
 
 /// `τ`.
@@ -403,10 +462,13 @@ impl<'g> Forms<'g> {
         let Some(form) = self.all.first() else { return Program::default() };
         let (force, biases) = (self.unbalanced(), constraints::biases(&form.model));
         if !friction::slipping(&form.model).is_empty() {
-            return self.slipping(&force, &biases);
+            return self.slipping(Role::Accelerations(0), &force, &biases);
         }
-        let Some(pivots) = &form.model.dependent else { return self.multipliers(&force, &biases) };
-        self.cheapest(|model| {
+        let Some(pivots) = &form.model.dependent else {
+            let answers = answers(&form.model);
+            return self.multipliers(Role::Accelerations(answers), &force, &biases);
+        };
+        self.cheapest(Role::Accelerations(0), |model| {
             let mass = crba::mass_matrix(model, &self.joints);
             constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)
         })
@@ -416,18 +478,18 @@ impl<'g> Forms<'g> {
     fn constraint_response(&self) -> Program {
         let Some(form) = self.all.first() else { return Program::default() };
         let (force, bias) = constraints::given(&form.model);
-        self.multipliers(&force, &bias)
+        self.multipliers(Role::Answers(answers(&form.model)), &force, &bias)
     }
 
     /// The same with friction.
     fn slipping_response(&self) -> Program {
         let Some(form) = self.all.first() else { return Program::default() };
         let (force, bias) = constraints::given(&form.model);
-        self.slipping(&force, &bias)
+        self.slipping(Role::Answers(0), &force, &bias)
     }
 
-    fn multipliers(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        self.cheapest(|model| {
+    fn multipliers(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        self.cheapest(role, |model| {
             let rows = constraints::jacobian(model);
             if model.is_overdetermined() {
                 let mass = crba::mass_matrix(model, &self.joints);
@@ -438,8 +500,8 @@ impl<'g> Forms<'g> {
         })
     }
 
-    fn slipping(&self, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        self.cheapest(|model| {
+    fn slipping(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        self.cheapest(role, |model| {
             let (mass, force) = self.loaded(model, force, bias);
             friction::solve(model, &mass, force, bias.to_vec())
         })

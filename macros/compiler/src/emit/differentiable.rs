@@ -28,9 +28,10 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
             "zeros",
         ),
     ] {
+        let (hidden, prefix) = if i.facts.speeds { ("#[doc(hidden)]\n", "__") } else { ("", "") };
         let _ = writeln!(
             out,
-            "/// {about}\n#[inline]\n#[must_use]\npub fn {name}_derivatives(&self, {arguments}) -> ({square}, {square}) {{"
+            "{hidden}/// {about}\n#[inline]\n#[must_use]\npub fn {prefix}{name}_derivatives(&self, {arguments}) -> ({square}, {square}) {{"
         );
         match charts {
             None => out.push_str("loop {}\n"),
@@ -188,11 +189,15 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
-    let _ = writeln!(
-        out,
-        "#[inline]\nfn integrate_derivatives(&self, dv: &{v}) -> ({square}, {square}) {{ Self::integrate_derivatives(self, dv) }}
-        #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ Self::tangent_rate_derivatives(self, dv, v) }}"
-    );
+    if i.facts.speeds {
+        super::speeds::write_derivatives(out, s);
+    } else {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn integrate_derivatives(&self, dv: &{v}) -> ({square}, {square}) {{ Self::integrate_derivatives(self, dv) }}
+            #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ Self::tangent_rate_derivatives(self, dv, v) }}"
+        );
+    }
     let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
     let pair = format!("({square}, {square})");
     let mut functions = vec![

@@ -28,6 +28,11 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     } else if !interface.velocities.is_empty() {
         text.push_str("- Velocity `v`: their rates\n");
     }
+    if interface.facts.speeds {
+        text.push_str(
+            "- Generalized speeds are among the velocities: `rates_of_speeds` gives those of the joints\n",
+        );
+    }
     list(&mut text, "Inputs `u`", &interface.inputs);
     list(&mut text, "Frames", &interface.frames);
     for name in &interface.frames {

@@ -92,9 +92,15 @@ pub fn write_frame_impl(
     k: usize,
     frame: &FrameSteps,
     links: &[LinkSteps],
+    speeds: bool,
     s: &Signature<'_>,
 ) {
     let scalar = s.scalar.name();
+    // The steps are written in the velocities of the joints.
+    let (rates, accelerations) = match speeds {
+        true => ("let v = &self.rates_of_speeds(q, v);\n", "let a = &self.__rate_accelerations(q, v, a);\n"),
+        false => ("", ""),
+    };
     let method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
         let all: Vec<Argument> = std::iter::once(Argument::T).chain(arguments.iter().copied()).collect();
         let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(&all));
@@ -105,6 +111,7 @@ pub fn write_frame_impl(
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
     method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
+    out.push_str(rates);
     write_path_placement(out, frame.link, s);
     let last = frame.link.map_or(String::new(), |l| {
         format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_twist({t}q, v))")
@@ -112,12 +119,14 @@ pub fn write_frame_impl(
     let _ = writeln!(out, "self.__frame{k}_twist({last})\n}}");
 
     method(out, "acceleration", &[Argument::Q, Argument::V, Argument::A], &format!("[{scalar}; 6]"));
+    out.push_str(accelerations);
+    out.push_str(rates);
     write_path_placement(out, frame.link, s);
     let last = frame.link.map_or(String::new(), |l| {
         format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_motion({t}q, v, a))")
     });
     let _ = writeln!(out, "self.__frame{k}_acceleration({last})\n}}");
-    write_jacobian(out, k, frame, links, s);
+    write_jacobian(out, k, frame, links, speeds, s);
 }
 
 /// The placement of the frame's link.
@@ -158,7 +167,14 @@ fn write_path(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
     method("motion", &[Q, V, A], 12, &motion);
 }
 
-fn write_jacobian(out: &mut String, k: usize, frame: &FrameSteps, links: &[LinkSteps], s: &Signature<'_>) {
+fn write_jacobian(
+    out: &mut String,
+    k: usize,
+    frame: &FrameSteps,
+    links: &[LinkSteps],
+    speeds: bool,
+    s: &Signature<'_>,
+) {
     let path = path(links, frame.link);
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
@@ -178,7 +194,8 @@ fn write_jacobian(out: &mut String, k: usize, frame: &FrameSteps, links: &[LinkS
     }
     let _ = writeln!(
         out,
-        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(columns))\n}}"
+        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(columns)){}\n}}",
+        if speeds { " * self.__rate_matrix(q)" } else { "" }
     );
 }
 

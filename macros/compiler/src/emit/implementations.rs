@@ -129,9 +129,16 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         out,
         "#[inline]\nfn neutral(&self) -> {q} {{ Self::neutral(self) }}
         #[inline]\nfn integrate(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate(self, q, dv) }}
-        #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}
-        #[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
+        #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}"
     );
+    if i.facts.speeds {
+        super::speeds::write_trait(out, s);
+    } else {
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
+        );
+    }
     if i.facts.acceleration_forces {
         out.push_str("const FEEDBACK: bool = true;\n");
     }

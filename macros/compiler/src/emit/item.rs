@@ -64,7 +64,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     } else {
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
-    write_manifold(&mut methods, Some(&output.charts), &s);
+    write_manifold(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
         write_carry(&mut methods, Some(&output.charts), &s);
     }
@@ -96,7 +96,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let mut frames = Vec::new();
     for (k, frame) in output.frames.iter().enumerate() {
         let mut text = String::new();
-        write_frame_impl(&mut text, k, frame, &output.links, &s);
+        write_frame_impl(&mut text, k, frame, &output.links, interface.facts.speeds, &s);
         frames.push(text);
     }
     let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
@@ -136,7 +136,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     } else {
         constraints::write_assembly(&mut methods, &interface.constraints, &s);
     }
-    write_manifold(&mut methods, None, &s);
+    write_manifold(&mut methods, None, interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
         write_carry(&mut methods, None, &s);
     }

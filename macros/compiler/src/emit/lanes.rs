@@ -47,7 +47,7 @@ pub fn write_methods(
     if !i.constraints.names.is_empty() {
         write_constrained(out, i, &lanes);
     }
-    write_manifold(out, charts, &lanes);
+    write_manifold(out, charts, i.facts.speeds, &lanes);
 }
 
 /// The body of a function in lanes for debug builds, where lanes would need more stack than a thread has: one state after
@@ -173,7 +173,14 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let _ = writeln!(
         out,
         "#[inline]\nfn integrate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate_lanes(self, q, dv) }}
-        #[inline]\nfn difference_lanes<const LANES: usize>(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference_lanes(self, from, to) }}
-        #[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate_lanes(self, dv, v) }}"
+        #[inline]\nfn difference_lanes<const LANES: usize>(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference_lanes(self, from, to) }}"
+    );
+    if i.facts.speeds {
+        super::speeds::write_batch_trait(out, s);
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate_lanes(self, dv, v) }}"
     );
 }

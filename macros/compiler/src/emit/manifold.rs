@@ -6,7 +6,9 @@ use std::fmt::Write;
 
 /// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space; without its parts, for a
 /// mechanism that failed to compile, their bodies never return.
-pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+///
+/// With declared speeds these are hidden, and what the outside sees is made of them.
+pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
         ManifoldFunction { name, about, signature, arguments, result }
@@ -34,23 +36,26 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, s: &Signature<
             s.nv,
         ),
     ];
+    let prefix = if speeds { "__" } else { "" };
     for function in &functions {
-        function.write(out, charts, s);
+        function.write(out, prefix, charts, s);
+    }
+    if speeds {
+        super::speeds::write_manifold(out, charts.is_none(), s);
     }
 }
 
 /// What contacts need of the configuration space, by a function that is not shown.
 pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let v = s.vector(s.nv);
-    out.push_str("#[doc(hidden)]\n");
     let carry = ManifoldFunction {
-        name: "__carry",
+        name: "carry",
         about: "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
         signature: format!("dv: &{v}, v: &{v}) -> {v}"),
         arguments: [("dv", s.nv), ("v", s.nv)],
         result: s.nv,
     };
-    carry.write(out, charts, s);
+    carry.write(out, "__", charts, s);
 }
 
 /// One of the functions of the configuration space.
@@ -63,10 +68,11 @@ struct ManifoldFunction {
 }
 
 impl ManifoldFunction {
-    fn write(&self, out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    fn write(&self, out: &mut String, prefix: &str, charts: Option<&[Chart]>, s: &Signature<'_>) {
+        let hidden = if prefix.is_empty() { "" } else { "#[doc(hidden)]\n" };
         let _ = writeln!(
             out,
-            "/// {}\n#[inline]\n#[must_use]\npub fn {}{}(&self, {} {{",
+            "{hidden}/// {}\n#[inline]\n#[must_use]\npub fn {prefix}{}{}(&self, {} {{",
             self.about,
             self.name,
             s.generics(),
@@ -112,7 +118,7 @@ impl ManifoldFunction {
                 out,
                 "let {} = ::linkwork::__private::{kind}_{}({}, {});",
                 range(r.0, r.1, "r"),
-                self.name.trim_start_matches('_'),
+                self.name,
                 range(a.0, a.1, first),
                 range(b.0, b.1, second)
             );

@@ -28,6 +28,7 @@ mod reactions;
 mod scalar;
 mod sensitivities;
 mod signature;
+mod speeds;
 mod states;
 mod stores;
 mod validate;

@@ -52,7 +52,7 @@ pub fn write_prepared(
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     reactions::write_methods(&mut methods, i, functions, s);
     reactions::write_touched(&mut methods, i, functions, s);
-    write_manifold(&mut methods, content.charts, s);
+    write_manifold(&mut methods, content.charts, i.facts.speeds, s);
     if !i.contacts.is_empty() {
         write_carry(&mut methods, content.charts, s);
     }

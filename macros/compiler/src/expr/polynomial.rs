@@ -5,10 +5,12 @@
 
 use super::node::{Extreme, Function, Lookup, Symbol};
 
+mod expression;
 mod monomial;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use expression::expression;
 pub use monomial::{ATOMS, Monomial};
 
 /// Most terms of a polynomial.
@@ -93,6 +95,8 @@ pub struct Ring {
     squared: Monomial,
     /// Atoms whose product is one.
     inverses: Vec<(usize, usize)>,
+    /// Atoms `1 / sin`, with the cosine and the sine of the angle.
+    cosecants: Vec<[usize; 3]>,
     work: usize,
     /// Most terms of a polynomial.
     terms: usize,
@@ -186,6 +190,7 @@ impl Ring {
             squares: Vec::new(),
             squared: Monomial::ONE,
             inverses: Vec::new(),
+            cosecants: Vec::new(),
             work: WORK,
             terms: TERMS,
         }
@@ -226,6 +231,13 @@ impl Ring {
             && let Some(inverse) = term.monomial.factors().next()
         {
             self.inverses.push((inverse.0, index));
+            if let Some(Atom::Wave(wave)) = self.atoms.get(inverse.0)
+                && !wave.cosine
+                && let Some(cosine) =
+                    self.atoms.iter().position(|a| *a == Atom::Wave(Wave { cosine: true, ..*wave }))
+            {
+                self.cosecants.push([index, cosine, inverse.0]);
+            }
         }
         self.ranks.push(self.rank_of(&atom));
         self.atoms.push(atom);
@@ -304,7 +316,11 @@ impl Ring {
     /// Squares of sines and roots replaced, products with inverses made one.
     fn reduced(&mut self, mut p: Polynomial) -> Option<Polynomial> {
         loop {
-            let rewrites = |t: &Term| t.monomial.meets(self.squared) || self.cancels(t.monomial).is_some();
+            let rewrites = |t: &Term| {
+                t.monomial.meets(self.squared)
+                    || self.cancels(t.monomial).is_some()
+                    || self.over_sine(t.monomial).is_some()
+            };
             if !p.terms.iter().any(rewrites) {
                 return (p.terms.len() <= self.terms).then_some(p);
             }
@@ -322,11 +338,29 @@ impl Ring {
         Monomial::atom(pair.0).times(Monomial::atom(pair.1))
     }
 
+    /// `cos² / sin`, which is `1 / sin − sin`: squares of cosines take the place of those of sines elsewhere, and would hide
+    /// what cancels.
+    fn over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
+        self.cosecants
+            .iter()
+            .find(|[inverse, cosine, _]| m.power(*inverse) > 0 && m.power(*cosine) > 1)
+            .copied()
+    }
+
     /// A term after one rule.
     fn rewritten(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
         if let Some(one) = self.cancels(monomial) {
             return Some(Polynomial::single(monomial.over(one), coefficient));
+        }
+        if let Some([inverse, cosine, sine]) = self.over_sine(monomial) {
+            let square = Monomial::atom(cosine).times(Monomial::atom(cosine))?;
+            let one = monomial.over(square);
+            let rest = one.over(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
+            return Some(Polynomial::sum(vec![
+                Term { monomial: one, coefficient },
+                Term { monomial: rest, coefficient: -coefficient },
+            ]));
         }
         match self.squares.iter().find(|(atom, _)| monomial.power(*atom) > 1) {
             Some((atom, square)) => {

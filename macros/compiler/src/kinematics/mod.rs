@@ -10,6 +10,7 @@ mod rates;
 pub mod redundancy;
 mod rows;
 mod spatial;
+pub mod speeds;
 
 pub use directions::{AXES, in_plane, perpendicular, unit};
 pub use joint::{Dof, Drift, Joint, joint, joints};

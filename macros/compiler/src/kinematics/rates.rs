@@ -71,11 +71,15 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
 }
 
 /// Rate of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain coordinates, half of the product of
-/// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint.
+/// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint. Where speeds were
+/// declared, these velocities are `Z(q)` times what the entries of `v` are.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
     let q = |k: usize| Quantity::Configuration(k).expr(g);
-    let v = |k: usize| Quantity::Velocity(k).expr(g);
+    let v = |k: usize| match space.speeds {
+        None => Quantity::Velocity(k).expr(g),
+        Some(speeds) => speeds.rate(g, k),
+    };
     for chart in space.charts {
         match *chart {
             Chart::Plain(a, b) if a == k => return v(b),

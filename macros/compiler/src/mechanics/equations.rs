@@ -3,6 +3,7 @@
 //! Lagrange's equations are the same polynomials, as a test shows.
 
 use super::crba::Matrix;
+use super::speeds::InSpeeds;
 use super::{accelerations, added_mass, constraints, energy, forces, rnea, velocities};
 use crate::expr::eval::Tape;
 use crate::expr::factor::without_noise;
@@ -12,7 +13,8 @@ use crate::expr::trigonometry::simplified;
 use crate::expr::unit::on_unit_sphere;
 use crate::expr::{Expr, Function, Node, Symbol};
 use crate::kinematics::Joint;
-use crate::mechanism::{Chart, Model, Quantity};
+use crate::kinematics::speeds::quaternions;
+use crate::mechanism::{Model, Quantity};
 
 mod canonical;
 pub mod linear;
@@ -40,6 +42,8 @@ impl Limits {
     pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
     /// What is written for those who ask.
     pub const ASKED: Limits = Limits { operations: [2000, 5000], terms: 3000, long: 8000 };
+    /// What anybody would read, in declared speeds: most of what is multiplied out cancels.
+    pub const READABLE_IN_SPEEDS: Limits = Limits { operations: [2000, 5000], terms: 150, long: 8000 };
 }
 
 /// The equations of a mechanism as polynomials of one ring.
@@ -52,28 +56,39 @@ pub struct Equations {
     pub motion: Vec<Polynomial>,
     /// What the inputs and the multipliers contribute, by velocity; then zeros.
     pub forces: Vec<Polynomial>,
+    /// With declared speeds: the velocities of joints that they replace, by index, as they follow from the speeds.
+    pub rates: Vec<(usize, Polynomial)>,
 }
 
 /// The equations of a mechanism; `None` where they would be longer than the limits. Their length decides, as soon as it is known.
+///
+/// With declared speeds they are Kane's: those of the joints' velocities, exchanged.
 pub fn derive<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
+    speeds: Option<&InSpeeds<'g>>,
     limits: &Limits,
 ) -> Option<Equations> {
-    let entries: Vec<Expr<'g>> = mass.iter().flatten().copied().collect();
+    let metric = |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.metric(mass));
+    let entries: Vec<Expr<'g>> = metric(mass).concat();
     if entries.is_empty() || Tape::of(&entries).steps() > limits.operations[0] {
         return None;
     }
-    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
-    let right = right_sides(model, joints);
-    let kept: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
+    let bias = bias(model, joints, speeds);
+    let mut right = right_sides(model, joints);
+    let mut constraints = &model.constraints;
+    if let Some(speeds) = speeds {
+        right = speeds.forces(&right);
+        constraints = &speeds.model.constraints;
+    }
+    let kept: Vec<Expr<'g>> = constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
     let all: Vec<Expr<'g>> = entries.iter().chain(&bias).chain(&right).chain(&kept).copied().collect();
     if Tape::of(&all).steps() > limits.operations[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
-    if limits.terms > Limits::READABLE.terms {
+    if limits.long > Limits::READABLE.long {
         normal.ring.allow_more();
     }
     // Angles in the order of `q`, so that sums of them are read in this order.
@@ -83,7 +98,7 @@ pub fn derive<'g>(
     let entries = normals(&mut normal, &entries)?;
     let mut motion = normals(&mut normal, &bias)?;
     let (v, a) = (normals(&mut normal, &velocities(model))?, normals(&mut normal, &accelerations(model))?);
-    let effective: Vec<Expr<'g>> = added_mass::effective(model, mass).concat();
+    let effective: Vec<Expr<'g>> = metric(&added_mass::effective(model, mass)).concat();
     let effective = if model.acceleration_forces.is_empty() {
         entries.clone()
     } else {
@@ -94,23 +109,27 @@ pub fn derive<'g>(
         let force = normal.ring.times(entry, &a[j])?;
         motion[i] = normal.ring.plus(&motion[i], &force)?;
     }
-    let kinetic = kinetic(model, joints, &entries, &v, &mut normal)?;
+    let kinetic = kinetic((model, speeds), joints, &entries, &v, &mut normal)?;
     let potential = normal.of(energy::potential_energy(model, joints))?;
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
     let mut forces = normals(&mut normal, &right)?;
     motion.extend(normals(&mut normal, &kept)?);
     forces.resize(motion.len(), Polynomial::default());
-    shortened(Short::new(normal.ring, quaternions(model), limits), lagrangian, motion, forces)
+    let replaced: Vec<usize> = speeds.map_or_else(Vec::new, InSpeeds::replaced);
+    let mut rates = Vec::new();
+    for (k, speeds) in replaced.into_iter().filter_map(|k| Some((k, speeds?))) {
+        rates.push((k, normal.of(speeds.rates[k])?));
+    }
+    let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates };
+    shortened(Short::new(normal.ring, quaternions(model), limits), found)
 }
 
-/// The components of all unit quaternions.
-fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
-    let firsts = model.charts.iter().filter_map(|chart| match chart {
-        Chart::Ball(q, _) => Some(*q),
-        Chart::Free(q, _) => Some(q + 3),
-        Chart::Plain(..) => None,
-    });
-    firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q + k).symbol())).collect()
+/// `h`, or what stands for it with declared speeds.
+fn bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], speeds: Option<&InSpeeds<'g>>) -> Vec<Expr<'g>> {
+    let v = velocities(model);
+    let Some(speeds) = speeds else { return rnea::inverse_dynamics(model, joints, &v, None) };
+    let all = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
+    speeds.without_accelerations(&speeds.forces(&all))
 }
 
 /// What the inputs and the multipliers contribute, by velocity.
@@ -140,14 +159,15 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Kinetic energy: `½ vᵀ M v`, which is there already, unless something is driven in time.
 fn kinetic<'g>(
-    model: &Model<'g>,
+    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
     mass: &[Polynomial],
     v: &[Polynomial],
     normal: &mut Normal<'g>,
 ) -> Option<Polynomial> {
     if joints.iter().any(|joint| joint.drift.is_some()) {
-        return normal.of(energy::kinetic_energy(model, joints, &velocities(model)));
+        let energy = energy::kinetic_energy(model, joints, &velocities(model));
+        return normal.of(speeds.map_or(energy, |speeds| speeds.written(&[energy])[0]));
     }
     let mut twice = Polynomial::default();
     for (k, entry) in mass.iter().enumerate() {
@@ -187,12 +207,8 @@ impl Short {
 }
 
 /// Shortened, and few enough terms.
-fn shortened(
-    mut short: Short,
-    lagrangian: Polynomial,
-    motion: Vec<Polynomial>,
-    forces: Vec<Polynomial>,
-) -> Option<Equations> {
+fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
+    let Equations { lagrangian, motion, forces, rates, .. } = found;
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
@@ -200,7 +216,8 @@ fn shortened(
     let lagrangian = short.of(&lagrangian)?;
     let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
     let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
-    Some(Equations { ring: short.ring, lagrangian, motion, forces })
+    let rates = rates.iter().map(|(k, p)| Some((*k, short.of(p)?))).collect::<Option<_>>()?;
+    Some(Equations { ring: short.ring, lagrangian, motion, forces, rates })
 }
 
 fn rank(symbol: Symbol) -> Rank {

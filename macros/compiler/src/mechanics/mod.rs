@@ -31,6 +31,7 @@ pub mod regressor;
 pub mod regularity;
 pub mod rnea;
 pub mod routh;
+pub mod speeds;
 
 /// All velocities as symbols.
 pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

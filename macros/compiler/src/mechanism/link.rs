@@ -2,6 +2,7 @@
 
 use super::inertia::Inertia;
 use super::pose::Pose;
+use super::speeds::Speeds;
 use crate::expr::{Expr, Graph, Vec3};
 
 /// Index of a link.
@@ -83,6 +84,8 @@ pub struct Space<'a, 'g> {
     pub graph: &'g Graph,
     /// Its parts.
     pub charts: &'a [Chart],
+    /// What the entries of `v` are, where they are not the velocities that the joints have.
+    pub speeds: Option<&'a Speeds<'g>>,
 }
 
 /// A moving frame of the tree, with everything that is fixed in it.

@@ -16,6 +16,7 @@ mod passive;
 mod pose;
 mod quantity;
 mod requirement;
+mod speeds;
 mod units;
 
 pub use constraint::{Constraint, FrictionTerm, Measure, SolvedSide, Transmission};
@@ -32,4 +33,5 @@ pub use passive::PassiveForces;
 pub use pose::Pose;
 pub use quantity::Quantity;
 pub use requirement::{Requirement, Rule};
+pub use speeds::Speeds;
 pub use units::Units;

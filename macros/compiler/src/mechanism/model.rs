@@ -11,6 +11,7 @@ use super::limit::Limit;
 use super::link::{Chart, Link, NamedFrame, Space};
 use super::passive::PassiveForces;
 use super::requirement::Requirement;
+use super::speeds::Speeds;
 use super::units::Units;
 use crate::diag::Place;
 use crate::expr::{Expr, Graph, Vec3};
@@ -49,6 +50,9 @@ pub struct Model<'g> {
     pub configuration: Vec<String>,
     /// Name of every entry of `v`, and where the joint stands.
     pub velocities: Vec<(String, Place)>,
+    /// The speeds that are the entries of `v`, if the user chose some. Everything else of the model is written in the
+    /// velocities that the joints have.
+    pub speeds: Option<Rc<Speeds<'g>>>,
     /// Name of every entry of `u`.
     pub inputs: Vec<(String, Input<'g>)>,
     /// Limits, one for each entry of `v` that has any.
@@ -132,7 +136,7 @@ pub struct Uses {
 impl<'g> Model<'g> {
     /// The configuration space.
     pub fn space(&self) -> Space<'_, 'g> {
-        Space { graph: self.graph, charts: &self.charts }
+        Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
     }
 
     /// Number of entries of `q`.

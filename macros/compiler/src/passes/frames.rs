@@ -170,6 +170,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         contacts: _,
         requirements: _,
         units: _,
+        speeds: _,
     } = model;
     for frame in frames {
         if let Some(link) = frame.link {

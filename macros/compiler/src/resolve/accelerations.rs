@@ -109,7 +109,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let kinematics = self.kinematics.borrow();
-        let space = Space { graph: self.graph, charts: &kinematics.charts };
+        let space = Space { graph: self.graph, charts: &kinematics.charts, speeds: None };
         let rate = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
             let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
             terms.fold(time_derivative(space, *value), |sum, term| sum + term)

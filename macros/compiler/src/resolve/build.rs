@@ -92,6 +92,7 @@ fn build<'g>(
                 builder.add_equilibria(cx);
             }
             builder.find_dependencies(constrained);
+            builder.add_speeds(constrained, cx);
             builder.add_frames();
             builder.check_finite(cx);
             if cx.is_empty() {
@@ -135,6 +136,7 @@ fn empty_model<'g>(
         gradients: Gradients::default(),
         configuration: Vec::new(),
         velocities: Vec::new(),
+        speeds: None,
         inputs: Vec::new(),
         limits: Vec::new(),
         equilibria: Vec::new(),
@@ -198,6 +200,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 + drive::inputs(description).count(),
             states: &description.states,
             definitions: &description.definitions,
+            speeds: &description.speeds,
             context: Context::new(Allowed::Constant, None).into(),
             kinematics: Kinematics::default().into(),
             single: description.scalar == ScalarType::F32,

@@ -45,6 +45,7 @@ mod rotation;
 mod rows;
 mod scope;
 mod slips;
+mod speeds;
 mod target;
 mod terms;
 mod tree;

@@ -260,6 +260,11 @@ impl<'g> Scope<'_, 'g> {
         if value.rank() == d.rank {
             return Some(value);
         }
+        if self.speeds.iter().any(|speed| speed.text == *name) {
+            cx.error(d.value.place.clone(), format!("a speed is a scalar, and this is {}", value.word()))
+                .help("take a component of it, such as `dot(omega(body / ground), body.x)`, and declare a speed for each");
+            return None;
+        }
         let (is, meant) = (value.word(), value.rank().kind());
         cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {}", d.rank.kind()))
             .help(format!("declare it as a `{meant}`"));

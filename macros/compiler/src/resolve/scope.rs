@@ -37,6 +37,8 @@ pub struct Scope<'a, 'g> {
     pub states: &'a [(Name, usize)],
     /// Names for expressions.
     pub definitions: &'a [syntax::Definition],
+    /// Those of them that are generalized speeds.
+    pub speeds: &'a [Name],
     /// What expressions may depend on, and what `x`, `y` and `z` alone mean.
     pub context: RefCell<Context<'g>>,
     /// What is placed so far, and how it moves.

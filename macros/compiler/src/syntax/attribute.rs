@@ -216,6 +216,7 @@ fn empty_description(item: &ItemStruct) -> Description {
         frames: Vec::new(),
         points: Vec::new(),
         definitions: Vec::new(),
+        speeds: Vec::new(),
         outputs: Vec::new(),
         energies: Vec::new(),
         dissipations: Vec::new(),

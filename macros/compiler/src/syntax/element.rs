@@ -19,7 +19,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
 /// The attributes of the language.
-pub const ATTRIBUTES: [&str; 16] = [
+pub const ATTRIBUTES: [&str; 17] = [
     "body",
     "particle",
     "frame",
@@ -33,6 +33,7 @@ pub const ATTRIBUTES: [&str; 16] = [
     "contact",
     "equilibrium",
     "define",
+    "speed",
     "output",
     "state",
     "unit",
@@ -43,7 +44,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 17] = [
+const OTHERS: [(&str, &[&str]); 18] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -58,6 +59,7 @@ const OTHERS: [(&str, &[&str]); 17] = [
     ("Contact", &["contact"]),
     ("State", &["state"]),
     ("Equilibrium", &["equilibrium"]),
+    ("Speed", &["speed"]),
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
     ("Matrix", &["define", "output"]),
@@ -306,6 +308,7 @@ fn example(attribute: &str) -> &'static str {
         "joint" => "`#[joint(parent -> child, about = z)]`",
         "equilibrium" => "`#[equilibrium(joint = angle)]`",
         "state" => "`#[state(rate = (command - level) / lag)]`",
+        "speed" => "`#[speed(rate(psi) * sin(theta))]`",
         "limit" => "`#[limit(on = joint, from = a, to = b)]`",
         "contact" => "`#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`",
         _ => "`#[acts(on = joint, …)]`",
@@ -474,6 +477,10 @@ fn read_expression(
     match (kind, word) {
         ("Potential", _) => description.energies.push((name, value)),
         ("Rayleigh", _) => description.dissipations.push((name, value)),
+        ("Speed", _) => {
+            description.speeds.push(name.clone());
+            description.definitions.push(Definition { name, rank: Rank::Scalar, value, resolved_in });
+        }
         (_, "output") => {
             description.outputs.push(Definition { name, rank: Rank::of(kind), value, resolved_in });
         }

@@ -210,6 +210,8 @@ pub struct Description {
     pub points: Vec<Point>,
     /// Names for expressions.
     pub definitions: Vec<Definition>,
+    /// Definitions that are generalized speeds.
+    pub speeds: Vec<Name>,
     /// Expressions that become functions.
     pub outputs: Vec<Definition>,
     /// Potential energies.

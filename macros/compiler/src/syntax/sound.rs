@@ -91,6 +91,10 @@ impl Reading {
         d.frames.retain(|f| kept(&f.name));
         d.points.retain(|p| kept(&p.name));
         d.definitions.retain(|d| kept(&d.name));
+        // Speeds replace velocities all together.
+        if d.speeds.iter().any(|name| !kept(name)) {
+            d.speeds.clear();
+        }
         // Rates of states stand among the outputs.
         let is_lost_rate =
             |name: &str| name.strip_suffix(RATE_OF_STATE).is_some_and(|state| lost.contains(state));

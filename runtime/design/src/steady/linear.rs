@@ -109,9 +109,8 @@ where
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
     let motion = problem.motion(&place)?;
     let (mass, turning) = trim.with(&place.parameters, |m| {
-        let (turning, _) = RheonomicDerivatives::tangent_rate_derivatives(m, &SVector::zeros(), &place.v);
-        // The tangent space moves along, so that the bracket counts twice.
-        (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning) * 2.0)
+        let turning = RheonomicDerivatives::turning(m, &place.q, &place.v);
+        (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning))
     });
     let held = &problem.held;
     let by_force = dynamic(&motion.by_force);

@@ -41,6 +41,8 @@ pub struct Files {
 /// Why a mechanism cannot be written in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfit {
+    /// Velocities are speeds that were declared.
+    Speeds,
     /// A program has lanes: it was derived with them.
     Lanes(String),
     /// What is to be fixed is no parameter.
@@ -59,6 +61,9 @@ pub fn write(
     tables: &[String],
     options: &Options,
 ) -> Result<Files, Unfit> {
+    if model.speeds.is_some() {
+        return Err(Unfit::Speeds);
+    }
     check(output)?;
     if options.single && options.casadi.is_some() {
         return Err(Unfit::SingleCasadi);

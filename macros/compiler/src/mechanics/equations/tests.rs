@@ -73,7 +73,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 fn check(model: &Model<'_>) {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
-    let e = derive(model, &joints, &mass, &Limits::READABLE).expect("small");
+    let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
     let (v, a) = (velocities(model), accelerations(model));
     let mut outputs = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     outputs.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
@@ -376,8 +376,8 @@ fn long_equations_are_written_on_request() {
     with_model("-g * z", arm, |model| {
         let joints = crate::kinematics::joints(&model);
         let mass = crba::mass_matrix(&model, &joints);
-        assert!(derive(&model, &joints, &mass, &Limits::READABLE).is_none());
-        let e = derive(&model, &joints, &mass, &Limits::ASKED).expect("not too long for that");
+        assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
+        let e = derive(&model, &joints, &mass, None, &Limits::ASKED).expect("not too long for that");
         let (v, a) = (velocities(&model), accelerations(&model));
         let forces = rnea::inverse_dynamics(&model, &joints, &v, Some(&a));
         for seed in 1..10 {

@@ -20,6 +20,8 @@ pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
 
 /// The Lagrangian, and both sides of the equation of every velocity.
 struct Lines {
+    /// Velocities of joints, by index, in declared speeds.
+    rates: Vec<(usize, String)>,
     lagrangian: String,
     motion: Vec<(String, String)>,
 }
@@ -29,6 +31,7 @@ impl Lines {
         let writer = Writer::styled(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         Lines {
+            rates: equations.rates.iter().map(|(k, p)| (*k, writer.polynomial(p))).collect(),
             lagrangian: writer.polynomial(&equations.lagrangian),
             motion: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
         }
@@ -45,6 +48,11 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let mut out = line(&format!("L = {}", lines.lagrangian));
     out.push('\n');
+    for (k, rate) in &lines.rates {
+        let (name, dots) = rate_name(model, *k);
+        out += &line(&format!("{name}{} = {rate}", "'".repeat(usize::from(dots))));
+    }
+    out.push_str(if lines.rates.is_empty() { "" } else { "\n" });
     for (motion, force) in lines.motion {
         out += &line(&format!("{motion} = {force}"));
     }
@@ -144,6 +152,11 @@ fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     };
     let lines = Lines::of(equations, Latex { name: &name });
     let mut out = format!("\\begin{{aligned}}\n& \\mathcal{{L}} = {}", lines.lagrangian);
+    for (k, rate) in &lines.rates {
+        let (name, dots) = rate_name(model, *k);
+        let left = Latex { name: &|_| (names.get(&name), dots) }.symbol(Quantity::Velocity(*k).symbol(), 1);
+        out += &format!(" \\\\\n& {left} = {rate}");
+    }
     for (motion, force) in lines.motion {
         // At the start of a column a sign would be that of a difference.
         let motion = motion.strip_prefix('-').map_or(motion.clone(), |rest| format!("{{-}}{rest}"));
@@ -159,7 +172,8 @@ fn names(model: &Model<'_>) -> Names {
 
 /// The same with others.
 pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
-    let velocities = model.velocities.iter().map(|(name, _)| name);
+    let velocities =
+        model.velocities.iter().chain(model.speeds.iter().flat_map(|s| &s.velocities)).map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
     let multipliers: Vec<String> = (1..=model.constraints.len()).map(|k| format!("lambda{k}")).collect();
     let names = model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
@@ -175,6 +189,16 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
         }
     }
     rates
+}
+
+/// The name of a velocity that a joint has, or of the coordinate whose rate it is, and the rate of that.
+fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
+    let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
+    let is_rate = model.charts.iter().any(|chart| match chart {
+        Chart::Plain(q, v) => *v == k && model.configuration[*q] == name,
+        _ => false,
+    });
+    (name.to_string(), u8::from(is_rate))
 }
 
 /// The name of a symbol, and the rate of what it is.
@@ -208,6 +232,18 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> Vec<String> {
             format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
         }
     };
+    let speeds = model.speeds.as_ref().map(|speeds| {
+        let names: Vec<String> = speeds.replaced.iter().map(|k| model.velocities[*k].0.clone()).collect();
+        match names.as_slice() {
+            [one] => {
+                format!("{one} is a generalized speed, from which a rate follows; its equation is Kane's.")
+            }
+            all => format!(
+                "{} are generalized speeds, from which rates follow; their equations are Kane's.",
+                all_of(all)
+            ),
+        }
+    });
     let constraints: Vec<String> = model.constraints.iter().map(|c| c.name.clone()).collect();
     let multipliers: Vec<String> = (1..=constraints.len()).map(|k| format!("lambda{k}")).collect();
     let multipliers = match constraints.as_slice() {
@@ -218,5 +254,5 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> Vec<String> {
             Some(format!("{multipliers} are the multipliers of the constraints {all}, in this order."))
         }
     };
-    std::iter::once(rates).chain(multipliers).collect()
+    std::iter::once(rates).chain(speeds).chain(multipliers).collect()
 }

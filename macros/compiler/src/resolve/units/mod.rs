@@ -201,6 +201,14 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             }
         }
     }
+    for k in model.speeds.iter().flat_map(|speeds| &speeds.replaced) {
+        let name = model.velocities.get(*k).map_or("", |(name, _)| name);
+        if let (Some(Meaning::Named(v, _)), Some(unit)) =
+            (inference.names.get(name), units.velocities.get_mut(*k))
+        {
+            *unit = of_speed(*v, inference);
+        }
+    }
     for (name, input) in &model.inputs {
         if let Input::Sum(_, unit) = input {
             units.inputs.push(unit.to_string());
@@ -228,6 +236,15 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
         }
     };
     (unit, rate)
+}
+
+/// The unit of a generalized speed.
+fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
+    let dimension = Dimension::variable(v);
+    match inference.system.resolve(&dimension) {
+        Some(known) if known == si::RATE && !inference.gave_up => "rad/s".to_string(),
+        _ => shown(inference, &dimension, v),
+    }
 }
 
 /// Units of a constraint and of its multiplier, whose product with the rate is a power.

@@ -64,6 +64,10 @@ pub const ELEMENTS: Words = &[
     ("dissipation dissipationfunction rayleighdissipation", "Rayleigh"),
     ("vector3 vec3 vector3d vec", "Vector"),
     (
+        "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable speeds",
+        "Speed",
+    ),
+    (
         "expression definition define",
         "a name for an expression is a `Scalar` or `Vector` with `#[define(…)]`",
     ),

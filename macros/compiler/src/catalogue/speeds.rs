@@ -1,0 +1,69 @@
+//! Functions of mechanisms with declared speeds: what leads from these to the velocities of the joints and back.
+
+use super::facts::Need;
+use super::row::{Declaration, Id, Row};
+use super::shape::Argument::{A, Q, V};
+use super::shape::Shape;
+
+const SPEEDS: &[Need] = &[Need::Speeds];
+
+/// The rows.
+pub const ROWS: &[Row] = &[
+    Row::derived(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
+        arguments: vec![Q, V],
+        timeless: true,
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "The velocities `Z(q) v` that the joints have with the speeds `v`: rates of their coordinates, body-frame velocities of ball and free joints, in m/s and rad/s. Entries that no speed replaces are those of `v`.",
+            "Not finite where the speeds do not determine them, at single configurations.",
+        ],
+    }),
+    Row::derived(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
+        arguments: vec![Q, V],
+        timeless: true,
+        shape: Shape::Vector(f.nv),
+        docs: vec![
+            "The speeds `Y(q) v` of a motion in which the joints have the velocities `v`: the inverse of [`rates_of_speeds`](Self::rates_of_speeds).",
+        ],
+    }),
+    Row::derived(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
+        arguments: vec![Q],
+        timeless: true,
+        shape: Shape::Square(f.nv),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
+        arguments: vec![Q],
+        timeless: true,
+        shape: Shape::Square(f.nv),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
+        arguments: vec![Q, V],
+        timeless: true,
+        shape: Shape::Square(f.nv),
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
+        arguments: vec![Q, V, A],
+        timeless: true,
+        shape: Shape::Vector(f.nv),
+        ..Declaration::default()
+    })
+    .alone(),
+];
+
+/// Those of the word `derivatives`.
+pub const DERIVATIVES: &[Row] =
+    &[Row::derived(Id::Turning, "__turning", &[Need::Inertia, Need::Derivatives, Need::Speeds], |f| {
+        Declaration {
+            arguments: vec![Q, V],
+            timeless: true,
+            shape: Shape::Square(f.nv),
+            ..Declaration::default()
+        }
+    })
+    .alone()];

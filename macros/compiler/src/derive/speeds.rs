@@ -1,0 +1,253 @@
+//! Functions of a mechanism with declared speeds that are not dynamics: what leads from speeds to the velocities of the joints,
+//! and all derivatives, by differentiation of the equations in speeds.
+
+use super::derivation::Derivation;
+use super::derivatives::columns;
+use crate::catalogue::{Declared, Id};
+use crate::expr::Expr;
+use crate::expr::diff::Derivative;
+use crate::expr::replace::replace_all;
+use crate::kinematics::symbols_in;
+use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract, symbolic};
+use crate::mechanics::speeds::{InSpeeds, Role};
+use crate::mechanics::{
+    self, added_mass, constraints, crba, energy, forces, momentum, power, reactions, rnea,
+};
+use crate::mechanism::Quantity;
+use crate::syntax::{Printed, Requests};
+
+/// What a word asks for that there is not with these speeds.
+pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'static str, &'static str)> {
+    if requests.routh || requests.equations == Printed::Routh {
+        return Some((
+            "Routh's equations are those of coordinates, not of declared speeds",
+            "leave `routh` out, or the speeds",
+        ));
+    }
+    if requests.second_derivatives {
+        return Some((
+            "second derivatives are not there with declared speeds",
+            "leave the word `second_derivatives` out, or the speeds",
+        ));
+    }
+    let of_speeds: Vec<Expr<'_>> = speeds.of_speeds().iter().flatten().copied().collect();
+    let by_parameters =
+        symbols_in(&of_speeds).into_iter().any(|s| matches!(Quantity::of(s), Quantity::Parameter(_)));
+    (requests.sensitivities && by_parameters).then_some((
+        "there are no derivatives by parameters with speeds that contain parameters",
+        "the configuration would move otherwise with other parameters: leave the word `sensitivities` out, or the parameters in `#[speed(…)]`",
+    ))
+}
+
+impl<'g> Derivation<'_, 'g> {
+    /// The outputs of a function that is not that of a mechanism without speeds; `None` for one that is.
+    pub(super) fn in_speeds(&self, speeds: &InSpeeds<'g>, declared: &Declared) -> Option<Vec<Expr<'g>>> {
+        let (native, joints) = (&speeds.native, self.joints);
+        let scalars = |e: Vec<Expr<'g>>| Some(speeds.written(&e));
+        match declared.id {
+            Id::RatesOfSpeeds => Some(speeds.rates.clone()),
+            Id::SpeedsOfRates => Some(speeds.speeds_of(&mechanics::velocities(native))),
+            Id::RateMatrix => Some(columns(speeds.of_speeds())),
+            Id::SpeedMatrix => Some(columns(speeds.of_rates())),
+            Id::RateChanges => Some(columns(&speeds.rate_changes())),
+            Id::RateAccelerations => Some(speeds.accelerations.clone()),
+            Id::GeneralizedForces => Some(self.input_forces(speeds)),
+            Id::DissipatedPower => scalars(vec![power::dissipated(native)]),
+            Id::ControlPower => scalars(vec![power::control(native, joints)]),
+            Id::DisturbancePower => scalars(vec![power::disturbance(native)]),
+            Id::TotalMass => Some(vec![energy::mass_and_moment(native, joints).0]),
+            Id::Hamiltonian | Id::CanonicalVelocity | Id::CanonicalMomentumRate => {
+                self.canonical_in_speeds(speeds, declared.id)
+            }
+            Id::Reaction => {
+                let name = declared.name.strip_prefix(crate::catalogue::REACTION)?;
+                let output = native.outputs.iter().find(|output| output.name == name)?;
+                scalars(reactions::resolved(native, &output.values))
+            }
+            Id::JointTorqueRegressor => self.regressor_in_speeds(speeds, true),
+            Id::BaseRegressor => self.regressor_in_speeds(speeds, false),
+            Id::InverseDynamicsByParameters => Some(self.by_parameters(&self.inverse(speeds)).concat()),
+            Id::ForwardDynamicsByParameters => Some(self.accelerations_by_parameters(speeds)),
+            Id::GeneralizedForcesByParameters => {
+                Some(self.by_parameters(&self.input_forces(speeds)).concat())
+            }
+            _ => self.derivatives_in_speeds(speeds, declared.id),
+        }
+    }
+
+    fn derivatives_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
+        let (native, model, joints) = (&speeds.native, &speeds.model, self.joints);
+        let v = mechanics::velocities(native);
+        let of = |e: &[Expr<'g>]| force_columns(&symbolic::derivatives(model, e));
+        match id {
+            Id::MassMatrixInverse => Some(self.inverse_of(speeds, false)),
+            Id::AccelerationsAndInverse => {
+                Some([self.free_accelerations(speeds), self.inverse_of(speeds, true)].concat())
+            }
+            Id::CoriolisMatrix => {
+                let (coriolis, mass) =
+                    (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
+                Some(columns(&speeds.coriolis_matrix(&coriolis, &mass)))
+            }
+            Id::InverseDynamicsDerivatives => Some(of(&self.inverse(speeds))),
+            Id::GeneralizedMomentumDerivatives => {
+                let p = speeds.forces(&momentum::generalized_momentum(native, joints, &v));
+                Some(columns(&symbolic::by_configuration(model, &p)))
+            }
+            Id::MomentumRateDerivatives => {
+                let (rate, p) = (
+                    momentum::momentum_rate(native, joints, &v),
+                    momentum::generalized_momentum(native, joints, &v),
+                );
+                Some(of(&speeds.momentum_rate(&rate, &p)))
+            }
+            Id::ForwardDynamicsDerivatives => {
+                let forces = symbolic::derivatives(model, &self.inverse(speeds));
+                let forces = self.at(force_columns(&forces), &self.free_accelerations(speeds));
+                Some([forces, self.inverse_of(speeds, true)].concat())
+            }
+            Id::Linearize => Some(self.linearized(speeds)),
+            Id::InputDerivatives => {
+                let tau = self.input_forces(speeds);
+                let by_inputs = columns(&symbolic::by_input(model, &tau));
+                Some([tau.clone(), of(&tau), by_inputs].concat())
+            }
+            Id::Turning => Some(columns(&speeds.turning())),
+            Id::MotionDerivatives => Some(self.constrained_motion(speeds)),
+            _ => None,
+        }
+    }
+
+    /// `τ` of the rates of the speeds.
+    fn inverse(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        let (v, a) = (mechanics::velocities(&speeds.native), mechanics::accelerations(&speeds.native));
+        speeds.forces(&rnea::inverse_dynamics(&speeds.native, self.joints, &v, Some(&a)))
+    }
+
+    fn input_forces(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        speeds.forces(&forces::generalized_forces(&speeds.native, self.joints))
+    }
+
+    fn factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
+        let mass = crba::mass_matrix(&speeds.native, self.joints);
+        let mass = if effective { added_mass::effective(&speeds.native, &mass) } else { mass };
+        Factor::of(&mass, self.joints)
+    }
+
+    /// The inverse of the mass matrix, or of what multiplies the accelerations, column by column.
+    fn inverse_of(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
+        columns(&speeds.inverse_metric(&self.factor(speeds, effective).inverse()))
+    }
+
+    /// The accelerations under forces, which are symbols.
+    fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        let native = &speeds.native;
+        let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocities(native), None);
+        let tau = (0..native.nv()).map(|k| Quantity::Force(k).expr(native.graph));
+        let lacking = tau.zip(bias).map(|(tau, h)| tau - h).collect();
+        speeds.results(Role::Accelerations(0), &self.factor(speeds, true).solve(lacking))
+    }
+
+    /// Expressions at given accelerations.
+    fn at(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        replace_all(&e, &|s| match Quantity::of(s) {
+            Quantity::Acceleration(k) => a.get(k).copied(),
+            _ => None,
+        })
+    }
+
+    fn linearized(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        let (model, tau) = (&speeds.model, self.input_forces(speeds));
+        let accelerations = replace_all(&self.free_accelerations(speeds), &|s| match Quantity::of(s) {
+            Quantity::Force(k) => tau.get(k).copied(),
+            _ => None,
+        });
+        let mut forces = symbolic::derivatives(model, &self.inverse(speeds));
+        let by_state = symbolic::derivatives(model, &tau);
+        subtract(&mut forces.by_q, &by_state.by_q);
+        subtract(&mut forces.by_v, &by_state.by_v);
+        let mut outputs = self.at(force_columns(&forces), &accelerations);
+        outputs.extend(self.inverse_of(speeds, true));
+        outputs.extend(columns(&symbolic::by_input(model, &tau)));
+        outputs.extend(columns(&speeds.turning()));
+        outputs
+    }
+
+    /// At given accelerations and multipliers: derivatives of `M u̇ + h − Jᵀ λ`, of `J u̇ + b`, and of the rates; then what turns
+    /// displacements.
+    fn constrained_motion(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        let (native, model) = (&speeds.native, &speeds.model);
+        let held = speeds.forces(&constraints::forces(native, &constraints::multipliers(native)));
+        let lacking: Vec<Expr<'g>> =
+            self.inverse(speeds).iter().zip(held).map(|(f, held)| *f - held).collect();
+        let a = mechanics::accelerations(model);
+        let first = constraints::first_order(model, &a);
+        let mut outputs = force_columns(&symbolic::derivatives(model, &lacking));
+        outputs.extend(force_columns(&first.accelerations));
+        outputs.extend(columns(&first.rates));
+        outputs.extend(columns(&speeds.turning()));
+        outputs
+    }
+
+    /// Derivatives by all parameters, a list for each.
+    fn by_parameters(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+        let (graph, count) = (self.model.graph, self.model.parameters.len());
+        let of = |k| {
+            let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
+            e.iter().map(|e| by.of(*e)).collect()
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
+    fn accelerations_by_parameters(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+        let (n, a) = (self.model.nv(), self.free_accelerations(speeds));
+        let inverse = self.inverse_of(speeds, true);
+        let solved = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            let row = |i: usize| {
+                let terms = (0..n).map(|j| inverse[j * n + i] * forces[j]);
+                terms.fold(self.model.graph.zero(), |sum, term| sum - term)
+            };
+            (0..n).map(row).collect()
+        };
+        let changes = self.by_parameters(&self.inverse(speeds));
+        changes.into_iter().flat_map(|change| solved(&self.at(change, &a))).collect()
+    }
+
+    fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {
+        let joints = self.joints;
+        let of_joints = self.identified(|i| match standard {
+            true => i.joint_torque_regressor(joints),
+            false => i.base_regressor(),
+        });
+        let n = self.model.nv().max(1);
+        Some(of_joints.chunks(n).flat_map(|column| speeds.forces(column)).collect())
+    }
+
+    /// Hamilton's form: with the momenta `p` of the speeds those of the joints are `Yᵀ p`.
+    fn canonical_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
+        let g = self.model.graph;
+        let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
+        let of_joints = speeds.with_given_forces(&momenta);
+        let at = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
+            let velocity =
+                speeds.speeds_of(&speeds.with_given_forces(&self.canonical(|h| h.velocity.clone())));
+            replace_all(&e, &|s| match Quantity::of(s) {
+                Quantity::Velocity(k) => velocity.get(k).copied(),
+                _ => None,
+            })
+        };
+        Some(match id {
+            Id::Hamiltonian => speeds.with_given_forces(&self.canonical(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => at(mechanics::velocities(self.model)),
+            _ => {
+                let rate = speeds.with_given_forces(&self.canonical(|h| h.momentum_rate.clone()));
+                at(speeds.momentum_rate_of_written(&rate, &of_joints))
+            }
+        })
+    }
+}
+
+fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
+    [&d.by_q, &d.by_v].into_iter().flat_map(columns).collect()
+}

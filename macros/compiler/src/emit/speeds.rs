@@ -1,0 +1,117 @@
+//! The configuration space of a mechanism with declared speeds: its functions, in terms of hidden ones for the velocities of the
+//! joints and of what leads from one to the other.
+
+use super::signature::Signature;
+use crate::catalogue::Shape;
+use std::fmt::Write;
+
+/// `integrate`, `difference` and `displacement_rate`; stubs for a mechanism that failed to compile.
+pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
+    let (q, v, lanes) = (s.vector(s.nq), s.vector(s.nv), s.suffix());
+    let functions = [
+        (
+            "integrate",
+            "`q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant velocities of the joints that the speeds `dv` stand for at `q`; quaternions are normalised.",
+            format!("q: &{q}, dv: &{v}) -> {q}"),
+            format!("self.__integrate{lanes}(q, &self.rates_of_speeds{lanes}(q, dv))"),
+        ),
+        (
+            "difference",
+            "`to ⊖ from`: the speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            format!("from: &{q}, to: &{q}) -> {v}"),
+            format!("self.speeds_of_rates{lanes}(from, &self.__difference{lanes}(from, to))"),
+        ),
+        (
+            "displacement_rate",
+            "Rate of `dv` such that `q ⊕ dv` moves with the speeds `v`, from `q`.",
+            format!("q: &{q}, dv: &{v}, v: &{v}) -> {v}"),
+            format!(
+                "let way = self.rates_of_speeds{lanes}(q, dv);
+                let there = self.__integrate{lanes}(q, &way);
+                let rates = self.rates_of_speeds{lanes}(&there, v);
+                self.speeds_of_rates{lanes}(q, &self.__tangent_rate{lanes}(&way, &rates))"
+            ),
+        ),
+    ];
+    for (name, about, signature, body) in functions {
+        let body = if stub { "loop {}" } else { &body };
+        let generics = s.generics();
+        let _ = writeln!(
+            out,
+            "/// {about}\n#[inline]\n#[must_use]\npub fn {name}{generics}(&self, {signature} {{\n{body}\n}}"
+        );
+    }
+}
+
+/// The functions of the trait of mechanisms that others leave as they are.
+pub fn write_trait(out: &mut String, s: &Signature<'_>) {
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(
+        out,
+        "const SPEEDS: bool = true;
+        #[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
+        #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ Self::displacement_rate(self, q, dv, v) }}",
+        v = turbofish(&v),
+        nan = nan(s),
+    );
+}
+
+/// The functions of the trait of several states.
+pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat(::linkwork::__private::Lanes([::linkwork::__private::constant(f64::NAN); LANES])) }}
+        #[inline]\nfn displacement_rate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ Self::displacement_rate_lanes(self, q, dv, v) }}",
+        v = turbofish(&v),
+    );
+}
+
+/// A type that functions are called of.
+fn turbofish(v: &str) -> String {
+    v.replacen("SVector<", "SVector::<", 1)
+}
+
+fn nan(s: &Signature<'_>) -> String {
+    format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.name())
+}
+
+/// The functions of the trait of derivatives that belong to the configuration space.
+pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
+    let (q, v, square) = (s.vector(s.nq), s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn integrate_derivatives(&self, _dv: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}
+        #[inline]\nfn tangent_rate_derivatives(&self, _dv: &{v}, _v: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}
+        fn integrate_derivatives_at(&self, q: &{q}, dv: &{v}) -> ({square}, {square}) {{
+            let way = self.rates_of_speeds(q, dv);
+            let there = self.__integrate(q, &way);
+            ::linkwork::__private::integrate_derivatives_in_speeds(
+                &self.__rate_matrix(q),
+                &self.__speed_matrix(&there),
+                &self.__integrate_derivatives(&way),
+                &self.__rate_changes(q, dv),
+            )
+        }}
+        fn displacement_rate_derivatives(&self, q: &{q}, dv: &{v}, v: &{v}) -> ({square}, {square}, {square}) {{
+            let way = self.rates_of_speeds(q, dv);
+            let there = self.__integrate(q, &way);
+            let rates = self.rates_of_speeds(&there, v);
+            let found = self.speeds_of_rates(q, &self.__tangent_rate(&way, &rates));
+            let moved = ::linkwork::__private::integrate_derivatives_in_speeds(
+                &self.__rate_matrix(q),
+                &self.__speed_matrix(&there),
+                &self.__integrate_derivatives(&way),
+                &self.__rate_changes(q, dv),
+            );
+            ::linkwork::__private::displacement_rate_derivatives_in_speeds(
+                [&self.__speed_matrix(q), &self.__rate_matrix(q), &self.__rate_matrix(&there)],
+                &self.__tangent_rate_derivatives(&way, &rates),
+                &moved,
+                [&self.__rate_changes(q, dv), &self.__rate_changes(q, &found), &self.__rate_changes(&there, v)],
+            )
+        }}
+        #[inline]\nfn turning(&self, q: &{q}, v: &{v}) -> {square} {{ self.__turning(q, v) }}",
+    );
+}

@@ -1,0 +1,173 @@
+//! Generalized speeds: which velocities they name, whether they can be inverted, and the inverse.
+
+use super::redundancy::Basis;
+use super::rows::{random_configuration, value_of};
+use crate::expr::eval::Tape;
+use crate::expr::normal::Normal;
+use crate::expr::polynomial::{Rank, expression};
+use crate::expr::trigonometry::simplified;
+use crate::expr::unit::on_unit_sphere;
+use crate::expr::{Expr, Symbol};
+use crate::mechanism::{Chart, Model, Quantity};
+use std::collections::BTreeMap;
+
+/// Most speeds that depend on each other: their inverse is written out by its minors.
+pub const MOST_COUPLED: usize = 8;
+/// In how many configurations is looked at what holds everywhere.
+const SAMPLES: u64 = 4;
+/// Below this part of its size a row counts as a combination of others.
+const TOLERANCE: f64 = 1e-9;
+
+type Matrix<'g> = Vec<Vec<Expr<'g>>>;
+
+/// The entries of a matrix in random configurations, row by row.
+fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
+    let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
+    let (tape, width) = (Tape::of(&entries), rows.first().map_or(0, Vec::len).max(1));
+    let at = |seed| {
+        let q = random_configuration(model, seed);
+        tape.values(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
+    };
+    (0..SAMPLES).map(at).collect()
+}
+
+/// The columns of a matrix that are not zero everywhere.
+pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
+    let all = sampled(model, rows);
+    let width = rows.first().map_or(0, Vec::len);
+    let is_named = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
+    (0..width).filter(is_named).collect()
+}
+
+/// The first row that is a combination of those before it in every configuration; `None` if there is none.
+pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
+    let depends_at = |sample: &Vec<Vec<f64>>| {
+        let mut basis = Basis::default();
+        sample.iter().position(|row| {
+            let before = basis.rank();
+            basis.add(row, TOLERANCE);
+            basis.rank() == before
+        })
+    };
+    let found: Vec<Option<usize>> = sampled(model, rows).iter().map(depends_at).collect();
+    found.into_iter().collect::<Option<Vec<usize>>>().and_then(|rows| rows.into_iter().max())
+}
+
+/// The inverse of a square matrix, block by block: minors over determinants, simplified. `None` if a block is too large.
+pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
+    let n = rows.len();
+    let mut out = vec![vec![model.graph.zero(); n]; n];
+    for (own_rows, own_columns) in blocks(rows) {
+        if own_rows.len() > MOST_COUPLED || own_rows.len() != own_columns.len() {
+            return None;
+        }
+        let block = own_rows.iter().map(|i| own_columns.iter().map(|j| rows[*i][*j]).collect()).collect();
+        let found = block_inverse(model, &block);
+        for (i, row) in own_columns.iter().zip(found) {
+            for (j, entry) in own_rows.iter().zip(row) {
+                out[*i][*j] = entry;
+            }
+        }
+    }
+    Some(out)
+}
+
+/// Rows and columns that are connected by entries.
+fn blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
+    let n = rows.len();
+    let mut left: Vec<usize> = (0..n).collect();
+    let mut blocks = Vec::new();
+    while let Some(first) = left.first().copied() {
+        let (mut own, mut columns) = (vec![first], Vec::new());
+        let mut at = 0;
+        while let Some(row) = own.get(at).copied() {
+            at += 1;
+            for j in (0..n).filter(|j| !rows[row][*j].is_zero()) {
+                if columns.contains(&j) {
+                    continue;
+                }
+                columns.push(j);
+                let others: Vec<usize> =
+                    left.iter().copied().filter(|i| !own.contains(i) && !rows[*i][j].is_zero()).collect();
+                own.extend(others);
+            }
+        }
+        own.sort_unstable();
+        columns.sort_unstable();
+        left.retain(|i| !own.contains(i));
+        blocks.push((own, columns));
+    }
+    blocks
+}
+
+fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
+    let n = rows.len();
+    let mut minors = Minors { model, rows, known: BTreeMap::new() };
+    let all = (1_u32 << n) - 1;
+    let whole = minors.of(all, all);
+    let mut entry = |i: usize, j: usize| {
+        let minor = minors.of(all & !(1 << j), all & !(1 << i));
+        let signed = if (i + j).is_multiple_of(2) { minor } else { -minor };
+        shortened(model, signed / whole)
+    };
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// Determinants of parts of a matrix, each once; rows and columns as bits.
+struct Minors<'a, 'g> {
+    model: &'a Model<'g>,
+    rows: &'a Matrix<'g>,
+    known: BTreeMap<(u32, u32), Expr<'g>>,
+}
+
+impl<'g> Minors<'_, 'g> {
+    /// The determinant, expanded along its first row.
+    fn of(&mut self, rows: u32, columns: u32) -> Expr<'g> {
+        if rows == 0 {
+            return self.model.graph.one();
+        }
+        if let Some(known) = self.known.get(&(rows, columns)) {
+            return *known;
+        }
+        let first = rows.trailing_zeros() as usize;
+        let mut sum = self.model.graph.zero();
+        let own = (0..self.rows.len()).filter(|j| columns & (1 << j) != 0);
+        for (k, j) in own.enumerate() {
+            let entry = self.rows[first][j];
+            if entry.is_zero() {
+                continue;
+            }
+            let product = entry * self.of(rows & (rows - 1), columns & !(1 << j));
+            if k % 2 == 0 { sum += product } else { sum -= product }
+        }
+        let sum = shortened(self.model, sum);
+        self.known.insert((rows, columns), sum);
+        sum
+    }
+}
+
+/// An expression of the configuration by fewer operations, where identities of sines and cosines or unit quaternions shorten it.
+pub fn shortened<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+    let found = short_form(model, e);
+    found.filter(|found| Tape::of(&[*found]).steps() < Tape::of(&[e]).steps()).unwrap_or(e)
+}
+
+fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
+    let mut normal = Normal::new(model.graph, |_: Symbol| Rank::Position);
+    let p = normal.of(e)?;
+    let mut p = simplified(&mut normal.ring, &p)?;
+    for quaternion in quaternions(model) {
+        p = on_unit_sphere(&mut normal.ring, &p, &quaternion)?;
+    }
+    Some(expression(model.graph, &normal.ring, &p))
+}
+
+/// The components of all unit quaternions.
+pub fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
+    let firsts = model.charts.iter().filter_map(|chart| match chart {
+        Chart::Ball(q, _) => Some(*q),
+        Chart::Free(q, _) => Some(q + 3),
+        Chart::Plain(..) => None,
+    });
+    firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q + k).symbol())).collect()
+}

@@ -1,0 +1,326 @@
+//! The equations in generalized speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 2, 4 and 6): with
+//! `v = Z u` and `u = Y v` for the velocities `v` that joints have,
+//!
+//! ```text
+//! v̇ = Z u̇ + Ż u,   M_u = Zᵀ M Z,   h_u = Zᵀ (h + M Ż u),   τ_u = Zᵀ τ,   u̇ = Y (v̇ − Ż u).
+//! ```
+//!
+//! The algorithms run in the velocities of the joints; what goes in and what comes out is exchanged here. As everywhere, the
+//! symbols of velocities and accelerations stand for `u` and `u̇` in what comes out.
+
+use super::crba::Matrix;
+use super::derivatives::symbolic;
+use super::{accelerations, constraints, velocities};
+use crate::expr::replace::replace_all;
+use crate::expr::{Expr, Mat3, Vec3};
+use crate::kinematics::time_derivative;
+use crate::mechanism::{Chart, Gradients, Model, Quantity, Speeds};
+use std::rc::Rc;
+
+/// What results of functions are, and so how they change with the velocities that are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Numbers that are the same in any velocities.
+    Scalars,
+    /// Generalized forces or momenta.
+    Forces,
+    /// The rate of momenta, and these.
+    MomentumRate,
+    /// So many numbers at zero accelerations, and the matrix by which they change with those, column by column.
+    Bias(usize),
+    /// Accelerations under the forces `tau`; scalars; and for each of so many multipliers the accelerations that it adds.
+    Accelerations(usize),
+    /// Velocities or accelerations that given forces lead to; scalars; and for each of so many multipliers those that it adds.
+    Answers(usize),
+    /// The mass matrix.
+    Metric,
+    /// The inverse of it.
+    InverseMetric,
+    /// A matrix of so many rows for velocities, column by column.
+    Columns(usize),
+}
+
+/// What leads from the velocities of joints to speeds.
+pub struct InSpeeds<'g> {
+    /// The mechanism in the velocities of its joints.
+    pub native: Model<'g>,
+    /// The mechanism with everything that names velocities written in speeds: constraints, outputs.
+    pub model: Model<'g>,
+    speeds: Rc<Speeds<'g>>,
+    /// `Z u`.
+    pub rates: Vec<Expr<'g>>,
+    /// `Z u̇ + Ż u`.
+    pub accelerations: Vec<Expr<'g>>,
+    /// `Ż u`.
+    change: Vec<Expr<'g>>,
+    /// `Yᵀ τ`.
+    efforts: Vec<Expr<'g>>,
+}
+
+impl<'g> InSpeeds<'g> {
+    /// What is needed for a mechanism with speeds; `None` for one without.
+    pub fn of(model: &Model<'g>) -> Option<InSpeeds<'g>> {
+        let speeds = model.speeds.clone()?;
+        let g = model.graph;
+        let native = Model { speeds: None, velocities: speeds.velocities.clone(), ..model.clone() };
+        let n = model.nv();
+        let rates: Vec<Expr<'g>> = (0..n).map(|k| speeds.rate(g, k)).collect();
+        let change: Vec<Expr<'g>> = rates.iter().map(|rate| time_derivative(model.space(), *rate)).collect();
+        let a = accelerations(model);
+        let accelerations = times(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
+        let tau: Vec<Expr<'g>> = (0..n).map(|k| Quantity::Force(k).expr(g)).collect();
+        let efforts = transposed_times(&speeds.of_rates, &tau);
+        let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
+        let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
+        found.exchange_constraints();
+        for k in 0..found.model.outputs.len() {
+            found.model.outputs[k].values = found.written(&found.native.outputs[k].values);
+        }
+        Some(found)
+    }
+
+    fn exchange_constraints(&mut self) {
+        let rows = constraints::jacobian(&self.native);
+        let native = &self.native.constraints;
+        let rates: Vec<Expr<'g>> = native.iter().map(|c| c.rate).collect();
+        let biases: Vec<Expr<'g>> = native.iter().map(|c| c.bias).collect();
+        let (rates, biases) = (self.written(&rates), self.written(&biases));
+        let turned = times(&rows, &self.change);
+        for (k, constraint) in self.model.constraints.iter_mut().enumerate() {
+            constraint.rate = rates[k];
+            constraint.bias = biases[k] + turned[k];
+        }
+    }
+
+    /// Expressions in speeds, whose velocities, accelerations and forces are those of the joints.
+    pub fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        replace_all(e, &|s| match Quantity::of(s) {
+            Quantity::Velocity(k) => self.rates.get(k).copied(),
+            Quantity::Acceleration(k) => self.accelerations.get(k).copied(),
+            Quantity::Force(k) => self.efforts.get(k).copied(),
+            _ => None,
+        })
+    }
+
+    /// Generalized forces or momenta of the joints: those of the speeds, `Zᵀ`.
+    pub fn forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        transposed_times(&self.speeds.rates, &self.written(e))
+    }
+
+    /// Velocities of the joints that are written in speeds: the speeds, `Y v`.
+    pub fn speeds_of(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        times(&self.speeds.of_rates, v)
+    }
+
+    /// Accelerations of the joints: the rates of the speeds, `Y (v̇ − Ż u)`.
+    pub fn rates_of_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let relative: Vec<Expr<'g>> =
+            self.written(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
+        self.speeds_of(&relative)
+    }
+
+    /// Expressions in speeds whose given forces, the first of what is given, are those of the speeds.
+    pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let n = self.model.nv();
+        let g = self.model.graph;
+        let given: Vec<Expr<'g>> = (0..n).map(|k| Quantity::Given(k).expr(g)).collect();
+        let native = transposed_times(&self.speeds.of_rates, &given);
+        replace_all(&self.written(e), &|s| match Quantity::of(s) {
+            Quantity::Given(k) => native.get(k).copied(),
+            _ => None,
+        })
+    }
+
+    /// Expressions of the rates of speeds, without those.
+    pub fn without_accelerations(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let zero = self.model.graph.zero();
+        replace_all(e, &|s| matches!(Quantity::of(s), Quantity::Acceleration(_)).then_some(zero))
+    }
+
+    /// Results of a function in the velocities of the joints, in speeds.
+    pub fn results(&self, role: Role, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let n = self.model.nv();
+        match role {
+            Role::Scalars => self.written(e),
+            Role::Forces => self.forces(e),
+            Role::MomentumRate => {
+                let (rate, momentum) = e.split_at(n.min(e.len()));
+                self.momentum_rate(rate, momentum)
+            }
+            Role::Bias(rows) => {
+                let (bias, matrix) = e.split_at(rows.min(e.len()));
+                self.bias(bias, matrix)
+            }
+            Role::Accelerations(answers) | Role::Answers(answers) => {
+                let (solution, added) = e.split_at(e.len().saturating_sub(n * answers));
+                let (first, rest) = solution.split_at(n.min(solution.len()));
+                let mut out = match role {
+                    Role::Answers(_) => self.speeds_of(&self.with_given_forces(first)),
+                    _ => self.rates_of_speeds(first),
+                };
+                out.extend(match role {
+                    Role::Answers(_) => self.with_given_forces(rest),
+                    _ => self.written(rest),
+                });
+                self.written(added).chunks(n.max(1)).for_each(|part| out.extend(self.speeds_of(part)));
+                out
+            }
+            Role::Metric => columns(&self.metric(&square(e, n))),
+            Role::InverseMetric => columns(&self.inverse_metric(&square(e, n))),
+            Role::Columns(rows) => self.columns_by_speed(e, rows),
+        }
+    }
+
+    /// `Zᵀ M Z`.
+    pub fn metric(&self, mass: &Matrix<'g>) -> Matrix<'g> {
+        let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
+        let by_column = transposed(&rows);
+        transposed(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
+    }
+
+    /// `Y M⁻¹ Yᵀ`.
+    pub fn inverse_metric(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
+        let rows: Matrix<'g> = inverse.iter().map(|row| times(&self.speeds.of_rates, row)).collect();
+        transposed(&transposed(&rows).iter().map(|c| times(&self.speeds.of_rates, c)).collect())
+    }
+
+    /// A matrix whose columns belong to velocities, column by column: times `Z`.
+    fn columns_by_speed(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
+        let written = self.written(e);
+        let columns: Vec<&[Expr<'g>]> = written.chunks(rows.max(1)).collect();
+        let by_row: Matrix<'g> = (0..rows)
+            .map(|i| {
+                let row: Vec<Expr<'g>> = columns.iter().map(|c| c[i]).collect();
+                transposed_times(&self.speeds.rates, &row)
+            })
+            .collect();
+        self::columns(&by_row)
+    }
+
+    /// `Ż`.
+    fn turning_rates(&self) -> Matrix<'g> {
+        let space = self.model.space();
+        let of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
+        self.speeds.rates.iter().map(of_row).collect()
+    }
+
+    /// `Zᵀ (C Z + M Ż)`: a matrix of Coriolis forces, and `Ṁ_u − 2 C_u` is skew with `C`.
+    pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
+        let (z, rates) = (&self.speeds.rates, self.turning_rates());
+        let row = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
+            let own = transposed_times(z, &self.written(c));
+            own.into_iter().zip(transposed_times(&rates, m)).map(|(own, carried)| own + carried).collect()
+        };
+        let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row).collect();
+        transposed(&transposed(&sum).iter().map(|c| transposed_times(z, c)).collect())
+    }
+
+    /// The rate of generalized momenta from that in the velocities of the joints: `ṗ_u = Zᵀ ṗ + Żᵀ p`.
+    pub fn momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.momentum_rate_of_written(&self.written(rate), &self.written(momentum))
+    }
+
+    /// The same of what is written in speeds.
+    pub fn momentum_rate_of_written(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let turned = transposed_times(&self.turning_rates(), momentum);
+        let own = transposed_times(&self.speeds.rates, rate);
+        own.into_iter().zip(turned).map(|(own, turned)| own + turned).collect()
+    }
+
+    /// What a matrix times the velocities gains besides the matrix times their rates: `b + A Ż u`, the matrix column by column.
+    pub fn bias(&self, bias: &[Expr<'g>], matrix: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let (rows, mut sum) = (bias.len(), self.written(bias));
+        for (column, change) in matrix.chunks(rows.max(1)).zip(&self.change) {
+            sum.iter_mut().zip(column).for_each(|(sum, entry)| *sum += *entry * *change);
+        }
+        sum
+    }
+
+    /// The velocities of joints that speeds replace, by index.
+    pub fn replaced(&self) -> Vec<usize> {
+        self.speeds.replaced.clone()
+    }
+
+    /// `Y`, by which speeds follow from the velocities of the joints.
+    pub fn of_rates(&self) -> &Matrix<'g> {
+        &self.speeds.of_rates
+    }
+
+    /// `Z`, by which those follow from speeds.
+    pub fn of_speeds(&self) -> &Matrix<'g> {
+        &self.speeds.rates
+    }
+
+    /// How the velocities of the joints change with the configuration at constant speeds: a column for each speed, along which the
+    /// configuration moves.
+    pub fn rate_changes(&self) -> Matrix<'g> {
+        symbolic::by_configuration(&self.model, &self.rates)
+    }
+
+    /// By which displacements `ξ` between two neighbouring motions change, `ξ̇ = δu + T ξ`: with `δ = Z ξ` and
+    /// `δ̇ = δv + K δ` in the velocities of the joints, `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
+    pub fn turning(&self) -> Matrix<'g> {
+        let (changes, rates) = (self.rate_changes(), self.turning_rates());
+        let native: Matrix<'g> = commutators(&self.native)
+            .iter()
+            .map(|row| transposed_times(&self.speeds.rates, &self.written(row)))
+            .collect();
+        let sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
+        let n = self.model.nv();
+        let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| sum(i, j)).collect()).collect();
+        transposed(&by_column.iter().map(|column| self.speeds_of(column)).collect())
+    }
+}
+
+/// The matrix of `φ ↦ φ × v`: by this the displacement `φ` between two neighbouring motions changes, `φ̇ = δv + φ × v`,
+/// since it is measured in axes that turn (ball and free joints).
+pub fn commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
+    let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let v = velocities(model);
+    let mut block = |row: usize, column: usize, first: usize| {
+        let minus = Mat3::skew(-Vec3([v[first], v[first + 1], v[first + 2]]));
+        for i in 0..3 {
+            m[row + i][column..column + 3].copy_from_slice(&minus.0[i]);
+        }
+    };
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(_, b) => block(b, b, b),
+            Chart::Free(_, b) => {
+                block(b, b, b + 3);
+                block(b + 3, b + 3, b + 3);
+                block(b, b + 3, b);
+            }
+        }
+    }
+    m
+}
+
+fn dot<'g>(row: &[Expr<'g>], v: &[Expr<'g>]) -> Option<Expr<'g>> {
+    let terms = row.iter().zip(v).filter(|(a, b)| !a.is_zero() && !b.is_zero());
+    terms.map(|(a, b)| *a * *b).reduce(|a, b| a + b)
+}
+
+fn times<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    m.iter().map(|row| dot(row, v).unwrap_or_else(|| row[0].zero())).collect()
+}
+
+fn transposed_times<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    times(&transposed(m), v)
+}
+
+fn transposed<'g>(m: &Matrix<'g>) -> Matrix<'g> {
+    let width = m.first().map_or(0, Vec::len);
+    (0..width).map(|j| m.iter().map(|row| row[j]).collect()).collect()
+}
+
+/// A matrix column by column.
+fn columns<'g>(m: &Matrix<'g>) -> Vec<Expr<'g>> {
+    transposed(m).concat()
+}
+
+/// A square matrix that is given column by column.
+fn square<'g>(e: &[Expr<'g>], n: usize) -> Matrix<'g> {
+    transposed(&e.chunks(n.max(1)).map(<[Expr<'g>]>::to_vec).collect())
+}

@@ -1,0 +1,185 @@
+//! Generalized speeds of the user's choice: invertible linear combinations of the velocities that joints have.
+
+use super::builder::Builder;
+use super::constraint::Constrained;
+use super::scope::{Allowed, Context};
+use crate::diag::{Diagnostics, all_of};
+use crate::expr::Expr;
+use crate::expr::replace::replace;
+use crate::kinematics::{speeds, symbols_in, velocity_gradient};
+use crate::mechanism::{Pose, Quantity, Speeds};
+use crate::syntax::{self, ExprKind, Name};
+use std::rc::Rc;
+
+/// A speed as it is declared, with its coefficients of all velocities.
+struct Declared<'a, 'g> {
+    name: &'a Name,
+    value: &'a syntax::Expr,
+    row: Vec<Expr<'g>>,
+}
+
+impl<'a, 'g> Builder<'a, 'g> {
+    /// Reads the speeds, and puts them in the place of the velocities that they name.
+    pub fn add_speeds(&mut self, _: Constrained, cx: &mut Diagnostics) {
+        let d = self.description;
+        if d.speeds.is_empty() || self.releasing.is_some() || !cx.is_empty() {
+            return;
+        }
+        let declared: Vec<Declared<'a, 'g>> = d
+            .speeds
+            .iter()
+            .filter_map(|name| {
+                let definition = d.definitions.iter().find(|definition| definition.name.text == name.text)?;
+                let row = self.coefficients(name, &definition.value, cx)?;
+                Some(Declared { name, value: &definition.value, row })
+            })
+            .collect();
+        if cx.is_empty() {
+            self.replace_velocities(&declared, cx);
+        }
+    }
+
+    /// The coefficients of a speed; `None` if it is no combination of rates.
+    fn coefficients(&self, name: &Name, value: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
+        let g = self.scope.graph;
+        let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
+        let named = syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
+        let e = self.scope.in_context(context, |scope| scope.scalar(&named, cx))?;
+        let place = || value.place.clone();
+        let mut row = vec![g.zero(); self.model.nv()];
+        velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
+        if row.iter().all(|d| d.is_zero()) {
+            cx.error(place(), "this speed contains no rate")
+                .help("a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), body.x)`");
+            return None;
+        }
+        let state = |k: usize| d_states(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
+        for symbol in symbols_in(&row) {
+            let (what, help) = match Quantity::of(symbol) {
+                Quantity::Velocity(_) => (
+                    "a speed is linear in the rates".to_string(),
+                    "their coefficients are made of coordinates and parameters",
+                ),
+                Quantity::Time => (
+                    "what multiplies the rates in a speed cannot depend on time".to_string(),
+                    "displacements, steps and linear systems are measured in the speeds: an `#[output(…)]` may contain time",
+                ),
+                Quantity::Input(k) => (
+                    format!("a speed cannot depend on the input `{}`", self.model.inputs[k].0),
+                    "it is a combination of rates with coefficients of coordinates and parameters",
+                ),
+                Quantity::Parameter(k) => match state(k) {
+                    Some(state) => (
+                        format!("a speed cannot depend on the state `{state}`"),
+                        "it is a combination of rates with coefficients of coordinates and parameters",
+                    ),
+                    None => continue,
+                },
+                _ => continue,
+            };
+            cx.error(place(), what).help(help);
+            return None;
+        }
+        let at_rest = replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()));
+        let rest = [vec![at_rest]];
+        if !at_rest.is_zero() && !speeds::named_columns(&self.model, &rest.to_vec()).is_empty() {
+            cx.error(place(), "a speed has no part that is there at rest")
+                .help("speeds are velocities: zero at rest, and multiplied by a time they are displacements. Take the rates relative to what moves, or make it an `#[output(…)]`");
+            return None;
+        }
+        Some(row)
+    }
+
+    fn replace_velocities(&mut self, declared: &[Declared<'_, 'g>], cx: &mut Diagnostics) {
+        let rows: Vec<Vec<Expr<'g>>> = declared.iter().map(|speed| speed.row.clone()).collect();
+        let named = speeds::named_columns(&self.model, &rows);
+        if !self.check_speeds(declared, &rows, &named, cx) {
+            return;
+        }
+        let nv = self.model.nv();
+        let block: Vec<Vec<Expr<'g>>> =
+            rows.iter().map(|row| named.iter().map(|k| row[*k]).collect()).collect();
+        let Some(inverse) = speeds::inverse(&self.model, &block) else {
+            let most = speeds::MOST_COUPLED;
+            cx.error(
+                declared[0].value.place.clone(),
+                format!("more than {most} of these speeds depend on each other"),
+            )
+            .help("choose speeds each of which names few rates");
+            return;
+        };
+        let g = self.scope.graph;
+        let identity = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
+        let whole = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
+            let at = |k: usize| named.iter().position(|n| *n == k);
+            let entry = |i: usize, j: usize| match (at(i), at(j)) {
+                (Some(i), Some(j)) => block[i][j],
+                _ => identity(i, j),
+            };
+            (0..nv).map(|i| (0..nv).map(|j| entry(i, j)).collect()).collect()
+        };
+        let velocities = self.model.velocities.clone();
+        for (k, speed) in named.iter().zip(declared) {
+            self.model.velocities[*k] = (speed.name.text.clone(), speed.name.place.clone());
+        }
+        let (of_rates, rates) = (whole(&block), whole(&inverse));
+        self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced: named, velocities }));
+    }
+
+    /// Whether so many speeds can replace the velocities that they name.
+    fn check_speeds(
+        &self,
+        declared: &[Declared<'_, 'g>],
+        rows: &Vec<Vec<Expr<'g>>>,
+        named: &[usize],
+        cx: &mut Diagnostics,
+    ) -> bool {
+        let list = |of: &[usize]| {
+            let names: Vec<String> =
+                of.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
+            all_of(&names)
+        };
+        let (count, all) = (declared.len(), named.len());
+        let last = &declared[count - 1];
+        if let Some(k) = speeds::dependent_row(&self.model, rows) {
+            let speed = &declared[k];
+            let what = match k {
+                0 => format!("the speed `{}` is zero in every motion", speed.name.text),
+                _ => format!("the speed `{}` follows from the speeds before it", speed.name.text),
+            };
+            cx.error(speed.value.place.clone(), what)
+                .help("speeds are independent combinations of the rates, so that the rates follow from them");
+            return false;
+        }
+        if count < all {
+            let verb = if count == 1 { "names" } else { "name" };
+            let subject = if count == 1 { "one speed" } else { &format!("{count} speeds") };
+            let rate = &self.model.velocities[named[all - 1]].0;
+            cx.error(
+                last.name.place.clone(),
+                format!("{subject} {verb} {all} velocities: {}", list(named)),
+            )
+            .help(format!("every velocity that speeds name is replaced: declare as many speeds, such as one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`", rate.replace('.', "_")));
+            return false;
+        }
+        if !self.model.contacts.is_empty() {
+            cx.error(declared[0].name.place.clone(), "speeds beside contacts that open and close")
+                .help("contacts are solved in the velocities that joints have: leave the speeds out, and make them outputs: `#[output(…)]`");
+            return false;
+        }
+        if let Some(limit) = self.model.limits.iter().find(|limit| named.contains(&limit.v)) {
+            cx.error(
+                declared[0].name.place.clone(),
+                format!("speeds replace the rate of {}, which has limits", list(&[limit.v])),
+            )
+            .help("limits belong to coordinates with their rates: leave them out, or choose speeds that keep this rate");
+            return false;
+        }
+        true
+    }
+}
+
+/// States with their numbers among the parameters.
+fn d_states<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
+    builder.description.states.iter().map(|(name, parameter)| (name.text.as_str(), *parameter))
+}

@@ -1,0 +1,64 @@
+//! Generalized speeds that are none.
+
+use super::{Row, answers};
+
+fn setting(fields: &str) -> (String, String) {
+    let own = "a: f64,
+        #[body(mass = 1)] cart: Body, #[body(mass = 1, com = y, inertia = sphere(1, 1))] arm: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve, #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[acts(on = rail)] push: Force, #[acts(on = hinge, damping = a)] friction: Dashpot,";
+    (String::new(), format!("{own} {fields}"))
+}
+
+#[test]
+fn speeds_that_are_none() {
+    const ROWS: &[Row] = &[
+        (
+            "#[speed(rate(rail) * rate(hinge))] u: Speed,",
+            "a speed is linear in the rates",
+            "coordinates and parameters",
+        ),
+        ("#[speed(rail + a)] u: Speed,", "this speed contains no rate", "rate(psi) * sin(theta)"),
+        ("#[speed(rate(rail) + 1)] u: Speed,", "a speed has no part that is there at rest", "zero at rest"),
+        (
+            "#[speed(rate(rail) * sin(t))] u: Speed,",
+            "what multiplies the rates in a speed cannot depend on time",
+            "`#[output(…)]`",
+        ),
+        (
+            "#[speed(rate(rail) * push)] u: Speed,",
+            "a speed cannot depend on the input `push`",
+            "coordinates and parameters",
+        ),
+        (
+            "#[speed(rate(rail) + rate(hinge))] u: Speed,",
+            "one speed names 2 velocities: `rail` and `hinge`",
+            "#[speed(rate(hinge))] hinge_rate: Speed",
+        ),
+        (
+            "#[speed(rate(rail) + rate(hinge))] u: Speed, #[speed(2 * rate(rail) + 2 * rate(hinge))] w: Speed,",
+            "the speed `w` follows from the speeds before it",
+            "independent combinations",
+        ),
+        (
+            "#[speed(rate(rail))] u: Speed, #[speed(2 * rate(rail))] w: Speed,",
+            "the speed `w` follows from the speeds before it",
+            "independent combinations",
+        ),
+        ("#[speed(rate(rial))] u: Speed,", "`rate` takes a coordinate", "`rail`"),
+        ("#[define(rate(rail))] u: Speed,", "a `Speed` has no `#[define]`", "#[speed(…)]"),
+        ("#[speed] u: Speed,", "`u` says nothing", "#[speed(expression)]"),
+        (
+            "#[speed(rate(rail) * x)] u: Speed,",
+            "a speed is a scalar, and this is a vector",
+            "declare a speed for each",
+        ),
+        (
+            "#[speed(rate(rail))] u: Speed, #[limit(on = rail, from = 0, to = 1)] stop: Limit,",
+            "speeds replace the rate of `rail`, which has limits",
+            "limits belong to coordinates",
+        ),
+        ("#[speed(rate(rail))] u: GeneralizedSpeed,", "unknown element type `GeneralizedSpeed`", "Speed"),
+    ];
+    answers(setting, ROWS);
+}

@@ -1,0 +1,381 @@
+//! Random mechanisms in random generalized speeds: all functions are those in the velocities of the joints, exchanged by
+//! `u = Y(q) v` as Kane's definitions say, and derivatives are limits of differences.
+
+use super::random_tree::{Tree, trees};
+use linkwork_compiler::derive::Output;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::eval::eval;
+use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::{Expr, Graph, Symbol};
+use linkwork_compiler::kinematics::{configuration_rate, random_configuration};
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+use linkwork_compiler::{compile, read};
+use proptest::prelude::*;
+use std::fmt::Write;
+use std::path::Path;
+use support::random::{Random, config};
+
+/// Words whose functions are compared.
+const WORDS: &str = "derivatives, momentum_derivatives, centroidal, hamilton, regressor, sensitivities";
+/// Relative to the largest entry.
+const TOLERANCE: f64 = 1e-10;
+/// Of differences of order six.
+const DIFFERENCES: f64 = 1e-7;
+
+type Vector = Vec<f64>;
+
+/// A state with everything that functions may depend on.
+#[derive(Clone, Default)]
+struct State {
+    q: Vector,
+    v: Vector,
+    a: Vector,
+    tau: Vector,
+    u: Vector,
+    given: Vector,
+}
+
+impl State {
+    fn value(&self, s: Symbol) -> f64 {
+        match Quantity::of(s) {
+            Quantity::Configuration(k) => self.q[k],
+            Quantity::Velocity(k) => self.v[k],
+            Quantity::Acceleration(k) => self.a[k],
+            Quantity::Force(k) => self.tau[k],
+            Quantity::Input(k) => self.u[k],
+            Quantity::Given(k) => self.given[k],
+            _ => sample(s, 3),
+        }
+    }
+}
+
+/// A compiled mechanism.
+struct Compiled<'g> {
+    model: Model<'g>,
+    output: Output,
+}
+
+impl<'g> Compiled<'g> {
+    fn of((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
+        let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+        let mut cx = Diagnostics::new();
+        let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+        let found = source.and_then(|source| compile(&source, graph, &mut cx));
+        match found {
+            Some((model, output)) => {
+                let _ = cx.messages();
+                Ok(Compiled { model, output })
+            }
+            None => Err(cx.messages()),
+        }
+    }
+
+    fn run(&self, name: &str, state: &State) -> Vector {
+        let function = self.output.functions.iter().find(|f| f.name == name);
+        let function = function.unwrap_or_else(|| panic!("there is a function `{name}`"));
+        function.program.run(&|s| state.value(s))
+    }
+
+    /// Rates of the configuration where the joints have the velocities `v`.
+    fn moving(&self, q: &[f64], v: &[f64]) -> Vector {
+        let native = Model { speeds: None, ..self.model.clone() };
+        let rates: Vec<Expr<'_>> = (0..native.nq()).map(|k| configuration_rate(native.space(), k)).collect();
+        let state = State { q: q.to_vec(), v: v.to_vec(), ..State::default() };
+        eval(&rates, &|s| state.value(s))
+    }
+}
+
+/// Matrices of the exchange at a configuration: `Y` and `Z`, row by row.
+fn exchange(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
+    let speeds = model.speeds.as_ref().expect("there are speeds");
+    let state = State { q: q.to_vec(), ..State::default() };
+    [&speeds.of_rates, &speeds.rates].map(|m| m.iter().map(|row| eval(row, &|s| state.value(s))).collect())
+}
+
+fn times(m: &[Vector], v: &[f64]) -> Vector {
+    m.iter().map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum()).collect()
+}
+
+fn transposed(m: &[Vector]) -> Vec<Vector> {
+    (0..m[0].len()).map(|j| m.iter().map(|row| row[j]).collect()).collect()
+}
+
+/// A matrix of `rows` rows that is given column by column.
+fn matrix(e: &[f64], rows: usize) -> Vec<Vector> {
+    (0..rows).map(|i| e.chunks(rows).map(|column| column[i]).collect()).collect()
+}
+
+fn product(a: &[Vector], b: &[Vector]) -> Vec<Vector> {
+    let b = transposed(b);
+    a.iter().map(|row| times(&b, row)).collect()
+}
+
+#[track_caller]
+fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
+    assert_eq!(a.len(), b.len(), "{what}");
+    let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        assert!((a - b).abs() <= tolerance * scale, "{what}, entry {k}: {a} and {b}");
+    }
+}
+
+/// The derivative of a vector along a line by central differences of order six.
+fn slope(f: impl Fn(f64) -> Vector) -> Vector {
+    let h = 4e-3;
+    let mut sum = vec![0.0; f(0.0).len()];
+    for (k, weight) in [(1.0, 0.75), (2.0, -0.15), (3.0, 1.0 / 60.0)] {
+        for (sum, (up, down)) in sum.iter_mut().zip(f(k * h).iter().zip(f(-k * h))) {
+            *sum += weight * (up - down) / h;
+        }
+    }
+    sum
+}
+
+fn along(x: &[f64], e: f64, d: &[f64]) -> Vector {
+    x.iter().zip(d).map(|(x, d)| x + e * d).collect()
+}
+
+/// Speeds for some of the velocities: combinations of neighbours with coefficients of coordinates, and angular velocities of bodies
+/// on ball joints in the axes of the ground.
+fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
+    let names: Vec<&String> = plain
+        .charts
+        .iter()
+        .filter_map(
+            |chart| if let Chart::Plain(q, _) = chart { Some(&plain.configuration[*q]) } else { None },
+        )
+        .collect();
+    let mut text = String::new();
+    let chosen: Vec<&&String> = names.iter().take(4).collect();
+    for (k, name) in chosen.iter().enumerate() {
+        let (next, other) = (chosen[(k + 1) % chosen.len()], chosen[(k + 2) % chosen.len()]);
+        let [a, b, c] = std::array::from_fn(|_| random.uniform(0.4));
+        let _ = writeln!(
+            text,
+            "#[speed((1.5 + {a:?} * sin({next})) * rate({name}) + {b:?} * cos({name}) * rate({next}) + {c:?} * rate({other}))] speed{k}: Speed,"
+        );
+    }
+    for k in 0..8 {
+        if fields.contains(&format!("joint{k}: Ball,")) {
+            let parent = fields
+                .split(&format!("-> body{k}"))
+                .next()
+                .and_then(|before| before.rsplit("#[joint(").next());
+            let parent = parent.and_then(|end| end.split(['.', ' ']).next()).unwrap_or("ground");
+            for axis in ["x", "y", "z"] {
+                let _ = writeln!(
+                    text,
+                    "#[speed(dot(omega(body{k} / {parent}), {parent}.{axis}))] turn{k}{axis}: Speed,"
+                );
+            }
+        }
+    }
+    text
+}
+
+/// False for trees that have no plain coordinates or balls to choose speeds of, and those that do not compile.
+fn check(tree: &Tree, seed: u64) -> bool {
+    let (arguments, item) = tree.source();
+    let arguments = format!("{arguments}, {WORDS}");
+    let graph = Graph::new();
+    let plain = Compiled::of(&(arguments.clone(), item.clone()), &graph);
+    // Trees with too much, or without inertia somewhere, are others' matter.
+    let Ok(plain) = plain else { return false };
+    let mut random = Random::new(seed);
+    let speeds = declared(&plain.model, &item, &mut random);
+    if speeds.is_empty() {
+        return false;
+    }
+    let item = item.trim_end().trim_end_matches('}').to_string() + &speeds + "}";
+    let with = Compiled::of(&(arguments, item.clone()), &graph);
+    let with = with.unwrap_or_else(|messages| panic!("{}\n{item}", messages.join("\n")));
+    check_functions(&plain, &with, &mut random, seed);
+    true
+}
+
+fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Random, seed: u64) {
+    let n = plain.model.nv();
+    let mut some = |count: usize| -> Vector { (0..count).map(|_| random.uniform(1.0)).collect() };
+    let q = random_configuration(&plain.model, seed);
+    let [y, z] = exchange(&with.model, &q);
+    let identity: Vec<Vector> =
+        (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    assert_close("inverse", &product(&y, &z).concat(), &identity.concat(), TOLERANCE);
+    let ours = State {
+        q: q.clone(),
+        v: some(n),
+        a: some(n),
+        tau: some(n),
+        u: some(plain.model.nu()),
+        given: some(n),
+    };
+    let (to_rates, to_forces) = (transposed(&z), transposed(&y));
+    let theirs = State {
+        v: times(&z, &ours.v),
+        a: with.run("__rate_accelerations", &ours),
+        tau: times(&to_forces, &ours.tau),
+        given: times(&to_forces, &ours.given),
+        ..ours.clone()
+    };
+    let rates = |e: f64| {
+        let moved = along(&q, e, &plain.moving(&q, &theirs.v));
+        with.run("rates_of_speeds", &State { q: moved, v: along(&ours.v, e, &ours.a), ..ours.clone() })
+    };
+    assert_close("accelerations of the joints", &theirs.a, &slope(rates), DIFFERENCES);
+    let same = |name: &str| assert_close(name, &with.run(name, &ours), &plain.run(name, &theirs), TOLERANCE);
+    for name in
+        ["kinetic_energy", "potential_energy", "momentum", "dissipated_power", "control_power", "hamiltonian"]
+    {
+        same(name);
+    }
+    for name in ["inverse_dynamics", "generalized_forces", "generalized_momentum"] {
+        assert_close(name, &with.run(name, &ours), &times(&to_rates, &plain.run(name, &theirs)), TOLERANCE);
+    }
+    let mass = product(&to_rates, &product(&matrix(&plain.run("mass_matrix", &theirs), n), &z));
+    assert_close("mass matrix", &with.run("mass_matrix", &ours), &transposed(&mass).concat(), TOLERANCE);
+    let still = State { a: vec![0.0; n], ..ours.clone() };
+    assert_close("bias", &with.run("bias_forces", &ours), &with.run("inverse_dynamics", &still), TOLERANCE);
+    let forward = with.run("forward_dynamics", &ours);
+    let moving = State { a: forward.clone(), ..ours.clone() };
+    assert_close(
+        "forward dynamics",
+        &with.run("__rate_accelerations", &moving),
+        &plain.run("forward_dynamics", &theirs),
+        1e-8,
+    );
+    assert_close("forward dynamics", &with.run("inverse_dynamics", &moving), &ours.tau, 1e-8);
+    let velocity = times(&y, &plain.run("canonical_velocity", &theirs));
+    assert_close("canonical velocity", &with.run("canonical_velocity", &ours), &velocity, 1e-8);
+    let centroidal = product(&matrix(&plain.run("centroidal_momentum_matrix", &theirs), 6), &z);
+    assert_close(
+        "centroidal",
+        &with.run("centroidal_momentum_matrix", &ours),
+        &transposed(&centroidal).concat(),
+        TOLERANCE,
+    );
+    check_rates(plain, with, &ours, &theirs);
+    check_derivatives(plain, with, &ours, &z);
+}
+
+/// What is a rate along the motion.
+fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: &State) {
+    let n = plain.model.nv();
+    let way = plain.moving(&ours.q, &theirs.v);
+    let at = |e: f64| State { q: along(&ours.q, e, &way), v: along(&ours.v, e, &ours.a), ..ours.clone() };
+    let rate = slope(|e| with.run("generalized_momentum", &at(e)));
+    let lacking: Vector =
+        with.run("inverse_dynamics", ours).iter().zip(&rate).map(|(tau, rate)| rate - tau).collect();
+    assert_close("momentum rate", &with.run("momentum_rate", ours), &lacking, DIFFERENCES);
+    let matrix_of = |name: &str, state: &State, rows: usize| matrix(&with.run(name, state), rows);
+    let still = State { a: vec![0.0; n], ..ours.clone() };
+    let steady = |e: f64| State { v: ours.v.clone(), ..at(e) };
+    let bias = slope(|e| times(&matrix_of("centroidal_momentum_matrix", &steady(e), 6), &ours.v));
+    assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
+    // The Coriolis matrix: `Ṁ − 2 C` is skew.
+    let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &at(e))), n);
+    let coriolis = matrix_of("coriolis_matrix", ours, n);
+    let skew = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
+    let sums: Vector = (0..n * n).map(|k| skew(k / n, k % n) + skew(k % n, k / n)).collect();
+    assert_close("skew", &sums, &vec![0.0; n * n], DIFFERENCES * 10.0);
+}
+
+/// Derivatives along the configurations that move with a speed, by speeds and by parameters.
+fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z: &[Vector]) {
+    let n = plain.model.nv();
+    let column = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
+    let by_q = |name: &str, i: usize| {
+        let way = plain.moving(&ours.q, &column(i));
+        slope(|e| with.run(name, &State { q: along(&ours.q, e, &way), ..ours.clone() }))
+    };
+    let unit = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
+    let by_v = |name: &str, i: usize| {
+        slope(|e| with.run(name, &State { v: along(&ours.v, e, &unit(i)), ..ours.clone() }))
+    };
+    let expected = |name: &str| -> Vector {
+        let q = (0..n).flat_map(|i| by_q(name, i));
+        q.chain((0..n).flat_map(|i| by_v(name, i))).collect()
+    };
+    for (function, name) in
+        [("inverse_dynamics_derivatives", "inverse_dynamics"), ("momentum_rate_derivatives", "momentum_rate")]
+    {
+        assert_close(function, &with.run(function, ours), &expected(name), DIFFERENCES);
+    }
+    // `∂u̇/∂x = −M⁻¹ ∂τ/∂x` at the accelerations: what the outputs are made of.
+    let outputs = with.run("forward_dynamics_derivatives", ours);
+    let inverse = matrix(&outputs[2 * n * n..3 * n * n], n);
+    let found: Vector = outputs[..2 * n * n]
+        .chunks(n)
+        .flat_map(|forces| times(&inverse, forces).into_iter().map(|a| -a))
+        .collect();
+    assert_close("forward derivatives", &found, &expected("forward_dynamics"), DIFFERENCES * 100.0);
+    let changes: Vector = (0..n).flat_map(|i| by_q("rates_of_speeds", i)).collect();
+    assert_close("changes of rates", &with.run("__rate_changes", ours), &changes, DIFFERENCES);
+}
+
+proptest! {
+    #![proptest_config(config(12))]
+    #[test]
+    fn random_speeds_are_exchanged_in_all_functions(tree in trees(4), seed in 0..50_u64) {
+        prop_assume!(check(&tree, seed));
+    }
+}
+
+/// The equations of a mechanism with these fields.
+fn printed(arguments: &str, fields: &str) -> String {
+    let graph = Graph::new();
+    let source = (arguments.to_string(), format!("pub struct Printed {{ {fields} }}"));
+    let found = Compiled::of(&source, &graph).unwrap_or_else(|messages| panic!("{}", messages.join("\n")));
+    found.output.equations.plain
+}
+
+/// Three hinges that turn a body by Euler's angles about its centre of mass.
+const BODY: &str = "a: f64, b: f64, c: f64,
+    #[body(mass = 0, inertia = 0)] first: Body, #[body(mass = 0, inertia = 0)] second: Body,
+    #[body(mass = 1, inertia = diagonal(a, b, c))] rotor: Body,
+    #[joint(ground -> first, about = z)] psi: Pin,
+    #[joint(first -> second, about = x)] theta: Pin,
+    #[joint(second -> rotor, about = z)] phi: Pin,";
+
+/// Euler's equations, as Kane and Levinson (1985) and every textbook print them.
+#[test]
+fn a_rigid_body_in_body_axes_prints_eulers_equations() {
+    let speeds = "#[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))] wx: Speed,
+        #[speed(rate(psi) * sin(theta) * cos(phi) - rate(theta) * sin(phi))] wy: Speed,
+        #[speed(dot(omega(rotor / ground), rotor.z))] wz: Speed,";
+    let text = printed("", &format!("{BODY} {speeds}"));
+    for line in [
+        "theta' = cos(phi) wx - sin(phi) wy\n",
+        "a wx' + (c - b) wy wz = 0\n",
+        "b wy' + (a - c) wx wz = 0\n",
+        "c wz' + (b - a) wx wy = 0\n",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+    assert!(!text.contains("psi''"), "{text}");
+}
+
+/// Kane's rolling disk.
+#[test]
+fn a_rolling_disk_prints_kanes_equations() {
+    let fields = "m: f64, g: f64, radius: f64,
+        #[body(mass = 0, inertia = 0)] upright: Body, #[body(mass = 0, inertia = 0)] turned: Body,
+        #[body(mass = 0, inertia = 0)] leaning: Body,
+        #[body(mass = m, inertia = disk(m, radius, y))] disk: Body,
+        #[joint(ground -> upright, along = (x, y, z))] place: Stage,
+        #[joint(upright -> turned, about = z)] heading: Pin,
+        #[joint(turned -> leaning, about = x)] lean: Pin,
+        #[joint(leaning -> disk, about = y)] roll: Pin,
+        #[constraint(rolls(disk.circle(radius, y), ground.plane(z)))] contact: Rolling,
+        #[speed(dot(omega(disk / ground), leaning.x))] u1: Speed,
+        #[speed(dot(omega(disk / ground), leaning.y))] u2: Speed,
+        #[speed(dot(omega(disk / ground), leaning.z))] u3: Speed,";
+    let text = printed("gravity = -g * z", fields);
+    // About the axis of lean nothing but inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with `I = m r²/4`, `J = m r²/2`.
+    for line in [
+        "heading' = u3/cos(lean)\n",
+        "roll' = u2 - sin(lean) u3/cos(lean)\n",
+        "1/4 m radius² u3' + 1/2 m radius² u1 u2 - 1/4 m radius² sin(lean) u1 u3/cos(lean) = 0\n",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+}

@@ -1,0 +1,396 @@
+//! Mechanisms in declared generalized speeds against the same ones in the velocities of their joints.
+
+use linkwork::discrete;
+use linkwork::frame;
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+use support::compare::{assert_close, assert_similar};
+use support::random::Random;
+use support::simulate::advance;
+
+/// Against differences of order four.
+const DIFFERENCE: f64 = 1e-8;
+
+/// A rigid body about a fixed point, by Euler's angles.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Angles {
+    #[body(mass = 0, inertia = 0)]
+    first: Body,
+    #[body(mass = 0, inertia = 0)]
+    second: Body,
+    #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, 0.45))]
+    top: Body,
+    #[joint(ground -> first, about = z)]
+    psi: Pin,
+    #[joint(first -> second, about = x)]
+    theta: Pin,
+    #[joint(second -> top, about = z)]
+    phi: Pin,
+    #[acts(on = theta, stiffness = 0.4, free_angle = 1)]
+    spring: Spring,
+    #[acts(on = phi)]
+    motor: Torque,
+}
+
+/// The same body in the components of its angular velocity along its own axes.
+#[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
+struct Speeds {
+    axial: f64,
+    #[body(mass = 0, inertia = 0)]
+    first: Body,
+    #[body(mass = 0, inertia = 0)]
+    second: Body,
+    #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, axial))]
+    top: Body,
+    #[joint(ground -> first, about = z)]
+    psi: Pin,
+    #[joint(first -> second, about = x)]
+    theta: Pin,
+    #[joint(second -> top, about = z)]
+    phi: Pin,
+    #[acts(on = theta, stiffness = 0.4, free_angle = 1)]
+    spring: Spring,
+    #[acts(on = phi)]
+    motor: Torque,
+    #[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))]
+    wx: Speed,
+    #[speed(dot(omega(top / ground), top.y))]
+    wy: Speed,
+    #[speed(rate(psi) * cos(theta) + rate(phi))]
+    wz: Speed,
+    #[output(wz)]
+    spin: Scalar,
+}
+
+/// A body in space with a pendulum on it: the velocity of the body's origin and its angular velocity in axes of the ground.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Satellite {
+    #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
+    hull: Body,
+    #[body(mass = 0.5, com = -0.4 * z, inertia = rod(0.5, 0.8, z))]
+    boom: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[joint(hull.at(0.2 * y) -> boom, about = y)]
+    hinge: Pin,
+    #[acts(on = hinge, damping = 0.1)]
+    friction: Dashpot,
+    #[acts(on = hull, along = x)]
+    thrust: Force,
+    #[speed(dot(v(hull / ground / ground), x))]
+    ux: Speed,
+    #[speed(dot(v(hull / ground / ground), y))]
+    uy: Speed,
+    #[speed(dot(v(hull / ground / ground), z))]
+    uz: Speed,
+    #[speed(dot(omega(hull / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(hull / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(hull / ground), z))]
+    wz: Speed,
+}
+
+/// A disk that rolls on a table.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Disk {
+    #[body(mass = 0, inertia = 0)]
+    upright: Body,
+    #[body(mass = 0, inertia = 0)]
+    turned: Body,
+    #[body(mass = 0, inertia = 0)]
+    leaning: Body,
+    #[body(mass = 3, inertia = disk(3, 0.4, y))]
+    disk: Body,
+    #[joint(ground -> upright, along = (x, y, z))]
+    place: Stage,
+    #[joint(upright -> turned, about = z)]
+    heading: Pin,
+    #[joint(turned -> leaning, about = x)]
+    lean: Pin,
+    #[joint(leaning -> disk, about = y)]
+    roll: Pin,
+    #[constraint(rolls(disk.circle(0.4, y), ground.plane(z)))]
+    contact: Rolling,
+}
+
+/// The same disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985, ch. 4).
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct DiskInSpeeds {
+    #[body(mass = 0, inertia = 0)]
+    upright: Body,
+    #[body(mass = 0, inertia = 0)]
+    turned: Body,
+    #[body(mass = 0, inertia = 0)]
+    leaning: Body,
+    #[body(mass = 3, inertia = disk(3, 0.4, y))]
+    disk: Body,
+    #[joint(ground -> upright, along = (x, y, z))]
+    place: Stage,
+    #[joint(upright -> turned, about = z)]
+    heading: Pin,
+    #[joint(turned -> leaning, about = x)]
+    lean: Pin,
+    #[joint(leaning -> disk, about = y)]
+    roll: Pin,
+    #[constraint(rolls(disk.circle(0.4, y), ground.plane(z)))]
+    contact: Rolling,
+    #[speed(dot(omega(disk / ground), leaning.x))]
+    u1: Speed,
+    #[speed(dot(omega(disk / ground), leaning.y))]
+    u2: Speed,
+    #[speed(dot(omega(disk / ground), leaning.z))]
+    u3: Speed,
+}
+
+fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
+    SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
+}
+
+/// Columns by central differences of order four along unit vectors.
+fn slopes<const R: usize, const C: usize>(
+    f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
+) -> SMatrix<f64, R, C> {
+    let h = 1e-3;
+    let along = |e: SVector<f64, C>| {
+        ((f(e * h) - f(e * -h)) * 8.0 - (f(e * (2.0 * h)) - f(e * (-2.0 * h)))) / (12.0 * h)
+    };
+    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| along(unit(i))))
+}
+
+/// The configuration space in speeds: inverses, rates, and all derivatives.
+fn check_space<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>)
+where
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
+{
+    let mut random = Random::new(3);
+    for _ in 0..3 {
+        let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(0.3), random.vector(1.0));
+        let there = m.integrate(q, &dv);
+        assert_close("difference", m.difference(q, &there).as_slice(), dv.as_slice(), 1e-12);
+        // The rate of a displacement is that of its end.
+        let rate = m.displacement_rate(q, &dv, &v);
+        let back = slopes::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
+        assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
+        let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
+        let moved = |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
+        assert_similar(
+            "∂(q ⊕ dv)/∂q",
+            by_q.as_slice(),
+            slopes(|e| moved(&m.integrate(q, &e), &dv)).as_slice(),
+            DIFFERENCE,
+        );
+        assert_similar(
+            "∂(q ⊕ dv)/∂dv",
+            by_dv.as_slice(),
+            slopes(|e| moved(q, &(dv + e))).as_slice(),
+            DIFFERENCE,
+        );
+        let (by_q, by_dv, by_v) = m.displacement_rate_derivatives(q, &dv, &v);
+        let rate =
+            |e: [SVector<f64, NV>; 3]| m.displacement_rate(&m.integrate(q, &e[0]), &(dv + e[1]), &(v + e[2]));
+        let o = SVector::zeros();
+        assert_similar("∂/∂q", by_q.as_slice(), slopes(|e| rate([e, o, o])).as_slice(), DIFFERENCE);
+        assert_similar("∂/∂dv", by_dv.as_slice(), slopes(|e| rate([o, e, o])).as_slice(), DIFFERENCE);
+        assert_similar("∂/∂v", by_v.as_slice(), slopes(|e| rate([o, o, e])).as_slice(), DIFFERENCE);
+    }
+}
+
+/// A step by differences of the step itself, in displacements and speeds.
+fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+) where
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
+{
+    let u: SVector<f64, NU> = Random::new(9).vector(1.0);
+    let end =
+        |method: &dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>)| {
+            let there = method(q, v);
+            let by_q = slopes(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
+            let by_v = slopes(|e| m.difference(&there.0, &method(q, &(v + e)).0));
+            let faster = slopes(|e| method(&m.integrate(q, &e), v).1);
+            [by_q, by_v, faster]
+        };
+    let (rk4, euler) = (Rk4::step(0.05), SemiImplicitEuler::step(0.05));
+    let found = [
+        (
+            discrete::transition(m, &rk4, 0.0, q, v, &u).unwrap(),
+            end(&|q, v| discrete::step(m, &rk4, 0.0, q, v, &u).unwrap()),
+        ),
+        (
+            discrete::transition(m, &euler, 0.0, q, v, &u).unwrap(),
+            end(&|q, v| discrete::step(m, &euler, 0.0, q, v, &u).unwrap()),
+        ),
+    ];
+    for (found, [by_q, by_v, faster]) in found {
+        assert_similar("q by q", found.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
+        assert_similar("q by v", found.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
+        assert_similar("v by q", found.v_by_q.as_slice(), faster.as_slice(), DIFFERENCE);
+    }
+    // Two neighbouring motions with the same speeds: φ(h) = (1 + h T) φ + O(h²).
+    let (h, turning) = (1e-5, m.linear_motion(q, v, &u).turning);
+    let later = |q: &SVector<f64, NQ>| discrete::step(m, &Rk4::step(h), 0.0, q, v, &u).unwrap().0;
+    let grown = slopes(|e| m.difference(&later(q), &later(&m.integrate(q, &e))));
+    let rate = (grown - SMatrix::<f64, NV, NV>::identity()) / h;
+    assert_similar("turning", turning.as_slice(), rate.as_slice(), 1e-4);
+}
+
+fn speeds() -> Speeds {
+    Speeds { axial: 0.45 }
+}
+
+fn euler_start() -> (SVector<f64, 3>, SVector<f64, 3>) {
+    ([0.3, 0.9, -0.4].into(), [0.5, -0.7, 6.0].into())
+}
+
+#[test]
+fn the_configuration_space_is_one_in_speeds() {
+    let (q, v) = euler_start();
+    check_space(&speeds(), &q);
+    check_steps(&speeds(), &q, &(v * 0.3));
+    let q = Random::new(5).configuration(&Satellite {});
+    check_space(&Satellite {}, &q);
+    check_steps(&Satellite {}, &q, &Random::new(6).vector(0.8));
+}
+
+#[test]
+fn names_and_conversions() {
+    assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
+    assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
+    assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
+    let (q, rates) = euler_start();
+    let m = speeds();
+    let u = m.speeds_of_rates(&q, &rates);
+    assert_close("rates", m.rates_of_speeds(&q, &u).as_slice(), rates.as_slice(), 1e-14);
+    // The mass matrix of the body about its fixed point, in its own axes.
+    let fixed = 2.0 * 0.3 * 0.3;
+    let expected = SMatrix::<f64, 3, 3>::from_diagonal(&[0.2 + fixed, 0.3 + fixed, 0.45].into());
+    assert_close("mass matrix", m.mass_matrix(&q).as_slice(), expected.as_slice(), 1e-14);
+    assert_close("output", &[m.spin(&q, &u)], &[u[2]], 1e-14);
+    assert!(Mechanism::tangent_rate(&m, &u, &u).iter().all(|x| x.is_nan()));
+}
+
+#[test]
+fn frames_move_alike() {
+    let (q, rates) = euler_start();
+    let (plain, m) = (Angles {}, speeds());
+    let u = m.speeds_of_rates(&q, &rates);
+    let (twist, expected) = (
+        m.frame_velocity(frame!(Speeds, "top"), &q, &u),
+        plain.frame_velocity(frame!(Angles, "top"), &q, &rates),
+    );
+    assert_close("velocity", twist.as_slice(), expected.as_slice(), 1e-13);
+    let jacobian = m.frame_jacobian(frame!(Speeds, "top"), &q);
+    assert_close("Jacobian", (jacobian * u).as_slice(), expected.as_slice(), 1e-13);
+    let tau: SVector<f64, 3> = [0.2, -0.3, 0.5].into();
+    let (a, du) = (
+        plain.forward_dynamics(&q, &rates, &SVector::zeros()),
+        m.forward_dynamics(&q, &u, &SVector::zeros()),
+    );
+    let found = m.frame_acceleration(frame!(Speeds, "top"), &q, &u, &du);
+    assert_close(
+        "acceleration",
+        found.as_slice(),
+        plain.frame_acceleration(frame!(Angles, "top"), &q, &rates, &a).as_slice(),
+        1e-11,
+    );
+    let prepared = m.prepare();
+    assert_close(
+        "prepared",
+        prepared.forward_dynamics(&q, &u, &tau).as_slice(),
+        m.forward_dynamics(&q, &u, &tau).as_slice(),
+        1e-13,
+    );
+    assert_close("prepared", prepared.integrate(&q, &u).as_slice(), m.integrate(&q, &u).as_slice(), 1e-14);
+}
+
+/// The end of a run in speeds, as the joints have it.
+fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let (q, rates) = euler_start();
+    let m = speeds();
+    let run = simulate(&m).from(q, m.speeds_of_rates(&q, &rates)).duration(0.5).method(method);
+    let end = run.finish().expect("it arrives");
+    (end.q, m.rates_of_speeds(&end.q, &end.v))
+}
+
+/// How much smaller errors are with steps half as long: 16 for order four, 4 for order two.
+#[test]
+fn methods_keep_their_orders() {
+    let (q, rates) = euler_start();
+    let exact = advance(&Angles {}, &q, &rates, 0.5);
+    let error = |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
+    let ratio = |coarse: f64, fine: f64| (coarse / fine).log2();
+    let rk4 = ratio(error(end(Rk4::step(0.01))), error(end(Rk4::step(0.005))));
+    assert!((3.8..4.3).contains(&rk4), "{rk4}");
+    let midpoint = ratio(error(end(ImplicitMidpoint::step(0.01))), error(end(ImplicitMidpoint::step(0.005))));
+    assert!((1.9..2.1).contains(&midpoint), "{midpoint}");
+    let rosenbrock = ratio(error(end(Rosenbrock::step(0.002))), error(end(Rosenbrock::step(0.001))));
+    assert!((1.8..2.2).contains(&rosenbrock), "{rosenbrock}");
+    for tolerance in [1e-6, 1e-9, 1e-12] {
+        let adaptive = error(end(DormandPrince::new().tolerance(tolerance, tolerance)));
+        assert!(adaptive < 300.0 * tolerance, "{adaptive} with {tolerance}");
+        let stiff = error(end(Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9))));
+        assert!(stiff < 1000.0 * tolerance.max(1e-9), "{stiff} with {tolerance}");
+    }
+}
+
+#[test]
+fn batches_are_single_states() {
+    use linkwork::__private::{lane, lane_by_lane};
+    let m = speeds();
+    let (q, rates) = euler_start();
+    let u = m.speeds_of_rates(&q, &rates);
+    let scaled = |k: usize| u * (1.0 + k as f64);
+    let q_lanes = lane_by_lane::<f64, 4, 3, 1>(|_| q);
+    let u_lanes = lane_by_lane::<f64, 4, 3, 1>(scaled);
+    let moved = m.integrate_lanes(&q_lanes, &u_lanes);
+    let rate = m.displacement_rate_lanes(&q_lanes, &u_lanes, &u_lanes);
+    for k in 0..4 {
+        assert_close("integrate", lane(&moved, k).as_slice(), m.integrate(&q, &scaled(k)).as_slice(), 1e-14);
+        let one = m.displacement_rate(&q, &scaled(k), &scaled(k));
+        assert_close("rate", lane(&rate, k).as_slice(), one.as_slice(), 1e-13);
+    }
+}
+
+#[test]
+fn a_rolling_disk_moves_alike_in_kanes_speeds() {
+    let (plain, m) = (Disk {}, DiskInSpeeds {});
+    let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
+    let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
+    let u = m.speeds_of_rates(&q, &rates);
+    assert_close(
+        "rates of constraints",
+        m.constraint_rates(&q, &u).as_slice(),
+        &[0.0; DiskInSpeeds::NC],
+        1e-13,
+    );
+    let tau: SVector<f64, 6> = Random::new(2).vector(1.0);
+    // Generalized forces of the joints that do the same power: `Yᵀ τ`.
+    let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &unit(k))));
+    let expected = plain.forward_dynamics(&q, &rates, &forces);
+    let du = m.forward_dynamics(&q, &u, &tau);
+    let rates_later = |h: f64| {
+        let there = m.integrate(&q, &(u * h));
+        m.rates_of_speeds(&there, &(u + du * h))
+    };
+    let h = 1e-4;
+    let found = (rates_later(h) - rates_later(-h)) / (2.0 * h);
+    assert_close("accelerations", found.as_slice(), expected.as_slice(), 1e-5);
+    let exact = advance(&plain, &q, &rates, 1.0);
+    let run = simulate(&m).from(q, u).duration(1.0).method(DormandPrince::new().tolerance(1e-13, 1e-13));
+    let end = run.finish().expect("it rolls");
+    assert_close("configuration", end.q.as_slice(), exact.0.as_slice(), 1e-9);
+    assert_close("rates", m.rates_of_speeds(&end.q, &end.v).as_slice(), exact.1.as_slice(), 1e-9);
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    assert_close("energy", &[energy(&end.q, &end.v)], &[energy(&q, &u)], 1e-9);
+    // Derivatives under constraints, along displacements in speeds.
+    let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(&q, &u, &tau);
+    let expected = slopes(|e| m.forward_dynamics(&q, &(u + e), &tau));
+    assert_similar("∂u̇/∂u", by_v.as_slice(), expected.as_slice(), 1e-7);
+    let expected = slopes(|e| m.forward_dynamics(&m.integrate(&q, &e), &u, &tau));
+    assert_similar("∂u̇/∂q", by_q.as_slice(), expected.as_slice(), 1e-7);
+    let expected = slopes(|e| m.forward_dynamics(&q, &u, &(tau + e)));
+    assert_similar("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
+}
