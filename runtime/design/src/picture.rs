@@ -191,20 +191,23 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
+/// A unit, and the output signals that have it with their places among the outputs.
+type OfUnit<'a> = (&'a str, Vec<(&'a crate::Signal, usize)>);
+
 /// Outputs over time, a panel for each unit.
 ///
 /// # Errors
 ///
 /// [`Error::Picture`] for values that are not finite, or none.
 pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
-    let mut panels: Vec<(&str, Vec<(&crate::Signal, usize)>)> = Vec::new();
+    let mut panels: Vec<OfUnit<'_>> = Vec::new();
     for (k, signal) in response.output_signals.iter().enumerate() {
         match panels.iter_mut().find(|(unit, _)| *unit == signal.unit) {
             Some((_, signals)) => signals.push((signal, k)),
             None => panels.push((&signal.unit, vec![(signal, k)])),
         }
     }
-    let panel = |(place, (unit, signals)): (usize, &(&str, Vec<(&crate::Signal, usize)>))| {
+    let panel = |(place, (unit, signals)): (usize, &OfUnit<'_>)| {
         // One curve has its name on the axis.
         let (y, alone) = match signals.as_slice() {
             [(signal, _)] => (signal.to_string(), true),
