@@ -206,9 +206,9 @@
 //! | 9 | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
 //! | 9 | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
 //! | 9 | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
-//! | 9 | Gibbs's, Appell's and Kane's equations in print | left out so far: `equations` takes `lagrange`, `hamilton` and `structure` | |
+//! | 9 | Gibbs's, Appell's and Kane's equations in print | `EQUATIONS` of mechanisms with a `Speed` | `a_rolling_disk_moves_alike_in_kanes_speeds` |
 //! | 9 | Routh's reduction over cyclic coordinates | the word `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
-//! | 9 | speeds of one's own choice | left out so far: speeds are those of the joints | |
+//! | 9 | speeds of one's own choice | `#[speed(expression)] wx: Speed` | `methods_keep_their_orders`, `frames_move_alike` |
 //! | 10–16 | linear equations in the user's parameters, characteristic polynomial, Routh's conditions, in print | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
 //! | 10–16 | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | 10–16 | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |

@@ -196,6 +196,10 @@ where
     }
 }
 
+/// Configuration and velocity after a step from those before it.
+type Step<'a, const NQ: usize, const NV: usize> =
+    &'a dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>);
+
 /// A step by differences of the step itself, in displacements and speeds.
 fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
@@ -205,14 +209,13 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let u: SVector<f64, NU> = Random::new(9).vector(1.0);
-    let end =
-        |method: &dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>)| {
-            let there = method(q, v);
-            let by_q = slopes(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
-            let by_v = slopes(|e| m.difference(&there.0, &method(q, &(v + e)).0));
-            let faster = slopes(|e| method(&m.integrate(q, &e), v).1);
-            [by_q, by_v, faster]
-        };
+    let end = |method: Step<'_, NQ, NV>| {
+        let there = method(q, v);
+        let by_q = slopes(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
+        let by_v = slopes(|e| m.difference(&there.0, &method(q, &(v + e)).0));
+        let faster = slopes(|e| method(&m.integrate(q, &e), v).1);
+        [by_q, by_v, faster]
+    };
     let (rk4, euler) = (Rk4::step(0.05), SemiImplicitEuler::step(0.05));
     let found = [
         (

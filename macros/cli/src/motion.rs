@@ -33,6 +33,8 @@ pub struct Start<'a, 'g> {
     u: Vec<f64>,
 }
 
+/// Moves of a beginning that are told, m and rad.
+const TOLD: f64 = 1e-6;
 /// Most samples of a motion.
 const MOST: f64 = 1e7;
 /// How often a mechanism is assembled from another beginning.
@@ -138,10 +140,8 @@ impl<'a, 'g> Start<'a, 'g> {
                     self.mechanism.model.name
                 ))
             })?;
-            eprintln!(
-                "linkwork: the beginning fulfils no constraints; the motion begins in a configuration that was found near it"
-            );
         }
+        self.tell_of_moves(&y);
         let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
         if times[count] < duration * (1.0 - 1e-9) {
             times.push(duration);
@@ -159,6 +159,24 @@ impl<'a, 'g> Start<'a, 'g> {
             samples.push(Sample { t: *t, q: y[..nq].to_vec(), v: y[nq..].to_vec(), u: given(*t) });
         }
         Ok(samples)
+    }
+
+    /// Says where a motion begins whose wanted beginning does not fulfil the constraints.
+    fn tell_of_moves(&self, begins: &[f64]) {
+        let wanted = self.q.iter().chain(&self.v);
+        let names = self.mechanism.model.configuration.iter().map(|name| format!("q.{name}"));
+        let names = names.chain(self.mechanism.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
+        let moved: Vec<String> = names
+            .zip(wanted.zip(begins))
+            .filter(|(_, (wanted, is))| (*wanted - *is).abs() > TOLD * (1.0 + wanted.abs()))
+            .map(|(name, (_, is))| format!("{name} = {is:.6}"))
+            .collect();
+        if !moved.is_empty() {
+            eprintln!(
+                "linkwork: the beginning does not fulfil the constraints; the motion begins near it, at {}",
+                moved.join(", ")
+            );
+        }
     }
 
     /// A state that constraints allow, from beginnings that are more and more off.

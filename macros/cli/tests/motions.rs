@@ -142,7 +142,8 @@ fn loops_stay_closed() {
     ]
     .concat();
     let (status, log, told) = linkwork(&here, &arguments);
-    assert_eq!((status, told.as_str()), (0, ""));
+    // The angles that are given close the loop but for a part, which is told.
+    assert!(status == 0 && told.contains("the motion begins near it, at q.input = "), "{told}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
@@ -167,7 +168,7 @@ fn loops_stay_closed() {
     }
     // A loop that is stretched out is assembled near by, which is told; the page of it shows the motion.
     let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
-    assert!(status == 0 && told.contains("a configuration that was found near it"), "{told}");
+    assert!(status == 0 && told.contains("the motion begins near it, at q."), "{told}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
 }
 
