@@ -511,7 +511,9 @@ fn mistakes_are_reported_together_and_once() {
     );
     check(
         "m: f64, #[body(mass = m * l)] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
-        "unknown name `l`\n= help: expected `m`, `x`, `y`, `z` or `pi`",
+        "unknown name `l`
+        = help: expected `m`, `x`, `y`, `z` or `pi`
+        = help: or declare it: `l: f64` is a parameter, `l: Coordinate` a coordinate",
     );
 }
 
