@@ -61,7 +61,7 @@ pub struct Pleiades {
 }
 
 impl Pleiades {
-    /// Where they are first, and how fast.
+    /// Configuration and velocity at the beginning.
     pub const START: ([f64; 14], [f64; 14]) = (
         [3.0, 3.0, 3.0, -3.0, -1.0, 2.0, -3.0, 0.0, 2.0, 0.0, -2.0, -4.0, 2.0, 4.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.25, 0.0, 1.0, 1.75, 0.0, -1.5, 0.0],

@@ -191,7 +191,7 @@ where
     check_steps_from(name, m, method, push, q, v);
 }
 
-/// The same from a state at the time 0.3 s.
+/// Second derivatives of steps against differences, from a given state at the time 0.3 s.
 fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,

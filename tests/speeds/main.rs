@@ -32,7 +32,7 @@ struct Angles {
     motor: Torque,
 }
 
-/// The same body in the components of its angular velocity along its own axes.
+/// A rigid body in the components of its angular velocity along its own axes.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
 struct Speeds {
     axial: f64,
@@ -114,7 +114,7 @@ struct Disk {
     contact: Rolling,
 }
 
-/// The same disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985, ch. 4).
+/// A rolling disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985, ch. 4).
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct DiskInSpeeds {
     #[body(mass = 0, inertia = 0)]

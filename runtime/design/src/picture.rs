@@ -1,5 +1,5 @@
 //! Pictures as SVG, one call each: Bode's and Nyquist's, root loci, poles and zeros, motions over time, modes. Drawn by
-//! [plotters](https://crates.io/crates/plotters), labelled with names and units.
+//! plotters, labelled with names and units.
 //!
 //! ```
 //! use linkwork_design::{TransferFunction, picture};

@@ -26,7 +26,7 @@ pub enum Role {
     Forces,
     /// The rate of momenta, and these.
     MomentumRate,
-    /// So many numbers at zero accelerations, and the matrix by which they change with those, column by column.
+    /// That number of values at zero accelerations, and the matrix by which they change with those, column by column.
     Bias(usize),
     /// Accelerations under the forces `tau`; scalars; and for each of so many multipliers the accelerations that it adds.
     Accelerations(usize),
@@ -220,7 +220,7 @@ impl<'g> InSpeeds<'g> {
         self.momentum_rate_of_written(&self.written(rate), &self.written(momentum))
     }
 
-    /// The same of what is written in speeds.
+    /// The rate of generalized momenta, from a rate and momenta of the joints that are written in speeds already.
     pub fn momentum_rate_of_written(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let turned = transposed_times(&self.turning_rates(), momentum);
         let own = transposed_times(&self.speeds.rates, rate);
