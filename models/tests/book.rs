@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Where the table looks for tests: here, in the package of tests, in that of design, and at the compiler's equations.
 const FOLDERS: [&str; 4] =
-    ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/mechanics/equations/tests"];
+    ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/equations/tests"];
 
 /// The chapters; those on flight and linear systems together.
 const CHAPTERS: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10–16"];

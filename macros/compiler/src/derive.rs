@@ -2,12 +2,11 @@
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
+use crate::equations::{self, Limits, Written, linear, reduced};
 use crate::expr::Expr;
-use crate::expr::print::Written;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
 use crate::mechanics::conserved::{self, Conserved};
-use crate::mechanics::equations::{Limits, linear, reduced};
 use crate::mechanics::hamilton::{self, Hamilton};
 use crate::mechanics::routh::{self, Routh};
 use crate::mechanics::speeds::InSpeeds;
@@ -358,9 +357,9 @@ fn printed<'g>(
         Printed::Readable => Some(written((model, speeds), joints, mass)),
         Printed::Structure => Some(Written::default()),
         Printed::Lagrange => {
-            let equations = mechanics::equations::derive(model, joints, mass, speeds, &Limits::ASKED);
+            let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
-            equations.map(|e| mechanics::equations::written(named, &e)).or_else(|| {
+            equations.map(|e| equations::written(named, &e)).or_else(|| {
                 refuse(
                     "the equations of this mechanism have thousands of terms",
                     "`equations = structure` says how they are made up; the generated functions do not multiply them out",
@@ -385,8 +384,8 @@ fn printed<'g>(
             "write `equations = lagrange`, which prints Kane's equations in speeds; the word `hamilton` gives the functions in speeds, too",
         ),
         Printed::Hamilton => {
-            let canonical = mechanics::equations::canonical(model, joints, mass);
-            canonical.map(|c| mechanics::equations::written_canonical(model, &c)).or_else(|| {
+            let canonical = equations::canonical(model, joints, mass);
+            canonical.map(|c| equations::written_canonical(model, &c)).or_else(|| {
                 refuse(
                     "Hamilton's equations of this mechanism are too long: more than three velocities are coupled by inertia, or thousands of terms",
                     "the word `hamilton` gives them as functions; `equations = lagrange` prints others",
@@ -417,9 +416,9 @@ fn written<'g>(
     mass: &crba::Matrix<'g>,
 ) -> Written {
     let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
-    let equations = mechanics::equations::derive(model, joints, mass, speeds, &limits);
+    let equations = equations::derive(model, joints, mass, speeds, &limits);
     let named = speeds.map_or(model, |speeds| &speeds.model);
-    equations.map_or_else(Written::default, |e| mechanics::equations::written(named, &e))
+    equations.map_or_else(Written::default, |e| equations::written(named, &e))
 }
 
 /// A step from link to link.

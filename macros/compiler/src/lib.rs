@@ -1,9 +1,11 @@
 #![doc = include_str!("../README.md")]
 
+pub mod algebra;
 pub mod catalogue;
 pub mod derive;
 pub mod diag;
 pub mod emit;
+pub mod equations;
 pub mod export;
 pub mod expr;
 pub mod import;

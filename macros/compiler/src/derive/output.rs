@@ -1,7 +1,7 @@
 //! What is derived: everything that emission writes.
 
 use crate::catalogue::{Argument, Declared, Id, Shape, Structure};
-use crate::expr::print::Written;
+use crate::equations::Written;
 use crate::lower::Program;
 use crate::mechanism::{Chart, Piece};
 

@@ -2,7 +2,7 @@
 
 use super::interface::Interface;
 use crate::derive::Constant;
-use crate::expr::print::Written;
+use crate::equations::Written;
 use crate::syntax::Printed;
 use std::fmt::Write;
 

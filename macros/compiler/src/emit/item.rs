@@ -19,7 +19,7 @@ use super::{constraints, contacts};
 use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
 use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
-use crate::expr::print::Written;
+use crate::equations::Written;
 use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};

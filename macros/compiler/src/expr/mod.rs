@@ -1,25 +1,19 @@
 //! The symbolic kernel: a hash-consed graph of scalar expressions that simplifies at construction, with
-//! differentiation, evaluation and printing. Knows no mechanics.
+//! differentiation and evaluation. Knows no mechanics.
 
 pub mod air;
 pub mod diff;
 pub mod eval;
 pub mod exact;
-pub mod factor;
 pub mod graph;
 pub mod handle;
 pub mod lanes;
 pub mod matrix;
 pub mod memo;
 pub mod node;
-pub mod normal;
-pub mod polynomial;
-pub mod print;
 pub mod replace;
 pub mod rotation;
 pub mod sample;
-pub mod trigonometry;
-pub mod unit;
 
 pub use graph::Graph;
 pub use handle::Expr;

@@ -2,11 +2,11 @@
 
 use super::redundancy::Basis;
 use super::rows::{random_configuration, value_of};
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Rank, expression};
+use crate::algebra::trigonometry::simplified;
+use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Rank, expression};
-use crate::expr::trigonometry::simplified;
-use crate::expr::unit::on_unit_sphere;
 use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Chart, Model, Quantity};
 use std::collections::BTreeMap;

@@ -13,7 +13,6 @@ pub mod constraints;
 pub mod crba;
 pub mod derivatives;
 pub mod energy;
-pub mod equations;
 pub mod forces;
 pub mod frames;
 pub mod friction;

@@ -3,10 +3,10 @@
 
 use super::parts::{Coefficients, rank};
 use super::rest::vanishes;
-use crate::expr::factor::without_noise;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Polynomial, Ring};
-use crate::expr::trigonometry::simplified;
+use crate::algebra::factor::without_noise;
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Ring};
+use crate::algebra::trigonometry::simplified;
 use crate::expr::{Expr, Node, Symbol};
 use crate::mechanism::{Model, Rule};
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! What all parts of linear equations go by: which symbols stand for what, their rows, and their coefficients.
 
-use crate::expr::polynomial::Rank;
+use crate::algebra::polynomial::Rank;
 use crate::expr::{Expr, Symbol};
 use crate::mechanics::crba::Matrix;
 use crate::mechanism::{Equilibrium, Model, Quantity};

@@ -1,9 +1,9 @@
 //! Each rule on its own, and where several lead further.
 
 use super::simplified;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::tests::rank;
-use crate::expr::print::Writer;
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::tests::rank;
+use crate::equations::print::Writer;
 use crate::expr::{Expr, Graph, Symbol};
 
 /// The shortest form as text, with a, b, c for angles and m for a parameter.

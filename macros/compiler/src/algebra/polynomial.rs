@@ -3,7 +3,7 @@
 //! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
 //! whatever grows beyond the limits is given up with `None`.
 
-use super::node::{Extreme, Function, Lookup, Symbol};
+use crate::expr::node::{Extreme, Function, Lookup, Symbol};
 
 mod expression;
 mod monomial;

@@ -1,8 +1,8 @@
 //! Hamilton's form, printed: the Hamiltonian, and the rates of coordinates and momenta.
 
 use super::{Limits, Short, quaternions, rank};
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Polynomial, Ring};
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::replace_all;
 use crate::expr::sample::always;
 use crate::expr::{Expr, Symbol};

@@ -2,16 +2,16 @@
 //! can, and no force is left. What is left is proven to be zero as a polynomial, or tried in numbers for the parameters.
 
 use super::parts::{Coefficients, deviation, multiplier, rows as linear_rows};
+use crate::algebra::factor::without_noise;
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Ring};
+use crate::algebra::trigonometry::simplified;
 use crate::diag::Diagnostics;
+use crate::equations::print::Writer;
 use crate::expr::diff::TINY;
 use crate::expr::eval::{Tape, needed};
 use crate::expr::exact::replace_exactly;
-use crate::expr::factor::without_noise;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Polynomial, Ring};
-use crate::expr::print::Writer;
 use crate::expr::sample::sample;
-use crate::expr::trigonometry::simplified;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity};
 

@@ -4,10 +4,10 @@
 use super::canonical::{determinant, velocities_of};
 use super::written::{determinants, filled, name, names_with, rates};
 use super::{Limits, Short, quaternions, rank};
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Polynomial, Ring};
-use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;

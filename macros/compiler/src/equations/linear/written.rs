@@ -4,10 +4,10 @@ use super::super::written::{filled, name as name_of, names_with, rates};
 use super::Linear;
 use super::parts::{ROOT, multiplier};
 use super::stability::{Stability, Verdict};
+use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
 use crate::diag::all_of;
+use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
-use crate::expr::polynomial::{Atom, Monomial, Polynomial, Term};
-use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
 /// Columns of text.
@@ -155,7 +155,7 @@ pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) 
         (names.get(&name), dots)
     };
     let lines = Lines::of(linear, Latex { name: &dotted });
-    let spelled = |word: &str| crate::expr::print::latex::spelled(&names.get(word), 0);
+    let spelled = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
     Written { plain, latex: latex(&lines, &spelled(&words.frequency)) }
 }
 

@@ -1,9 +1,9 @@
 //! The normal form against evaluation of the expression, for hand-picked and for random expressions.
 
 use super::*;
+use crate::algebra::normal::Normal;
+use crate::algebra::trigonometry::simplified;
 use crate::expr::eval::eval_one;
-use crate::expr::normal::Normal;
-use crate::expr::trigonometry::simplified;
 use crate::expr::{Expr, Graph};
 
 /// The first symbols are parameters.

@@ -7,8 +7,8 @@
 use super::characteristic::Characteristic;
 use super::parts::ROOT;
 use super::rest::{parameter, trials, vanishes};
-use crate::expr::normal::inverse;
-use crate::expr::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
+use crate::algebra::normal::inverse;
+use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 use crate::expr::{Function, Symbol};
 
 /// What a characteristic polynomial says.

@@ -1,14 +1,14 @@
 //! Numbers, grouping and lines.
 
 use super::*;
-use crate::expr::normal::Normal;
+use crate::algebra::normal::Normal;
 use crate::expr::{Function, Graph};
 
 /// Parameters, coordinates, rates, inputs: `m k l`, `x y`, `x' y'`, `u`.
 const NAMES: [&str; 8] = ["m", "k", "l", "x", "y", "x'", "y'", "u"];
 
-fn rank(symbol: Symbol) -> super::super::polynomial::Rank {
-    use super::super::polynomial::Rank;
+fn rank(symbol: Symbol) -> crate::algebra::polynomial::Rank {
+    use crate::algebra::polynomial::Rank;
     match symbol.0 {
         0..3 => Rank::Parameter,
         3..5 => Rank::Position,

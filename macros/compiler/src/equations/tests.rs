@@ -1,9 +1,9 @@
 //! The printed equations, and the polynomials behind them against both derivations at random states.
 
 use super::*;
+use crate::algebra::polynomial::tests::Random;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
-use crate::expr::polynomial::tests::Random;
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};

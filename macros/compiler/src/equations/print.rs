@@ -1,9 +1,9 @@
 //! Expressions and polynomials as text, plain or typeset.
 
-use super::Expr;
-use super::factor::{Item, Order, items};
-use super::node::{Node, Symbol};
-use super::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
+use crate::algebra::factor::{Item, Order, items};
+use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
+use crate::expr::Expr;
+use crate::expr::node::{Node, Symbol};
 
 use std::fmt;
 

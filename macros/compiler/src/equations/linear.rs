@@ -7,11 +7,11 @@
 //! coefficients are taken at rest: what `f_q` has of the multipliers is their geometric stiffness.
 
 use super::{Limits, Short, right_sides};
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::derivatives::symbolic;

@@ -2,28 +2,30 @@
 //! recursive algorithms' mass matrix and bias, which hold for ball and free joints as they are and are there already;
 //! Lagrange's equations are the same polynomials, as a test shows.
 
-use super::crba::Matrix;
-use super::speeds::InSpeeds;
-use super::{accelerations, added_mass, constraints, energy, forces, rnea, velocities};
+use crate::algebra::factor::without_noise;
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Rank, Ring};
+use crate::algebra::trigonometry::simplified;
+use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
-use crate::expr::factor::without_noise;
-use crate::expr::normal::Normal;
-use crate::expr::polynomial::{Polynomial, Rank, Ring};
-use crate::expr::trigonometry::simplified;
-use crate::expr::unit::on_unit_sphere;
 use crate::expr::{Expr, Function, Node, Symbol};
 use crate::kinematics::Joint;
 use crate::kinematics::speeds::quaternions;
+use crate::mechanics::crba::Matrix;
+use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::{accelerations, added_mass, constraints, energy, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
 mod canonical;
 pub mod linear;
+pub mod print;
 pub mod reduced;
 #[cfg(test)]
 mod tests;
 mod written;
 
 pub use canonical::{Canonical, canonical, determinant};
+pub use print::Written;
 pub use written::{written, written_canonical};
 
 /// How much is multiplied out and written.

@@ -2,9 +2,9 @@
 
 use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
+use crate::equations::print::names::Names;
+use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
-use crate::expr::print::names::Names;
-use crate::expr::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::mechanism::{Chart, Model, Quantity};
 
 /// Columns of text.

@@ -1,10 +1,10 @@
 //! Expressions → polynomials in normal form: products are multiplied out, sines and cosines of sums are written by
 //! those of their angles.
 
-use super::diff::TINY;
-use super::node::{Function, Id, Node, Symbol};
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
-use super::{Expr, Graph};
+use crate::expr::diff::TINY;
+use crate::expr::node::{Function, Id, Node, Symbol};
+use crate::expr::{Expr, Graph};
 
 const UNKNOWN: u32 = u32::MAX;
 /// Largest multiple of an angle that is written by sine and cosine of the angle itself.

@@ -1,8 +1,8 @@
 //! Fewer terms where the squares of some symbols have the sum one, as those of a unit quaternion: what has the same factor
 //! before all four squares needs none of them.
 
-use super::node::Symbol;
 use super::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
+use crate::expr::node::Symbol;
 
 /// Relative difference of coefficients that are taken to be equal.
 const ROUNDING: f64 = 1e-11;
@@ -55,7 +55,7 @@ fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<T
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expr::polynomial::Rank;
+    use crate::algebra::polynomial::Rank;
 
     /// `w x y z` as they stand.
     #[test]
