@@ -1,17 +1,19 @@
 //! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
 
-use super::expression::{parse_expr, parse_name};
-use super::figures::{self, FileFigures};
-use super::{BinaryOp, Expr, ExprKind, Name, words};
-use crate::diag::{Diagnostics, Place, nearest, syn_error};
+use super::figures::FileFigures;
+use super::{Expr, ExprKind, Name, words};
+use crate::diag::{Diagnostics, Place, nearest};
 
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
-use syn::{Attribute, Ident, LitStr, Meta, Token, bracketed, token};
+use syn::{Attribute, Ident, LitStr, Meta};
 
+mod ends;
+mod parse;
 mod slips;
 
-use slips::{names_without_brackets_or_quotes, no_arrow, no_comma, text_alone, unnamed};
+use parse::parse_arguments;
+use slips::{names_without_brackets_or_quotes, unnamed};
 
 /// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions (of an
 /// equilibrium any number), and `key = value` in any order.
@@ -38,24 +40,6 @@ enum Form {
     /// Nothing of this.
     Other,
 }
-
-/// Names for the two ends of a thing in other tools.
-const ENDS: [(&str, &str); 14] = [
-    ("parent", "child"),
-    ("from", "to"),
-    ("base", "follower"),
-    ("predecessor", "successor"),
-    ("inboard", "outboard"),
-    ("frame_a", "frame_b"),
-    ("body_a", "body_b"),
-    ("body1", "body2"),
-    ("link1", "link2"),
-    ("point1", "point2"),
-    ("first", "second"),
-    ("start", "end"),
-    ("a", "b"),
-    ("parent_link", "child_link"),
-];
 
 enum Value {
     Figures(Vec<FileFigures>),
@@ -313,66 +297,6 @@ impl Arguments {
         }
     }
 
-    /// The relation `parent -> child`.
-    pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
-        if self.relation.is_none() {
-            let (place, ends) = self.seeming_ends(known);
-            self.plain.clear();
-            let diagnostic = cx.error(place, "a joint says which bodies it joins");
-            match ends {
-                Some([parent, child]) => diagnostic.help(format!("write `{parent} -> {child}`")),
-                None => diagnostic
-                    .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move"),
-            };
-        }
-        self.relation.take()
-    }
-
-    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away if it has keys.
-    fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
-        let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
-        if let Some((place, a, b)) = self.take_ends() {
-            return (place, spelt(&a, &b));
-        }
-        let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
-        match self.plain.as_slice() {
-            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, spelt(a, b)),
-            [a] => return (place, Some(["parent".to_string(), a.spelt()])),
-            [a, b, ..] => return (place, spelt(a, b)),
-            [] => {}
-        }
-        let stranger = |(name, value): &(Name, Value)| {
-            !known.contains(&name.text.as_str()) && matches!(value, Value::Expr(_))
-        };
-        let Some(at) = self.named.iter().position(stranger) else { return (place, None) };
-        let (name, value) = self.named.remove(at);
-        let Value::Expr(value) = value else { return (name.place, None) };
-        let ends = match (&value.kind, name.text.as_str()) {
-            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => spelt(&two[0], &two[1]),
-            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.spelt(), "child".to_string()]),
-            (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
-                Some(["parent".to_string(), value.spelt()])
-            }
-            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.spelt()]),
-            _ => None,
-        };
-        (name.place, ends)
-    }
-
-    /// Two ends with names of their own, such as `from = a, to = b`.
-    pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
-        let given = |key: &str| {
-            self.named.iter().any(|(name, value)| name.text == key && matches!(value, Value::Expr(_)))
-        };
-        let (a, b) = ENDS.into_iter().find(|(a, b)| given(a) && given(b))?;
-        let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
-        let mut end = |key: &str| match self.take(key) {
-            Some((_, Value::Expr(e))) => Some(e),
-            _ => None,
-        };
-        Some((place, end(a)?, end(b)?))
-    }
-
     /// The relation `a -> b` of what is no joint.
     pub fn take_arrow(&mut self) -> Option<(Expr, Expr)> {
         self.relation.take()
@@ -476,127 +400,4 @@ fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
         }
         _ => None,
     }
-}
-
-fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::Result<Arguments> {
-    let mut arguments = Arguments {
-        relation: None,
-        equations: Vec::new(),
-        plain: Vec::new(),
-        named: Vec::new(),
-        seen: Vec::new(),
-        place: span.into(),
-        owner: String::new(),
-        form,
-    };
-    while !input.is_empty() {
-        parse_argument(input, &mut arguments)?;
-        if !input.is_empty() {
-            if !input.peek(Token![,]) {
-                return Err(no_comma(input));
-            }
-            input.parse::<Token![,]>()?;
-        }
-    }
-    Ok(arguments)
-}
-
-fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Result<()> {
-    use syn::ext::IdentExt;
-    if input.peek(Ident::peek_any)
-        && input.peek2(Token![=])
-        && !input.peek2(Token![==])
-        && !input.peek2(Token![=>])
-    {
-        let key = parse_name(input)?;
-        input.parse::<Token![=]>()?;
-        if input.is_empty() || input.peek(Token![,]) {
-            let message = format!("`{}` has no value", key.text);
-            return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
-        }
-        let value = match key.text.as_str() {
-            "parameters" => Value::Figures(figures::parse(input)?),
-            _ => parse_value(input)?,
-        };
-        if let ("between" | "on", Value::Expr(first)) = (key.text.as_str(), &value)
-            && input.peek(Token![->])
-        {
-            let arrow: Token![->] = input.parse()?;
-            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.spelt());
-            let help = format!("write `between = ({}, {second})`", first.spelt());
-            return Err(syn_error(arrow.spans[0], "expected `,`", &help));
-        }
-        arguments.named.push((key, value));
-        return Ok(());
-    }
-    if input.peek(LitStr) {
-        return Err(text_alone(&input.parse()?));
-    }
-    let first = parse_expr(input)?;
-    if let Some(error) = no_arrow(input, &first, arguments) {
-        return Err(error);
-    }
-    if input.peek(Token![->]) {
-        let arrow: Token![->] = input.parse()?;
-        if input.is_empty() || input.peek(Token![,]) {
-            let help = format!("write `{} -> child`", first.spelt());
-            return Err(syn_error(arrow.spans[1], "nothing stands behind this arrow", &help));
-        }
-        let second = parse_expr(input)?;
-        if arguments.relation.is_some() {
-            let help = "a joint has two ends; write a joint for each `parent -> child`";
-            return Err(syn_error(arrow.spans[0], "a second `parent -> child`", help));
-        }
-        arguments.relation = Some((first, second));
-    } else if (input.peek(Token![=]) && !input.peek(Token![=>])) || input.peek(Token![==]) {
-        let sign = input.span();
-        let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
-        if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
-        }
-        let second = parse_expr(input)?;
-        if !arguments.equations.is_empty() && arguments.form != Form::Equilibrium {
-            return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
-        }
-        arguments.equations.push((first, second));
-    } else {
-        arguments.plain.push(first);
-    }
-    Ok(())
-}
-
-/// Names in quotes, with commas between them.
-fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
-    let mut texts = Vec::new();
-    while !input.is_empty() {
-        if !input.peek(LitStr) {
-            let help = "names in a list are quoted, all of them: `[\"first\", \"second\"]`";
-            return Err(syn_error(input.span(), "expected a name in quotes", help));
-        }
-        texts.push(input.parse()?);
-        if !input.is_empty() {
-            if !input.peek(Token![,]) {
-                return Err(no_comma(input));
-            }
-            input.parse::<Token![,]>()?;
-        }
-    }
-    Ok(texts)
-}
-
-fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
-    if input.peek(LitStr) {
-        return input.parse().map(Value::Text);
-    }
-    if input.peek(token::Bracket) {
-        let ahead = input.fork();
-        let content;
-        bracketed!(content in ahead);
-        if content.peek(LitStr) {
-            let content;
-            bracketed!(content in input);
-            return parse_texts(&content).map(Value::Texts);
-        }
-    }
-    parse_expr(input).map(Value::Expr)
 }

@@ -1,7 +1,7 @@
 //! Fields that are states of first order: parameters that change.
 
-use super::attribute::span_of;
 use super::mechanism::Shell;
+use super::parameter::span_of;
 use super::{Definition, Description, Name, RATE_OF_STATE, Rank, ScalarType, element};
 use crate::diag::Diagnostics;
 use proc_macro2::Span;

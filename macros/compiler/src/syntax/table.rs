@@ -1,7 +1,7 @@
 //! Fields that are tables: functions that are parameters.
 
-use super::attribute::{check_parameter_attributes, span_of};
 use super::mechanism::Shell;
+use super::parameter::{check_parameter_attributes, span_of};
 use super::{Description, Name, Table, element};
 use crate::diag::Diagnostics;
 use syn::spanned::Spanned;

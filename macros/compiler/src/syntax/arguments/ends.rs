@@ -1,0 +1,85 @@
+//! The two ends of a joint: `parent -> child`, and what is written instead of it.
+
+use super::{Arguments, Value};
+use crate::diag::{Diagnostics, Place};
+use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
+
+/// Names for the two ends of a thing in other tools.
+const ENDS: [(&str, &str); 14] = [
+    ("parent", "child"),
+    ("from", "to"),
+    ("base", "follower"),
+    ("predecessor", "successor"),
+    ("inboard", "outboard"),
+    ("frame_a", "frame_b"),
+    ("body_a", "body_b"),
+    ("body1", "body2"),
+    ("link1", "link2"),
+    ("point1", "point2"),
+    ("first", "second"),
+    ("start", "end"),
+    ("a", "b"),
+    ("parent_link", "child_link"),
+];
+
+impl Arguments {
+    /// The relation `parent -> child`.
+    pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
+        if self.relation.is_none() {
+            let (place, ends) = self.seeming_ends(known);
+            self.plain.clear();
+            let diagnostic = cx.error(place, "a joint says which bodies it joins");
+            match ends {
+                Some([parent, child]) => diagnostic.help(format!("write `{parent} -> {child}`")),
+                None => diagnostic
+                    .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move"),
+            };
+        }
+        self.relation.take()
+    }
+
+    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away if it has keys.
+    fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
+        let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
+        if let Some((place, a, b)) = self.take_ends() {
+            return (place, spelt(&a, &b));
+        }
+        let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
+        match self.plain.as_slice() {
+            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, spelt(a, b)),
+            [a] => return (place, Some(["parent".to_string(), a.spelt()])),
+            [a, b, ..] => return (place, spelt(a, b)),
+            [] => {}
+        }
+        let stranger = |(name, value): &(Name, Value)| {
+            !known.contains(&name.text.as_str()) && matches!(value, Value::Expr(_))
+        };
+        let Some(at) = self.named.iter().position(stranger) else { return (place, None) };
+        let (name, value) = self.named.remove(at);
+        let Value::Expr(value) = value else { return (name.place, None) };
+        let ends = match (&value.kind, name.text.as_str()) {
+            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => spelt(&two[0], &two[1]),
+            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.spelt(), "child".to_string()]),
+            (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
+                Some(["parent".to_string(), value.spelt()])
+            }
+            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.spelt()]),
+            _ => None,
+        };
+        (name.place, ends)
+    }
+
+    /// Two ends with names of their own, such as `from = a, to = b`.
+    pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
+        let given = |key: &str| {
+            self.named.iter().any(|(name, value)| name.text == key && matches!(value, Value::Expr(_)))
+        };
+        let (a, b) = ENDS.into_iter().find(|(a, b)| given(a) && given(b))?;
+        let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
+        let mut end = |key: &str| match self.take(key) {
+            Some((_, Value::Expr(e))) => Some(e),
+            _ => None,
+        };
+        Some((place, end(a)?, end(b)?))
+    }
+}

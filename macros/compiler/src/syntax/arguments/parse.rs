@@ -1,0 +1,134 @@
+//! The grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
+
+use super::slips::{no_arrow, no_comma, text_alone};
+use super::{Arguments, Form, Value};
+use crate::diag::syn_error;
+use crate::syntax::expression::{parse_expr, parse_name};
+use crate::syntax::figures;
+use proc_macro2::Span;
+use syn::parse::ParseStream;
+use syn::{Ident, LitStr, Token, bracketed, token};
+
+/// Parses the arguments of an attribute at a place.
+pub fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::Result<Arguments> {
+    let mut arguments = Arguments {
+        relation: None,
+        equations: Vec::new(),
+        plain: Vec::new(),
+        named: Vec::new(),
+        seen: Vec::new(),
+        place: span.into(),
+        owner: String::new(),
+        form,
+    };
+    while !input.is_empty() {
+        parse_argument(input, &mut arguments)?;
+        if !input.is_empty() {
+            if !input.peek(Token![,]) {
+                return Err(no_comma(input));
+            }
+            input.parse::<Token![,]>()?;
+        }
+    }
+    Ok(arguments)
+}
+
+fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Result<()> {
+    use syn::ext::IdentExt;
+    if input.peek(Ident::peek_any)
+        && input.peek2(Token![=])
+        && !input.peek2(Token![==])
+        && !input.peek2(Token![=>])
+    {
+        let key = parse_name(input)?;
+        input.parse::<Token![=]>()?;
+        if input.is_empty() || input.peek(Token![,]) {
+            let message = format!("`{}` has no value", key.text);
+            return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
+        }
+        let value = match key.text.as_str() {
+            "parameters" => Value::Figures(figures::parse(input)?),
+            _ => parse_value(input)?,
+        };
+        if let ("between" | "on", Value::Expr(first)) = (key.text.as_str(), &value)
+            && input.peek(Token![->])
+        {
+            let arrow: Token![->] = input.parse()?;
+            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.spelt());
+            let help = format!("write `between = ({}, {second})`", first.spelt());
+            return Err(syn_error(arrow.spans[0], "expected `,`", &help));
+        }
+        arguments.named.push((key, value));
+        return Ok(());
+    }
+    if input.peek(LitStr) {
+        return Err(text_alone(&input.parse()?));
+    }
+    let first = parse_expr(input)?;
+    if let Some(error) = no_arrow(input, &first, arguments) {
+        return Err(error);
+    }
+    if input.peek(Token![->]) {
+        let arrow: Token![->] = input.parse()?;
+        if input.is_empty() || input.peek(Token![,]) {
+            let help = format!("write `{} -> child`", first.spelt());
+            return Err(syn_error(arrow.spans[1], "nothing stands behind this arrow", &help));
+        }
+        let second = parse_expr(input)?;
+        if arguments.relation.is_some() {
+            let help = "a joint has two ends; write a joint for each `parent -> child`";
+            return Err(syn_error(arrow.spans[0], "a second `parent -> child`", help));
+        }
+        arguments.relation = Some((first, second));
+    } else if (input.peek(Token![=]) && !input.peek(Token![=>])) || input.peek(Token![==]) {
+        let sign = input.span();
+        let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
+        if input.is_empty() || input.peek(Token![,]) {
+            return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
+        }
+        let second = parse_expr(input)?;
+        if !arguments.equations.is_empty() && arguments.form != Form::Equilibrium {
+            return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
+        }
+        arguments.equations.push((first, second));
+    } else {
+        arguments.plain.push(first);
+    }
+    Ok(())
+}
+
+/// Names in quotes, with commas between them.
+fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
+    let mut texts = Vec::new();
+    while !input.is_empty() {
+        if !input.peek(LitStr) {
+            let help = "names in a list are quoted, all of them: `[\"first\", \"second\"]`";
+            return Err(syn_error(input.span(), "expected a name in quotes", help));
+        }
+        texts.push(input.parse()?);
+        if !input.is_empty() {
+            if !input.peek(Token![,]) {
+                return Err(no_comma(input));
+            }
+            input.parse::<Token![,]>()?;
+        }
+    }
+    Ok(texts)
+}
+
+fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
+    if input.peek(LitStr) {
+        return input.parse().map(Value::Text);
+    }
+    if input.peek(token::Bracket) {
+        let ahead = input.fork();
+        let content;
+        bracketed!(content in ahead);
+        if content.peek(LitStr) {
+            let content;
+            bracketed!(content in input);
+            return parse_texts(&content).map(Value::Texts);
+        }
+    }
+    parse_expr(input).map(Value::Expr)
+}

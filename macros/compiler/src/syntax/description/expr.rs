@@ -1,0 +1,112 @@
+//! Words and expressions as written.
+
+use crate::diag::Place;
+
+/// A word of the user's: an identifier of the source or a name of an imported file.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The word.
+    pub text: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// An expression as written; names are not yet resolved.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// A number, finite.
+    Number(f64),
+    /// `length`, `x`, `t`.
+    Name(String),
+    /// `hoop.x`.
+    Field(Box<Expr>, Name),
+    /// `body.at(vector)`.
+    Method(Box<Expr>, Name, Vec<Expr>),
+    /// `sin(angle)`, `rod(mass, length, y)`.
+    Call(Name, Vec<Expr>),
+    /// `-e`.
+    Neg(Box<Expr>),
+    /// `a + b` and its kin, with the operator's place.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>, Place),
+    /// `(a, b)`.
+    Tuple(Vec<Expr>),
+    /// `[a, b, c]`.
+    Array(Vec<Expr>),
+}
+
+/// The operators between two expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`, both division and the slash of `r(y / x)`
+    Div,
+}
+
+impl Expr {
+    /// This expression and everything inside it, from the outside in.
+    pub fn parts(&self) -> Vec<&Expr> {
+        let mut parts = vec![self];
+        let mut at = 0;
+        while let Some(part) = parts.get(at) {
+            at += 1;
+            match &part.kind {
+                ExprKind::Number(_) | ExprKind::Name(_) => {}
+                ExprKind::Field(base, _) | ExprKind::Neg(base) => parts.push(base),
+                ExprKind::Method(base, _, items) => parts.extend([&**base].into_iter().chain(items)),
+                ExprKind::Call(_, items) | ExprKind::Tuple(items) | ExprKind::Array(items) => {
+                    parts.extend(items);
+                }
+                ExprKind::Binary(_, a, b, _) => parts.extend([&**a, b]),
+            }
+        }
+        parts
+    }
+
+    /// The name that it is, if it is one.
+    pub fn name(&self) -> Option<&str> {
+        match &self.kind {
+            ExprKind::Name(name) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The number that it is as written, with its sign.
+    pub fn literal(&self) -> Option<f64> {
+        match &self.kind {
+            ExprKind::Number(n) => Some(*n),
+            ExprKind::Neg(inner) => inner.literal().map(|n| -n),
+            _ => None,
+        }
+    }
+
+    /// A number at a place.
+    pub fn number(value: f64, place: &Place) -> Expr {
+        Expr { kind: ExprKind::Number(value), place: place.clone() }
+    }
+
+    /// A function call at a place.
+    pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
+        let name = Name { text: function.to_string(), place: place.clone() };
+        Expr { kind: ExprKind::Call(name, arguments), place: place.clone() }
+    }
+
+    /// Three numbers as a vector `[a, b, c]` at a place.
+    pub fn vector(values: [f64; 3], place: &Place) -> Expr {
+        let items = values.iter().map(|v| Expr::number(*v, place)).collect();
+        Expr { kind: ExprKind::Array(items), place: place.clone() }
+    }
+}

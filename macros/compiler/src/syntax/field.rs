@@ -1,0 +1,102 @@
+//! The fields of a mechanism: parameters, tables, states and elements.
+
+use super::expression::name;
+use super::mechanism::Shell;
+use super::parameter::{check_parameter_attributes, read_units, span_of, type_name, unify_scalar};
+use super::state::read_state;
+use super::table::{read_table, table_variables};
+use super::{Description, Name, ScalarType, element};
+use crate::diag::{Diagnostics, Place};
+use syn::spanned::Spanned;
+use syn::{Field, Ident};
+
+/// Reads a field.
+pub fn read_field(
+    mut field: Field,
+    generic: Option<&str>,
+    description: &mut Description,
+    shell: &mut Shell,
+    scalar: &mut Option<(ScalarType, Place)>,
+    cx: &mut Diagnostics,
+) {
+    let Some(ident) = field.ident.clone() else { return };
+    let field_name = name(&ident);
+    if ident == "_" {
+        cx.error(ident.span(), "a field of a mechanism needs a name").help("write a name, such as `_unused`");
+        return;
+    }
+    if let Some(variables) = table_variables(&field.ty) {
+        read_table(field, &field_name, variables, description, shell, cx);
+        return;
+    }
+    let Some(kind) = type_name(&field.ty) else {
+        element::unknown_type(&field_name, "", span_of(&field.ty), cx);
+        return;
+    };
+    let found = match kind.to_string().as_str() {
+        "f64" => ScalarType::F64,
+        "f32" => ScalarType::F32,
+        k if Some(k) == generic => ScalarType::Generic(k.to_string()),
+        "State" => {
+            read_state(field, kind, &field_name, description, shell, cx);
+            return;
+        }
+        _ => {
+            element::read_element(&field_name, &kind, &field.attrs, description, cx);
+            shell.elements.push((ident, kind));
+            return;
+        }
+    };
+    check_parameter_attributes(&field_name, &field.attrs, cx);
+    read_units(&field.attrs, description, cx);
+    field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
+    unify_scalar(scalar, found, field.ty.span().into(), cx);
+    // Rust would complain of a second field with the same name as well.
+    if !shell.parameters.iter().any(|known| known.ident == field.ident) {
+        shell.parameters.push(field);
+    }
+    description.parameters.push(field_name);
+}
+
+/// True for the types of parameters and elements.
+pub fn is_known(kind: &Ident, generic: Option<&str>) -> bool {
+    let kind = kind.to_string();
+    matches!(kind.as_str(), "f64" | "f32") || Some(kind.as_str()) == generic || element::is_element(&kind)
+}
+
+/// Fields of a struct have distinct names by Rust's own rules, but Rust says so later and less clearly.
+pub fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
+    let mut names: Vec<&Name> = Vec::new();
+    names.extend(&description.parameters);
+    names.extend(description.tables.iter().map(|t| &t.name));
+    names.extend(description.bodies.iter().map(|b| &b.name));
+    names.extend(description.particles.iter().map(|p| &p.name));
+    names.extend(description.joints.iter().map(|j| &j.name));
+    names.extend(description.actions.iter().map(|a| &a.name));
+    names.extend(description.limits.iter().map(|l| &l.name));
+    names.extend(description.equilibria.iter().map(|e| &e.name));
+    names.extend(description.contacts.iter().map(|c| &c.name));
+    names.extend(description.coordinates.iter().map(|c| &c.name));
+    names.extend(description.frames.iter().map(|f| &f.name));
+    names.extend(description.points.iter().map(|p| &p.name));
+    names.extend(description.definitions.iter().chain(&description.outputs).map(|d| &d.name));
+    names.extend(description.energies.iter().chain(&description.dissipations).map(|(name, _)| name));
+    check_distinct(&names, cx)
+}
+
+/// Reports every name that stands twice, at its second place, and returns it.
+pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
+    let mut sorted: Vec<(usize, &&Name)> = names.iter().enumerate().collect();
+    sorted.sort_by(|a, b| a.1.text.cmp(&b.1.text).then(a.0.cmp(&b.0)));
+    let mut twice = Vec::new();
+    for pair in sorted.windows(2) {
+        let (first, second) = (pair[0].1, pair[1].1);
+        if first.text == second.text {
+            cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text))
+                .note("another field has this name as well")
+                .help("name one of the two otherwise");
+            twice.push(second.text.clone());
+        }
+    }
+    twice
+}

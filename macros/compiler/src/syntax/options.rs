@@ -1,0 +1,303 @@
+//! What the arguments of `#[mechanism(…)]` ask for: gravity, a file with what is read of it, formulation, more functions.
+
+use super::arguments::Arguments;
+use super::figures::{self, FileFigures};
+use super::mechanism::{
+    FileFormat, FileOptions, InputOption, LimitOption, Printed, REQUESTS, Requests, Skipped,
+};
+use super::parameter::unify_scalar;
+use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, skipped, words};
+use crate::diag::{Diagnostics, Place, nearest, one_of};
+use proc_macro2::{Span, TokenStream};
+
+/// Most that `snap` may change a frame by, rad and m.
+const LARGEST_SNAP: f64 = 0.01;
+
+/// The options that have a value.
+const OPTIONS: [&str; 21] = [
+    "gravity",
+    "friction_speed",
+    "formulation",
+    "independent",
+    "scalar",
+    "urdf",
+    "mjcf",
+    "sdf",
+    "base",
+    "passive",
+    "mimic",
+    "limits",
+    "contacts",
+    "inertia",
+    "inputs",
+    "lock",
+    "snap",
+    "parameters",
+    "processor",
+    "skip_passes",
+    "equations",
+];
+
+/// Reads the arguments; those that belong to a file, if one is named.
+pub fn read_options(
+    arguments: TokenStream,
+    description: &mut Description,
+    scalar: &mut Option<(ScalarType, Place)>,
+    requests: &mut Requests,
+    cx: &mut Diagnostics,
+) -> Option<FileOptions> {
+    let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
+    let mistaken: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_word(word, cx)).collect();
+    let asked = words_given(&mut arguments);
+    *requests = read_requests(&asked, &mistaken, &mut arguments, description, cx);
+    description.gravity = arguments.take_expr("gravity", cx);
+    description.friction_speed = arguments.take_expr("friction_speed", cx);
+    description.formulation = read_formulation(&mut arguments, cx);
+    if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
+        let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
+        unify_scalar(scalar, found, place, cx);
+    }
+    let file = read_path(&mut arguments, cx);
+    let file_only =
+        ["base", "passive", "mimic", "limits", "contacts", "inputs", "lock", "snap", "parameters"];
+    if file.is_none() {
+        for option in file_only {
+            if let Some(place) = arguments.place_of(option) {
+                let error = cx.error(place, format!("`{option}` is an option of a file"));
+                if option == "base" {
+                    error.help(
+                        "what moves freely has a field of its own: `#[joint(ground -> body)] pose: Free`",
+                    );
+                }
+                error.help("add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the option");
+                arguments.forget(option);
+            }
+        }
+    }
+    let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
+    let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
+        "ignore" => LimitOption::Ignore,
+        "stops" => LimitOption::Stops,
+        _ => LimitOption::Honour,
+    });
+    let mut choice =
+        |key: &str, words: [&str; 2]| arguments.take_word(key, &words, cx).map(|(word, _)| word == words[1]);
+    let base = choice("base", ["fixed", "free"]).unwrap_or(false);
+    let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
+    let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
+    requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
+    description.inertias = read_inertias(&mut arguments, &asked, description, cx);
+    requests.skipped = skipped::read(&mut arguments, cx);
+    let printed = arguments.take_word("equations", &Printed::WORDS.map(|(word, _)| word), cx);
+    let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
+    requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
+    let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let lock = arguments.take_texts("lock", cx);
+    let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
+    let parameters = read_figures(&mut arguments, description.inertias, cx);
+    requests.file_parameters = !parameters.is_empty();
+    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == figures::INERTIAL);
+    arguments.finish("`#[mechanism]`", &OPTIONS, cx);
+    let (format, path) = file?;
+    Some(FileOptions {
+        format,
+        path,
+        base: if base { Base::Free } else { Base::Fixed },
+        honour_passive: !ignore_passive,
+        follow_mimic: !independent,
+        limits,
+        inertias: description.inertias,
+        inputs,
+        lock,
+        snap,
+        parameters,
+        contacts,
+        collisions: false,
+        visuals: false,
+    })
+}
+
+/// `contacts = file | ignore`: what touches what, of a format that says it.
+fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
+    let place = arguments.place_of("contacts");
+    let asked =
+        arguments.take_word("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
+    let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
+    if let (Some(place), Some(other)) = (place, other) {
+        cx.error(place, format!("{} does not say what touches what", other.article()))
+            .help(super::contact::TOUCHES);
+    }
+    asked && other.is_none()
+}
+
+/// `urdf = "…"` or `mjcf = "…"`.
+fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
+    let mut found: Option<(FileFormat, Name)> = None;
+    for format in FileFormat::ALL {
+        let Some(path) = arguments.take_text(format.word(), cx) else { continue };
+        if let Some((first, _)) = &found {
+            cx.error(path.place.clone(), "a second file")
+                .help(format!("a mechanism is read from one file: remove `{}` or this", first.word()));
+        } else {
+            found = Some((format, path));
+        }
+    }
+    found
+}
+
+/// `inputs = joints | actuators | none`: joints are the motors of a format that declares none.
+fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> InputOption {
+    let words: &[&str] = match format {
+        Some(FileFormat::Mjcf) => &["actuators", "joints", "none"],
+        _ => &["joints", "none"],
+    };
+    let found = arguments
+        .take_word("inputs", words, cx)
+        .map_or(words.first().copied(), |(word, _)| words.iter().copied().find(|known| *known == word));
+    match found {
+        Some("actuators") => InputOption::Actuators,
+        Some("none") => InputOption::None,
+        _ => InputOption::Joints,
+    }
+}
+
+/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of them.
+fn read_inertias(
+    arguments: &mut Arguments,
+    asked: &[(&str, Place)],
+    description: &Description,
+    cx: &mut Diagnostics,
+) -> Inertias {
+    match arguments.take_word("inertia", &["check", "trust", "none"], cx) {
+        Some((word, _)) if word == "trust" => Inertias::Trust,
+        Some((word, _)) if word == "none" => {
+            for (word, place) in asked.iter().filter(|(word, _)| *word != "drawing") {
+                cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
+                    "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
+                ));
+            }
+            if let Formulation::Speeds(_, place) = &description.formulation {
+                cx.error(place.clone(), "a formulation of the dynamics needs inertia")
+                    .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+            }
+            Inertias::None
+        }
+        _ => Inertias::Check,
+    }
+}
+
+/// The tolerance of `snap`: a positive number, small beside an angle that is meant.
+fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
+    match e.kind {
+        ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
+        _ => {
+            cx.error(e.place.clone(), format!("expected a number above 0, at most {LARGEST_SNAP}"))
+                .help("`snap = 1e-4` rounds what is 0.0001 rad or 0.0001 m off at most");
+            None
+        }
+    }
+}
+
+/// `parameters = inertial("trunk")`. Without inertia there are no mass properties.
+fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnostics) -> Vec<FileFigures> {
+    let mut found = figures::check(arguments.take_figures("parameters"), cx);
+    found.retain(|figures| {
+        let good = inertias != Inertias::None || figures.word.text == figures::PLACEMENT;
+        if !good {
+            let word = &figures.word;
+            cx.error(word.place.clone(), format!("`{}` needs inertia", word.text))
+                .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+        }
+        good
+    });
+    found
+}
+
+/// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.
+fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
+    let place = arguments.place_of("independent");
+    let independent = arguments.take_list("independent", cx);
+    let chosen = arguments.take_word("formulation", &["multipliers", "speeds"], cx);
+    match (chosen, place) {
+        (Some((word, at)), Some(_)) if word == "multipliers" => {
+            cx.error(at, "multipliers need no independent speeds")
+                .help("remove `independent`, or write `formulation = speeds`");
+            Formulation::Multipliers
+        }
+        (_, Some(place)) => Formulation::Speeds(independent, place),
+        (Some((word, place)), None) if word == "speeds" => Formulation::Speeds(Vec::new(), place),
+        _ => Formulation::Multipliers,
+    }
+}
+
+/// The words of [`Requests`] among the arguments.
+fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
+    REQUESTS.iter().filter_map(|word| Some((*word, arguments.word_given(word)?))).collect()
+}
+
+/// What the words among the arguments ask for.
+fn read_requests(
+    asked: &[(&str, Place)],
+    mistaken: &[&str],
+    arguments: &mut Arguments,
+    description: &Description,
+    cx: &mut Diagnostics,
+) -> Requests {
+    let is_asked = |word| asked.iter().any(|(known, _)| *known == word);
+    let requests = Requests {
+        derivatives: ["derivatives", "second_derivatives", "momentum_derivatives"].into_iter().any(is_asked),
+        second_derivatives: is_asked("second_derivatives"),
+        momentum_derivatives: is_asked("momentum_derivatives"),
+        centroidal: is_asked("centroidal"),
+        hamilton: is_asked("hamilton"),
+        routh: is_asked("routh"),
+        conserved: is_asked("conserved"),
+        regressor: is_asked("regressor"),
+        sensitivities: is_asked("sensitivities"),
+        packed: is_asked("packed"),
+        prepare: is_asked("prepare"),
+        batch: is_asked("batch"),
+        drawing: is_asked("drawing"),
+        file_parameters: false,
+        file_inertials: false,
+        target_only: false,
+        skipped: Skipped::default(),
+        equations: Printed::default(),
+    };
+    for (word, place) in asked {
+        let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
+        if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
+            cx.error(
+                place.clone(),
+                format!("`{word}` has no meaning here: this mechanism has no parameters"),
+            )
+            .help(format!("remove `{word}`: all numbers are known at compile time"));
+        }
+    }
+    for e in arguments.take_plain() {
+        match e.name() {
+            None => cx.error(e.place.clone(), "expected `name = value`").help("write `gravity = -9.81 * y`"),
+            Some(word) if REQUESTS.contains(&word) => {
+                cx.error(e.place.clone(), format!("`{word}` stands here twice")).help("remove one of the two")
+            }
+            Some(word) if OPTIONS.contains(&word) => {
+                let value = if word == "gravity" { "-9.81 * y" } else { "…" };
+                cx.error(e.place.clone(), format!("`{word}` says nothing"))
+                    .help(format!("write `{word} = {value}`"))
+            }
+            Some(word) => {
+                let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
+                let error = cx.error(e.place.clone(), format!("unknown word `{word}`"));
+                if words::explain(error, words::REQUESTS, word, &[]) {
+                    continue;
+                }
+                if nearest(word, &REQUESTS).is_some() {
+                    error.suggest(word, REQUESTS);
+                }
+                error.help(format!("a word asks for more: {}", one_of(&list)))
+            }
+        };
+    }
+    requests
+}

@@ -1,0 +1,87 @@
+//! What fields that are parameters have in common: a scalar type and a unit; and the types of fields as they are written.
+
+use super::{Description, Name, ScalarType, element};
+use crate::diag::{Diagnostics, Place};
+use proc_macro2::Ident;
+use quote::ToTokens;
+use syn::spanned::Spanned;
+use syn::{Attribute, Type};
+
+pub fn unify_scalar(
+    scalar: &mut Option<(ScalarType, Place)>,
+    found: ScalarType,
+    place: Place,
+    cx: &mut Diagnostics,
+) {
+    match scalar {
+        None => *scalar = Some((found, place)),
+        Some((known, _)) if *known == found => {}
+        Some((known, _)) => {
+            cx.error(
+                place,
+                format!("this parameter is `{}`, but others are `{}`", spell(&found), spell(known)),
+            )
+            .help("all parameters of a mechanism have one scalar type");
+        }
+    }
+}
+
+fn spell(scalar: &ScalarType) -> &str {
+    match scalar {
+        ScalarType::F64 => "f64",
+        ScalarType::F32 => "f32",
+        ScalarType::Generic(name) => name,
+    }
+}
+
+/// From the first to the last token of a type.
+pub fn span_of(ty: &Type) -> Place {
+    let mut tokens = ty.to_token_stream().into_iter();
+    let Some(first) = tokens.next() else { return ty.span().into() };
+    let last = tokens.last().map_or(first.span(), |last| last.span());
+    Place::from(first.span()).to(&last.into())
+}
+
+/// The last word of a plain path without arguments.
+pub fn type_name(ty: &Type) -> Option<Ident> {
+    match ty {
+        Type::Path(p) if p.qself.is_none() => {
+            let last = p.path.segments.last()?;
+            last.arguments.is_empty().then(|| last.ident.clone())
+        }
+        // What a macro has put in the place of a fragment.
+        Type::Group(group) => type_name(&group.elem),
+        Type::Paren(group) => type_name(&group.elem),
+        _ => None,
+    }
+}
+
+/// The `#[unit(…)]` of the parameter that comes next.
+pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut Diagnostics) {
+    let mut units = attributes.iter().filter(|a| element::is_one_of(a, &["unit"]));
+    if let Some(first) = units.next() {
+        let unit = element::read_unit(first, cx);
+        description.units.extend(unit.map(|unit| (description.parameters.len(), unit)));
+    }
+    for second in units {
+        cx.error(second.path().span(), "a parameter has one `#[unit]`");
+    }
+}
+
+pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
+    for attribute in attributes {
+        if element::is_conditional(attribute) {
+            cx.error(attribute.path().span(), "a parameter cannot be conditional").help(element::CONDITIONS);
+        }
+        if let Some(word) = attribute.path().get_ident()
+            && word != "unit"
+            && element::ATTRIBUTES.contains(&word.to_string().as_str())
+        {
+            cx.error(
+                word.span(),
+                format!("`#[{word}]` says how an element is placed, but `{}` is a parameter", field.text),
+            )
+            .help("give the field an element's type, such as `Body` or `Pin`");
+        }
+    }
+}
