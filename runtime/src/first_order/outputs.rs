@@ -1,6 +1,7 @@
 //! Outputs of mechanisms with states of first order.
 
-use super::{Extended, FirstOrder, apart};
+use super::FirstOrder;
+use super::extended::{Extended, apart};
 use crate::{OutputDerivatives, OutputJacobians, Outputs, Real};
 use nalgebra::{SMatrix, SVector};
 

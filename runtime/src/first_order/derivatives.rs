@@ -1,0 +1,171 @@
+//! Derivatives of mechanisms whose states of first order stand among their velocities.
+
+use super::FirstOrderDerivatives;
+use super::extended::{Extended, apart, with_diagonal};
+use crate::derivatives::{ByMotion, unknown};
+use crate::{Real, RheonomicDerivatives};
+use nalgebra::{SMatrix, SVector};
+
+/// A matrix of velocities with something for the states below and beside it.
+fn bordered<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+    block: &SMatrix<T, NV, NV>,
+    below: &SMatrix<T, NX, NV>,
+    beside: &SMatrix<T, NV, NX>,
+    corner: &SMatrix<T, NX, NX>,
+) -> SMatrix<T, NE, NE> {
+    SMatrix::from_fn(|i, j| {
+        let (row, column) = (i.wrapping_sub(NV), j.wrapping_sub(NV));
+        let upper = block.get((i, j)).or(beside.get((i, column)));
+        upper.or(below.get((row, j))).or(corner.get((row, column))).copied().unwrap_or(T::zero())
+    })
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
+    RheonomicDerivatives<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
+where
+    M: FirstOrderDerivatives<NQ, NV, NU, NX, NE>,
+{
+    fn integrate_derivatives(
+        &self,
+        dv: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&apart::<_, NV, NX, NE>(dv).0);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        (with_diagonal::<_, NV, NX, NE>(&by_q, one), with_diagonal::<_, NV, NX, NE>(&by_dv, zero))
+    }
+
+    fn tangent_rate_derivatives(
+        &self,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        let (dv, v) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v).0);
+        let (by_dv, by_v) = self.mechanism.tangent_rate_derivatives(&dv, &v);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        (with_diagonal::<_, NV, NX, NE>(&by_dv, zero), with_diagonal::<_, NV, NX, NE>(&by_v, one))
+    }
+
+    fn integrate_derivatives_at(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &apart::<_, NV, NX, NE>(dv).0);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        (with_diagonal::<_, NV, NX, NE>(&by_q, one), with_diagonal::<_, NV, NX, NE>(&by_dv, zero))
+    }
+
+    fn displacement_rate_derivatives(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> crate::ByMotion<M::Scalar, NE, NE> {
+        let (dv, v) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v).0);
+        let (by_q, by_dv, by_v) = self.mechanism.displacement_rate_derivatives(q, &dv, &v);
+        let (zero, one) = (nalgebra::zero(), nalgebra::one());
+        let square = |m, diagonal| with_diagonal::<_, NV, NX, NE>(&m, diagonal);
+        (square(by_q, zero), square(by_dv, zero), square(by_v, one))
+    }
+
+    fn turning(&self, q: &SVector<M::Scalar, NQ>, v: &SVector<M::Scalar, NE>) -> SMatrix<M::Scalar, NE, NE> {
+        let v = apart::<_, NV, NX, NE>(v).0;
+        with_diagonal::<_, NV, NX, NE>(&self.mechanism.turning(q, &v), nalgebra::zero())
+    }
+
+    fn coriolis_matrix(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SMatrix<M::Scalar, NE, NE> {
+        let (m, v) = self.at(v);
+        with_diagonal::<_, NV, NX, NE>(&m.coriolis_matrix(t, q, &v), nalgebra::zero())
+    }
+
+    fn inverse_dynamics_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        a: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        let (by_q, by_v) = m.inverse_dynamics_derivatives(t, q, &v, &a);
+        let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
+        let by_x = m.inverse_dynamics_by_states(t, q, &v, &a);
+        let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
+        (bordered(&by_q, &-rates.by_q, &zero, &none), bordered(&by_v, &-rates.by_v, &by_x, &-rates.by_x))
+    }
+
+    fn forward_dynamics_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        tau: &SVector<M::Scalar, NE>,
+    ) -> ByMotion<M::Scalar, NE, NE> {
+        let ((m, v), tau) = (self.at(v), apart::<_, NV, NX, NE>(tau).0);
+        let (by_q, by_v, by_force) = m.forward_dynamics_derivatives(t, q, &v, &tau);
+        let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
+        let by_x = m.forward_dynamics_by_states(t, q, &v, &tau);
+        let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
+        (
+            bordered(&by_q, &rates.by_q, &zero, &none),
+            bordered(&by_v, &rates.by_v, &by_x, &rates.by_x),
+            with_diagonal::<_, NV, NX, NE>(&by_force, nalgebra::one()),
+        )
+    }
+
+    fn generalized_forces_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        u: &SVector<M::Scalar, NU>,
+    ) -> ByMotion<M::Scalar, NE, NU> {
+        let (m, v) = self.at(v);
+        let (by_q, by_v, by_u) = m.generalized_forces_derivatives(t, q, &v, u);
+        let rates = m.state_rate_derivatives(t, q, &v, u);
+        let alone = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
+        let by_x = m.generalized_forces_by_states(t, q, &v, u);
+        let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
+        let by_inputs = SMatrix::from_fn(|i, j| {
+            let entry = by_u.get((i, j)).or(rates.by_u.get((i.wrapping_sub(NV), j)));
+            entry.copied().unwrap_or(nalgebra::zero())
+        });
+        (
+            bordered(&by_q, &(rates.by_q - alone.by_q), &zero, &none),
+            bordered(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
+            by_inputs,
+        )
+    }
+
+    /// Not known: nothing tells how momenta change with the states.
+    fn generalized_momentum_derivatives(
+        &self,
+        _t: M::Scalar,
+        _q: &SVector<M::Scalar, NQ>,
+        _v: &SVector<M::Scalar, NE>,
+    ) -> SMatrix<M::Scalar, NE, NE> {
+        unknown()
+    }
+
+    /// Nor is this.
+    fn momentum_rate_derivatives(
+        &self,
+        _t: M::Scalar,
+        _q: &SVector<M::Scalar, NQ>,
+        _v: &SVector<M::Scalar, NE>,
+    ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
+        (unknown(), unknown())
+    }
+
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::constraint::Visitor<M::Scalar, NQ, NE, NU>,
+    {
+        None
+    }
+}

@@ -1,0 +1,311 @@
+//! A mechanism whose states of first order stand among its velocities.
+
+use super::FirstOrder;
+use crate::constraint::{ConstraintError, Projected};
+use crate::contact::Touched;
+use crate::derivatives::ByMotion;
+use crate::private::put_block;
+use crate::{Real, Rheonomic};
+use nalgebra::{SMatrix, SVector};
+
+/// A mechanism with its states of first order among its velocities ([`FirstOrder::extended`]): `v` is `[v, x]`.
+///
+/// A state is a velocity without a place: it has no entry of `q`, `q ⊕ dv` does not depend on its displacement, the mass matrix has
+/// a one on its diagonal, and its bias force is its rate without inputs with the sign turned. `M v̇ + h = τ`, its inverse and their
+/// derivatives hold as for any mechanism; energies are those of the mechanism alone. Its number of states is
+/// [`Rheonomic::FIRST_ORDER`].
+#[derive(Clone, Copy, Debug)]
+pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
+    pub(super) mechanism: &'m M,
+}
+
+/// Velocities and states apart.
+pub fn apart<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+    all: &SVector<T, NE>,
+) -> (SVector<T, NV>, SVector<T, NX>) {
+    let at = |k: usize| all.get(k).copied().unwrap_or(T::zero());
+    (SVector::from_fn(|k, _| at(k)), SVector::from_fn(|k, _| at(NV + k)))
+}
+
+/// Velocities and states in one vector.
+pub fn together<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+    v: &SVector<T, NV>,
+    x: &SVector<T, NX>,
+) -> SVector<T, NE> {
+    SVector::from_fn(|k, _| v.get(k).or(x.get(k.wrapping_sub(NV))).copied().unwrap_or(T::zero()))
+}
+
+/// A square matrix of velocities, and `diagonal` times the identity for the states.
+pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+    block: &SMatrix<T, NV, NV>,
+    diagonal: T,
+) -> SMatrix<T, NE, NE> {
+    let mut all = SMatrix::<T, NE, NE>::from_diagonal_element(diagonal);
+    put_block(&mut all, 0, &block.data.0);
+    all
+}
+
+/// The names, or the units, of all velocities.
+const fn names<const NV: usize, const NX: usize, const NE: usize>(
+    velocities: [&'static str; NV],
+    states: [&'static str; NX],
+) -> [&'static str; NE] {
+    let mut all = [""; NE];
+    let mut k = 0;
+    while k < NE {
+        if k < NV {
+            all[k] = velocities[k];
+        } else if k - NV < NX {
+            all[k] = states[k - NV];
+        }
+        k += 1;
+    }
+    all
+}
+
+impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, NV, NX, NE> {
+    pub(super) fn of(mechanism: &'m M) -> Self {
+        Extended { mechanism }
+    }
+
+    /// The mechanism in the states among these velocities, and the others.
+    pub(super) fn at<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        all: &SVector<T, NE>,
+    ) -> (M, SVector<T, NV>)
+    where
+        M: FirstOrder<NQ, NV, NU, NX, NE, Scalar = T>,
+    {
+        let (v, x) = apart(all);
+        (self.mechanism.with_states(&x), v)
+    }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
+    Rheonomic<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
+where
+    M: FirstOrder<NQ, NV, NU, NX, NE>,
+{
+    type Scalar = M::Scalar;
+    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
+    const VELOCITIES: [&'static str; NE] = names(M::VELOCITIES, M::STATES);
+    const INPUTS: [&'static str; NU] = M::INPUTS;
+    const VELOCITY_UNITS: [&'static str; NE] = names(M::VELOCITY_UNITS, M::STATE_UNITS);
+    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = NX;
+    const SPEEDS: bool = M::SPEEDS;
+
+    fn neutral(&self) -> SVector<M::Scalar, NQ> {
+        self.mechanism.neutral()
+    }
+
+    fn integrate(&self, q: &SVector<M::Scalar, NQ>, dv: &SVector<M::Scalar, NE>) -> SVector<M::Scalar, NQ> {
+        self.mechanism.integrate(q, &apart::<_, NV, NX, NE>(dv).0)
+    }
+
+    fn difference(
+        &self,
+        from: &SVector<M::Scalar, NQ>,
+        to: &SVector<M::Scalar, NQ>,
+    ) -> SVector<M::Scalar, NE> {
+        together(&self.mechanism.difference(from, to), &SVector::<M::Scalar, NX>::zeros())
+    }
+
+    fn tangent_rate(
+        &self,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
+        together(&self.mechanism.tangent_rate(&dv, &v), &x)
+    }
+
+    fn displacement_rate(
+        &self,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
+        together(&self.mechanism.displacement_rate(q, &dv, &v), &x)
+    }
+
+    /// Of the states that the struct holds, should masses depend on them.
+    fn mass_matrix(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> SMatrix<M::Scalar, NE, NE> {
+        with_diagonal::<_, NV, NX, NE>(&self.mechanism.mass_matrix(t, q), nalgebra::one())
+    }
+
+    fn bias_forces(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (m, v) = self.at(v);
+        together(&m.bias_forces(t, q, &v), &-m.state_rates(t, q, &v, &SVector::zeros()))
+    }
+
+    fn inverse_dynamics(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        a: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let ((m, v), (a, rates)) = (self.at(v), apart::<_, NV, NX, NE>(a));
+        let own = rates - m.state_rates(t, q, &v, &SVector::zeros());
+        together(&m.inverse_dynamics(t, q, &v, &a), &own)
+    }
+
+    fn forward_dynamics(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        tau: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let ((m, v), (tau, given)) = (self.at(v), apart::<_, NV, NX, NE>(tau));
+        let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
+        together(&m.forward_dynamics(t, q, &v, &tau), &rates)
+    }
+
+    fn try_forward_dynamics(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        tau: &SVector<M::Scalar, NE>,
+    ) -> Result<SVector<M::Scalar, NE>, ConstraintError> {
+        let ((m, v), (tau, given)) = (self.at(v), apart::<_, NV, NX, NE>(tau));
+        let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
+        Ok(together(&m.try_forward_dynamics(t, q, &v, &tau)?, &rates))
+    }
+
+    fn generalized_forces(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        u: &SVector<M::Scalar, NU>,
+    ) -> SVector<M::Scalar, NE> {
+        let (m, v) = self.at(v);
+        let by_inputs = m.state_rates(t, q, &v, u) - m.state_rates(t, q, &v, &SVector::zeros());
+        together(&m.generalized_forces(t, q, &v, u), &by_inputs)
+    }
+
+    fn kinetic_energy(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> M::Scalar {
+        let (m, v) = self.at(v);
+        m.kinetic_energy(t, q, &v)
+    }
+
+    /// Of the states that the struct holds, should it depend on them.
+    fn potential_energy(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> M::Scalar {
+        self.mechanism.potential_energy(t, q)
+    }
+
+    fn generalized_momentum(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let x = apart::<_, NV, NX, NE>(v).1;
+        let (m, v) = self.at(v);
+        together(&m.generalized_momentum(t, q, &v), &x)
+    }
+
+    fn momentum_rate(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (m, v) = self.at(v);
+        together(&m.momentum_rate(t, q, &v), &m.state_rates(t, q, &v, &SVector::zeros()))
+    }
+
+    fn project(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> Result<Projected<M::Scalar, NQ, NE>, ConstraintError> {
+        let x = apart::<_, NV, NX, NE>(v).1;
+        let (m, v) = self.at(v);
+        let (q, v) = m.project(t, q, &v)?;
+        Ok((q, together(&v, &x)))
+    }
+
+    fn impulse(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        h: M::Scalar,
+        p: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let ((m, v), (p, given)) = (self.at(v), apart::<_, NV, NX, NE>(p));
+        together(&m.impulse(t, q, &v, h, &p), &given)
+    }
+
+    fn is_nearly_singular(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        dv: &SVector<M::Scalar, NE>,
+    ) -> bool {
+        self.mechanism.is_nearly_singular(t, q, &apart::<_, NV, NX, NE>(dv).0)
+    }
+
+    fn acceleration_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        u: &SVector<M::Scalar, NU>,
+    ) -> Option<ByMotion<M::Scalar, NE, NU>> {
+        self.mechanism.extended_derivatives(t, q, v, u)
+    }
+
+    fn carry(
+        &self,
+        t: M::Scalar,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
+        together(&self.mechanism.carry(t, &dv, &v), &x)
+    }
+
+    fn contact_step(
+        &self,
+        t: M::Scalar,
+        (q, v): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NE>),
+        (end, free): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NE>),
+        given: &SVector<M::Scalar, NE>,
+        h: M::Scalar,
+    ) -> Result<Touched<M::Scalar, NQ, NE>, ConstraintError> {
+        let ((m, v), (free, x)) = (self.at(v), apart::<_, NV, NX, NE>(free));
+        let (given, added) = apart::<_, NV, NX, NE>(given);
+        let touched = m.contact_step(t, (q, &v), (end, &free), &given, h)?;
+        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)) })
+    }
+
+    fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::contact::Visitor<M::Scalar, NQ, NE, NU>,
+    {
+        None
+    }
+}
