@@ -44,6 +44,13 @@ pub enum Error {
         /// The frames that there are.
         known: Vec<String>,
     },
+    /// A surface that cannot be drawn over its region.
+    Surface {
+        /// Name of the surface.
+        name: String,
+        /// What is wrong.
+        what: String,
+    },
     /// A file that cannot be read or written.
     File {
         /// The file.
@@ -74,6 +81,7 @@ impl fmt::Display for Error {
                 write!(f, "{what}: expected {expected} entries, found {found}")
             }
             Error::Frame { name, known } => write!(f, "no frame `{name}`; there are {}", known.join(", ")),
+            Error::Surface { name, what } => write!(f, "the surface `{name}`: {what}"),
             Error::File { path, cause } => write!(f, "{}: {cause}", path.display()),
             Error::Mesh { path, what } => write!(f, "{}: {what}", path.display()),
         }

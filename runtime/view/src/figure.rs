@@ -79,7 +79,38 @@ impl Figure {
         Ok(self)
     }
 
-    /// Reads the triangles of a robot's meshes, STL or OBJ, from a folder. A path of the robot's file, `package://name/path` or
+    /// Adds a surface to a frame, to the ground if there is no name: the places, m in the axes of the frame, that a function gives
+    /// for `u` and `w` between these bounds.
+    ///
+    /// Terrain and other surfaces that contacts touch are given by functions without an end. This draws a part of them: of
+    /// `ground.terrain(heights(u, w))` with a [`Table`](linkwork::Table) by `|u, w| [u, w, table.value(u, w)]`. Under a surface no floor
+    /// is drawn.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such frame, if the bounds do not increase, or if a place is not finite.
+    pub fn surface(
+        mut self,
+        name: &str,
+        frame: Option<&str>,
+        u: [f64; 2],
+        w: [f64; 2],
+        place: impl Fn(f64, f64) -> [f64; 3],
+    ) -> Result<Figure, Error> {
+        let frame = frame.map(|frame| self.frame(frame)).transpose()?;
+        let mesh =
+            Mesh::surface(u, w, place).map_err(|what| Error::Surface { name: name.to_string(), what })?;
+        let mut numbers = vec![0.0; Kind::Mesh("").count()];
+        numbers[3..12].copy_from_slice(Matrix3::identity().as_slice());
+        numbers[12..].fill(1.0);
+        self.push(name, Role::Surface, Kind::Mesh(""), [frame; 2], &numbers);
+        if let Some(shape) = self.shapes.last_mut() {
+            shape.mesh = Some(mesh);
+        }
+        Ok(self)
+    }
+
+    /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path of the robot's file, `package://name/path` or
     /// a path of its own, is looked for there with all of it, then with ever fewer of its first folders. Without this call, and
     /// where no file of the name is found, meshes are left out.
     ///
@@ -88,7 +119,7 @@ impl Figure {
     /// If a file of the name is found, and cannot be read as triangles.
     pub fn meshes(mut self, folder: impl AsRef<Path>) -> Result<Figure, Error> {
         for shape in &mut self.shapes {
-            if let Kind::Mesh(path) = shape.kind
+            if let (Kind::Mesh(path), Role::Visual) = (shape.kind, shape.role)
                 && let Some(found) = mesh::find(folder.as_ref(), path)
             {
                 shape.mesh = Some(mesh::read(&found)?);
@@ -181,6 +212,8 @@ impl Shape {
             Kind::Cuboid => vec![(a, at(0), norm(12) / 2.0)],
             Kind::Ellipsoid => vec![(a, at(0), n[12].max(n[13]).max(n[14]))],
             Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, at(0), 0.0), (b, at(3), 0.0)],
+            // As a plane it is as large as one likes.
+            Kind::Mesh(_) if self.role == Role::Surface => Vec::new(),
             Kind::Mesh(_) => match &self.mesh {
                 Some(mesh) => vec![(a, at(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))],
                 None => Vec::new(),

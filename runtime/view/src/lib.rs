@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod collada;
 mod encode;
 mod error;
 mod figure;

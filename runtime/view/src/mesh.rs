@@ -1,7 +1,7 @@
-//! Triangles of files: STL, binary or as text, and OBJ.
+//! Triangles of files: STL, binary or as text, OBJ, and [COLLADA](crate::collada).
 
 use crate::encode::base64;
-use crate::{Error, text};
+use crate::{Error, collada, text};
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -12,9 +12,43 @@ pub(crate) struct Mesh {
 }
 
 /// Most triangles of a file: a page with more would be large and slow.
-const MOST: usize = 200_000;
+pub(crate) const MOST: usize = 200_000;
+
+/// Cells of a surface along each of its two directions.
+const CELLS: u32 = 80;
 
 impl Mesh {
+    /// The part of a surface between bounds of its two parameters, in cells of two triangles.
+    pub(crate) fn surface(
+        u: [f64; 2],
+        w: [f64; 2],
+        place: impl Fn(f64, f64) -> [f64; 3],
+    ) -> Result<Mesh, String> {
+        for [low, high] in [u, w] {
+            if !(low < high && (high - low).is_finite()) {
+                return Err(format!("expected bounds that increase, found {low} and {high}"));
+            }
+        }
+        let at = |[low, high]: [f64; 2], k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
+        let corner = |j: u32, k: u32| {
+            let (u, w) = (at(u, j), at(w, k));
+            let place = place(u, w);
+            match place.iter().all(|x| (*x as f32).is_finite()) {
+                true => Ok(place.map(|x| x as f32)),
+                false => Err(format!("at {u}, {w} its place is not finite")),
+            }
+        };
+        let mut corners = Vec::new();
+        for j in 0..CELLS {
+            for k in 0..CELLS {
+                let [a, b] = [corner(j, k)?, corner(j + 1, k)?];
+                let [c, d] = [corner(j + 1, k + 1)?, corner(j, k + 1)?];
+                corners.extend([a, b, c, a, c, d]);
+            }
+        }
+        Ok(Mesh { corners })
+    }
+
     /// The farthest corner from the origin.
     pub(crate) fn radius(&self) -> f64 {
         let norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
@@ -72,7 +106,8 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     let mesh = match ending.as_deref() {
         Some("stl") => stl(&bytes),
         Some("obj") => obj(&String::from_utf8_lossy(&bytes)),
-        _ => Err("expected an STL or OBJ file".to_string()),
+        Some("dae") => collada::corners(&String::from_utf8_lossy(&bytes)).map(|corners| Mesh { corners }),
+        _ => Err("expected an STL, OBJ or COLLADA (.dae) file".to_string()),
     };
     let mesh = mesh.and_then(|mesh| match mesh.corners.len() / 3 {
         0 => Err("no triangles".to_string()),

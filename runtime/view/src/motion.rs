@@ -35,7 +35,18 @@ pub struct Motion {
     inputs: Vec<Vec<f64>>,
     plots: Vec<Plot>,
     trails: Vec<(usize, [f64; 3], f64)>,
+    arrows: Vec<Arrow>,
     captions: Vec<(f64, String)>,
+}
+
+/// A vector over time.
+#[derive(Clone, Debug)]
+struct Arrow {
+    kind: &'static str,
+    frame: Option<usize>,
+    point: [f64; 3],
+    /// Sample by sample, in the ground's axes.
+    values: Vec<[f64; 3]>,
 }
 
 /// Curves over time.
@@ -108,8 +119,8 @@ impl Motion {
             }
         }
         let inputs = vec![Vec::new(); times.len()];
-        let (plots, trails, captions) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Motion { title: motion(), figure, times, placements, inputs, plots, trails, captions })
+        let (plots, trails, arrows, captions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Motion { title: motion(), figure, times, placements, inputs, plots, trails, arrows, captions })
     }
 
     /// Draws this figure, which has the same frames: with further pieces, or with meshes.
@@ -165,6 +176,68 @@ impl Motion {
         Ok(self)
     }
 
+    /// Draws a force as an arrow that begins at a point of a frame, m in its axes, or of the ground if there is no name: for each
+    /// sample its vector in the ground's axes. The longest force of the motion has half the length of the mechanism.
+    ///
+    /// What contacts exert is the output `contact_force(…)` of the mechanism:
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    /// use linkwork_view::Motion;
+    ///
+    /// #[mechanism(gravity = -9.81 * z, drawing)]
+    /// struct Box {
+    ///     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    ///     block: Body,
+    ///     #[joint(ground -> block, along = z)]
+    ///     height: Sleeve,
+    ///     #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z))]
+    ///     floor: Contact,
+    ///     #[output(contact_force(floor))]
+    ///     load: Vector,
+    /// }
+    ///
+    /// let fall = simulate(&Box {}).from([0.5], [0.0]).method(TimeStepping::step(0.01)).duration(1.0);
+    /// let fall: Vec<_> = fall.collect::<Result<_, _>>()?;
+    /// let loads = fall.iter().map(|s| Ok(Box {}.load(&s.q, &s.v)?.into())).collect::<Result<Vec<[f64; 3]>, ConstraintError>>()?;
+    /// let motion = Motion::of("fall", &Box {}, &fall)?.force(Some("block"), [0.0, 0.0, -0.05], loads)?;
+    /// # Ok::<(), std::boxed::Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there is no such frame, or another number of vectors than of samples.
+    pub fn force(self, frame: Option<&str>, point: [f64; 3], values: Vec<[f64; 3]>) -> Result<Motion, Error> {
+        self.arrow("Force", frame, point, values)
+    }
+
+    /// Draws a torque as an arrow that turns, with all else as for a [`force`](Self::force).
+    ///
+    /// # Errors
+    ///
+    /// If there is no such frame, or another number of vectors than of samples.
+    pub fn torque(
+        self,
+        frame: Option<&str>,
+        point: [f64; 3],
+        values: Vec<[f64; 3]>,
+    ) -> Result<Motion, Error> {
+        self.arrow("Torque", frame, point, values)
+    }
+
+    fn arrow(
+        mut self,
+        kind: &'static str,
+        frame: Option<&str>,
+        point: [f64; 3],
+        values: Vec<[f64; 3]>,
+    ) -> Result<Motion, Error> {
+        let frame = frame.map(|frame| self.figure.frame(frame)).transpose()?;
+        check(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
+        self.arrows.push(Arrow { kind, frame, point, values });
+        Ok(self)
+    }
+
     /// Words that stand below the title from a time on, s.
     pub fn caption(mut self, time: f64, words: &str) -> Motion {
         self.captions.push((time, words.to_string()));
@@ -189,6 +262,7 @@ impl Motion {
     pub(crate) fn json(&self) -> String {
         let mut used = self.figure.used();
         used.extend(self.trails.iter().map(|(frame, ..)| *frame));
+        used.extend(self.arrows.iter().filter_map(|arrow| arrow.frame));
         used.sort_unstable();
         used.dedup();
         let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
@@ -214,6 +288,8 @@ impl Motion {
         let inputs =
             (0..count).map(|k| curve_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream));
         let inputs: Vec<String> = inputs.collect();
+        let arrows = self.arrows.iter().map(|arrow| arrow.json(&shown, renumber, &mut stream));
+        let arrows: Vec<String> = arrows.collect();
         let trails = self.trails.iter().map(|(frame, point, seconds)| {
             text::list([renumber(*frame).to_string(), text::numbers(point), text::number(*seconds)])
         });
@@ -232,6 +308,7 @@ impl Motion {
             ("scene", scene.json()),
             ("plots", text::list(plots)),
             ("inputs", text::list(inputs)),
+            ("arrows", text::list(arrows)),
             ("trails", text::list(trails)),
             ("captions", text::list(captions)),
             ("data", text::json(&stream.text())),
@@ -251,6 +328,15 @@ impl Shape {
     /// It is part of the mechanism itself, which has a size.
     fn is_body(&self) -> bool {
         matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
+    }
+}
+
+impl Arrow {
+    fn json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
+        let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
+        let curves: Vec<String> =
+            (0..3).map(|k| curve_json("", shown.iter().map(|s| self.values[*s][k]), stream)).collect();
+        text::list([text::json(self.kind), frame, text::numbers(&self.point), text::list(curves)])
     }
 }
 
@@ -350,7 +436,9 @@ impl Scene {
         let size = [start.size(), whole.size()].into_iter().find(fits).unwrap_or(1.0);
         let turn = |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
         let normal = motion.figure.normal(turn).filter(|n| n.dot(&up).abs() < 1e-6);
-        let floor = gravity.norm() > 0.0;
+        let terrain = |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
+        let hills = pieces.iter().any(terrain);
+        let floor = gravity.norm() > 0.0 && !hills;
         let plane = motion.figure.ground_along(&up);
         Scene {
             size,

@@ -79,6 +79,13 @@ function decode(motion) {
   const curve = ([name, low, step]) => ({ name, values: read(1).map(n => n < 0 ? NaN : low + n * step) });
   motion.plots = motion.plots.map(([title, unit, curves]) => ({ title, unit, curves: curves.map(curve) }));
   motion.inputs = motion.inputs.map(([, low, step]) => read(1).map(n => n < 0 ? 0 : low + n * step));
+  const vector = (list, k) => list.map(axis => axis[k]);
+  motion.arrows = motion.arrows.map(([kind, frame, point, axes]) => ({ kind, frame, point, axes: axes.map(([, low, step]) => read(1).map(n => n < 0 ? 0 : low + n * step)) }));
+  for (const kind of ["Force", "Torque"]) {
+    const like = motion.arrows.filter(arrow => arrow.kind === kind);
+    const longest = like.reduce((most, arrow) => arrow.axes[0].reduce((most, _, k) => Math.max(most, norm(vector(arrow.axes, k))), most), 0);
+    for (const arrow of like) arrow.scale = longest > 0 ? 1 / longest : 0;
+  }
   motion.largest = Math.max(0, ...motion.inputs.map(list => list.reduce((most, u) => Math.max(most, Math.abs(u)), 0)));
   [motion.size, motion.centre, motion.radius, motion.up, motion.eye, motion.plane, motion.floor] = motion.scene;
   motion.duration = motion.times[motion.count - 1];
@@ -180,7 +187,7 @@ function meshOf([low, step, places, indices]) {
 // ---- Pieces: parts with a form, a colour, and a matrix
 
 const PALETTE = [[0.25, 0.48, 0.79], [0.87, 0.50, 0.24], [0.33, 0.63, 0.45], [0.63, 0.43, 0.74], [0.80, 0.38, 0.43], [0.30, 0.63, 0.70], [0.71, 0.61, 0.28], [0.50, 0.52, 0.62]];
-const TONES = { Link: [0.56, 0.6, 0.66], Joint: [0.27, 0.3, 0.35], Surface: [0.36, 0.55, 0.78], Element: [0.2, 0.62, 0.46], Input: [0.89, 0.32, 0.2] };
+const TONES = { Link: [0.56, 0.6, 0.66], Joint: [0.27, 0.3, 0.35], Surface: [0.36, 0.55, 0.78], Element: [0.2, 0.62, 0.46], Input: [0.89, 0.32, 0.2], Arrow: [0.85, 0.6, 0.1] };
 
 // Parts that stay where they are on a frame: [form, arguments, matrix, alpha].
 function fixed(kind, n, s) {
@@ -254,10 +261,15 @@ function builder(motion, piece, colour, key) {
     };
   return () => [];
 }
+// The parts of an arrow whose vector is given over time, in the ground's axes.
+const pull = (motion, { kind, frame, point, axes, scale }) => (frames, k, part) => {
+  const way = times(axes.map(axis => between(axis, k, part)), scale), at = frame < 0 ? point : moved(frames[frame], point);
+  return arrow(kind, at, way, norm(way), motion.size).map(([name, list, m]) => [name, list, m, TONES.Arrow, 1]);
+};
 // What is said of a piece decides on its colour; the parts of one body have one.
 function paint(motion, index) {
   const bodies = [];
-  return motion.pieces.map((piece, k) => {
+  const pieces = motion.pieces.map((piece, k) => {
     const [kind, role, name, frame] = piece;
     let colour = TONES[role];
     if (!colour) {
@@ -269,6 +281,7 @@ function paint(motion, index) {
     const isFloor = kind === "Plane" && frame < 0 && motion.floor !== null && dot(piece[5].slice(3), motion.up) > 1 - 1e-6;
     return isFloor ? () => [] : builder(motion, piece, colour, index + "." + k);
   });
+  return pieces.concat(motion.arrows.map(arrow => pull(motion, arrow)));
 }
 
 // ---- Drawing by WebGL

@@ -1,0 +1,362 @@
+//! Triangles of COLLADA files (`.dae`), versions 1.4 and 1.5: the meshes of the scene, each where its nodes place it, in metres.
+//!
+//! `up_axis` is not applied. The frames of a robot's file are those of its links, no direction of which is up, and the viewers that such
+//! files are made with (RViz, Gazebo, MoveIt) take the numbers as they stand.
+
+use crate::mesh::MOST;
+use linkwork::nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
+use roxmltree::{Document, Node, NodeId};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// Nodes inside one another, those that are instances counted in.
+const DEEPEST: usize = 64;
+/// Instances of nodes: each may hold further ones, so that a short file could hold any number.
+const MOST_INSTANCES: usize = 100_000;
+
+/// Corners of the triangles, three each, m.
+pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
+    let document = Document::parse(text).map_err(|error| format!("no XML: {error}"))?;
+    let root = document.root_element();
+    if root.tag_name().name() != "COLLADA" {
+        return Err(format!("expected a `COLLADA` element, found `{}`", root.tag_name().name()));
+    }
+    let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
+    let metres = match unit.and_then(|unit| unit.attribute("meter")) {
+        Some(text) => text.trim().parse().ok().filter(|m: &f64| *m > 0.0 && m.is_finite()),
+        None => Some(1.0),
+    };
+    let metres = metres.ok_or("the `meter` of the unit is no length")?;
+    let named = |library: &'static str, of: &'static str| {
+        let libraries = children(root, library).flat_map(move |all| children(all, of));
+        libraries.filter_map(|node| Some((node.attribute("id")?, node))).collect::<HashMap<_, _>>()
+    };
+    let mut reader = Reader {
+        geometries: named("library_geometries", "geometry"),
+        // An instance may show any node that has a name, in a library or not.
+        nodes: root
+            .descendants()
+            .filter(|n| n.tag_name().name() == "node")
+            .filter_map(|n| Some((n.attribute("id")?, n)))
+            .collect(),
+        meshes: HashMap::new(),
+        instances: 0,
+        corners: Vec::new(),
+    };
+    let scenes = named("library_visual_scenes", "visual_scene");
+    let shown = child(root, "scene").and_then(|scene| child(scene, "instance_visual_scene"));
+    let to_metres = Matrix4::new_scaling(metres);
+    match shown {
+        Some(instance) => {
+            let scene = referred(instance, &scenes)?;
+            for node in children(scene, "node") {
+                reader.node(node, &to_metres, 0)?;
+            }
+        }
+        // A file of parts alone.
+        None => {
+            for geometry in children(root, "library_geometries").flat_map(|all| children(all, "geometry")) {
+                reader.geometry(geometry, &to_metres)?;
+            }
+        }
+    }
+    Ok(reader.corners)
+}
+
+/// What a file refers to by name, and the corners so far.
+struct Reader<'a> {
+    geometries: HashMap<&'a str, Node<'a, 'a>>,
+    nodes: HashMap<&'a str, Node<'a, 'a>>,
+    /// Meshes that were read, however many instances they have.
+    meshes: HashMap<NodeId, Vec<Point3<f64>>>,
+    instances: usize,
+    corners: Vec<[f32; 3]>,
+}
+
+impl<'a> Reader<'a> {
+    fn node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
+        self.instances += 1;
+        if depth > DEEPEST || self.instances > MOST_INSTANCES {
+            return Err("nodes inside one another without end".to_string());
+        }
+        let mut place = *above;
+        for part in node.children().filter(Node::is_element) {
+            match part.tag_name().name() {
+                "matrix" | "translate" | "rotate" | "scale" | "skew" | "lookat" => {
+                    place *= transform(part)?;
+                }
+                "node" => self.node(part, &place, depth + 1)?,
+                "instance_node" => self.node(referred(part, &self.nodes)?, &place, depth + 1)?,
+                "instance_geometry" => self.geometry(referred(part, &self.geometries)?, &place)?,
+                "instance_controller" => return Err("meshes with skins are not read".to_string()),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn geometry(&mut self, geometry: Node<'a, 'a>, place: &Matrix4<f64>) -> Result<(), String> {
+        let mesh = match self.meshes.entry(geometry.id()) {
+            Entry::Occupied(found) => found.into_mut(),
+            Entry::Vacant(free) => free.insert(triangles(geometry)?),
+        };
+        within_bounds(self.corners.len() + mesh.len())?;
+        self.corners.extend(mesh.iter().map(|corner| {
+            let at = place.transform_point(corner);
+            [at.x as f32, at.y as f32, at.z as f32]
+        }));
+        Ok(())
+    }
+}
+
+fn within_bounds(corners: usize) -> Result<(), String> {
+    match corners / 3 > MOST {
+        true => Err(format!("more than {MOST} triangles: take a simplified mesh")),
+        false => Ok(()),
+    }
+}
+
+/// Corners of a geometry, three for each triangle, in its own axes.
+fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
+    let Some(mesh) = child(geometry, "mesh") else {
+        let name = geometry.attribute("id").unwrap_or("a geometry without name");
+        return Err(format!("`{name}` is no mesh of polygons"));
+    };
+    let mut corners = Vec::new();
+    for list in mesh.children().filter(Node::is_element) {
+        if ["triangles", "polylist", "polygons", "tristrips", "trifans"].contains(&list.tag_name().name()) {
+            for face in faces(mesh, list)? {
+                match list.tag_name().name() {
+                    "tristrips" => corners.extend(face.windows(3).flatten()),
+                    _ => {
+                        let pairs = face.get(1..).unwrap_or_default().windows(2);
+                        pairs.for_each(|pair| corners.extend([face[0], pair[0], pair[1]]));
+                    }
+                }
+                within_bounds(corners.len())?;
+            }
+        }
+    }
+    Ok(corners)
+}
+
+/// The faces of a list, or its strips or fans.
+fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>, String> {
+    let kind = list.tag_name().name();
+    if child(list, "ph").is_some() {
+        return Err("polygons with holes are not read".to_string());
+    }
+    let (mut vertices, mut stride) = (None, 1_usize);
+    for input in children(list, "input") {
+        let offset: Option<usize> = input.attribute("offset").unwrap_or("0").trim().parse().ok();
+        let offset = offset.ok_or("an `offset` of an input is no count")?;
+        stride = stride.max(offset.saturating_add(1));
+        vertices = vertices.or((input.attribute("semantic") == Some("VERTEX")).then_some((offset, input)));
+    }
+    let (offset, input) = vertices.ok_or_else(|| format!("a `{kind}` has no input for its vertices"))?;
+    let points = positions(mesh, input)?;
+    let corner = |index: &[usize]| {
+        let found = index.get(offset).and_then(|k| points.get(*k)).copied();
+        found.ok_or_else(|| format!("a `{kind}` refers to a vertex that there is not"))
+    };
+    let mut counts = child(list, "vcount").map(numbers::<usize>).transpose()?.unwrap_or_default().into_iter();
+    let mut faces = Vec::new();
+    for indices in children(list, "p") {
+        let indices: Vec<usize> = numbers(indices)?;
+        let corners: Vec<Point3<f64>> = indices.chunks(stride).map(corner).collect::<Result<_, _>>()?;
+        let mut rest = &corners[..];
+        while !rest.is_empty() {
+            let count = match kind {
+                "triangles" => 3,
+                "polylist" => counts.next().unwrap_or(0),
+                _ => rest.len(),
+            };
+            if count == 0 || count > rest.len() {
+                return Err(format!("the vertices of a `{kind}` do not fit its count"));
+            }
+            faces.push(rest[..count].to_vec());
+            rest = &rest[count..];
+        }
+    }
+    Ok(faces)
+}
+
+/// The places of vertices: of the source that the input of positions names.
+fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
+    let within = |of: &str, name: &str| {
+        mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
+    };
+    let name = vertices.attribute("source").unwrap_or_default();
+    let missing = || format!("no source of positions at `{name}`");
+    let vertices = within("vertices", name.trim_start_matches('#')).ok_or_else(missing)?;
+    let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
+    let source = input.and_then(|input| input.attribute("source")).unwrap_or_default();
+    let source = within("source", source.trim_start_matches('#')).ok_or_else(missing)?;
+    let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing)?)?;
+    let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
+    let count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
+        Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is no count")),
+        None => Ok(otherwise),
+    };
+    let (stride, offset) = (count("stride", 3)?, count("offset", 0)?);
+    if stride < 3 {
+        return Err("positions with fewer than three numbers".to_string());
+    }
+    let tuples = list.get(offset..).unwrap_or_default().chunks(stride).filter(|p| p.len() >= 3);
+    Ok(tuples.map(|p| Point3::new(p[0], p[1], p[2])).collect())
+}
+
+/// What an element of a node does to the place of what it holds.
+fn transform(part: Node<'_, '_>) -> Result<Matrix4<f64>, String> {
+    let (kind, n) = (part.tag_name().name(), numbers::<f64>(part)?);
+    Ok(match (kind, n.as_slice()) {
+        ("matrix", n) if n.len() == 16 && n[12..] == [0.0, 0.0, 0.0, 1.0] => Matrix4::from_row_slice(n),
+        ("translate", [x, y, z]) => Matrix4::new_translation(&Vector3::new(*x, *y, *z)),
+        ("scale", [x, y, z]) => Matrix4::new_nonuniform_scaling(&Vector3::new(*x, *y, *z)),
+        ("rotate", [x, y, z, degrees]) => match Unit::try_new(Vector3::new(*x, *y, *z), 0.0) {
+            Some(axis) => Rotation3::from_axis_angle(&axis, degrees.to_radians()).to_homogeneous(),
+            None => Matrix4::identity(),
+        },
+        _ => {
+            let text: String = part.text().unwrap_or_default().chars().take(60).collect();
+            return Err(format!("a node is placed by `{kind}` with `{}`, which is not read", text.trim()));
+        }
+    })
+}
+
+fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+    node.children().find(|child| child.tag_name().name() == name)
+}
+
+fn children<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
+    node.children().filter(move |child| child.tag_name().name() == name)
+}
+
+/// What an instance shows.
+fn referred<'a>(instance: Node<'_, '_>, known: &HashMap<&str, Node<'a, 'a>>) -> Result<Node<'a, 'a>, String> {
+    let url = instance.attribute("url").unwrap_or_default();
+    let found = url.strip_prefix('#').and_then(|name| known.get(name)).copied();
+    found.ok_or_else(|| format!("`{}` refers to `{url}`, which is not there", instance.tag_name().name()))
+}
+
+/// The numbers of an element's text.
+fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
+    let read = |word: &str| {
+        let shown: String = word.chars().take(60).collect();
+        word.parse().map_err(|_| format!("`{shown}` in a `{}` is no number", node.tag_name().name()))
+    };
+    node.text().unwrap_or_default().split_whitespace().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file around a mesh of four corners, a square in the plane z = 0 with edges of 2.
+    fn file(unit: &str, faces: &str, scene: &str) -> String {
+        format!(
+            "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>
+             <asset>{unit}<up_axis>Y_UP</up_axis></asset>
+             <library_geometries><geometry id='square'><mesh>
+             <source id='places'><float_array id='f' count='12'>0 0 0 2 0 0 2 2 0 0 2 0</float_array>
+             <technique_common><accessor source='#f' count='4' stride='3'/></technique_common></source>
+             <source id='normals'><float_array id='n' count='3'>0 0 1</float_array></source>
+             <vertices id='v'><input semantic='POSITION' source='#places'/></vertices>{faces}
+             </mesh></geometry></library_geometries>{scene}</COLLADA>"
+        )
+    }
+
+    fn scene(nodes: &str) -> String {
+        format!(
+            "<library_visual_scenes><visual_scene id='s'>{nodes}</visual_scene></library_visual_scenes>
+             <scene><instance_visual_scene url='#s'/></scene>"
+        )
+    }
+
+    const TWO: &str = "<triangles count='2'><input semantic='VERTEX' source='#v' offset='0'/>
+        <input semantic='NORMAL' source='#normals' offset='1'/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>";
+    const SHOWN: &str = "<instance_geometry url='#square'/>";
+
+    /// The same square, as each kind of list has it.
+    #[test]
+    fn lists_of_faces_agree() {
+        let square = corners(&file("", TWO, "")).unwrap();
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0_f32]];
+        assert_eq!(square, [a, b, c, a, c, d]);
+        let vertex = "<input semantic='VERTEX' source='#v' offset='0'/>";
+        for list in [
+            format!("<polylist count='1'>{vertex}<vcount>4</vcount><p>0 1 2 3</p></polylist>"),
+            format!("<polylist count='2'>{vertex}<vcount>3 3</vcount><p>0 1 2 0 2 3</p></polylist>"),
+            format!("<polygons count='1'>{vertex}<p>0 1 2 3</p></polygons>"),
+            format!("<trifans count='1'>{vertex}<p>0 1 2 3</p></trifans>"),
+        ] {
+            assert_eq!(corners(&file("", &list, "")).as_ref(), Ok(&square), "{list}");
+        }
+        let strip = format!("<tristrips count='1'>{vertex}<p>0 1 3 2</p></tristrips>");
+        assert_eq!(corners(&file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
+    }
+
+    /// Units, and transforms in the order of the nodes: inner ones act first.
+    #[test]
+    fn nodes_place_what_they_hold() {
+        let nodes = format!(
+            "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate><scale>1 3 1</scale>{SHOWN}</node></node>"
+        );
+        let found = corners(&file("<unit meter='0.01' name='cm'/>", TWO, &scene(&nodes))).unwrap();
+        // (2, 2, 0) is stretched to (2, 6, 0), turned to (−6, 2, 0), moved to (94, 2, 0), in centimetres.
+        for (x, y) in found[2].into_iter().zip([0.94, 0.02, 0.0]) {
+            assert!((x - y).abs() < 1e-6, "{:?}", found[2]);
+        }
+        let matrix = format!("<node><matrix>0 -3 0 100 1 0 0 0 0 0 1 0 0 0 0 1</matrix>{SHOWN}</node>");
+        let by_matrix = corners(&file("<unit meter='0.01'/>", TWO, &scene(&matrix))).unwrap();
+        for (a, b) in found.iter().flatten().zip(by_matrix.iter().flatten()) {
+            assert!((a - b).abs() < 1e-6);
+        }
+        let library =
+            "<library_nodes><node id='part'><instance_geometry url='#square'/></node></library_nodes>";
+        let twice = "<node><instance_node url='#part'/><translate>0 0 1</translate><instance_node url='#part'/></node>";
+        let both = corners(&file("", TWO, &[library, &scene(twice)].concat())).unwrap();
+        assert_eq!((both.len(), both[0], both[6]), (12, [0.0; 3], [0.0, 0.0, 1.0]));
+    }
+
+    #[test]
+    fn broken_files_are_told() {
+        let vertex = "<input semantic='VERTEX' source='#v'/>";
+        let faces = |list: &str| corners(&file("", list, ""));
+        let placed = |nodes: &str| corners(&file("", TWO, &scene(nodes)));
+        let bomb = (0..40).map(|k| {
+            let next = format!("<instance_node url='#n{}'/>", k + 1);
+            format!("<node id='n{k}'>{next}{next}</node>")
+        });
+        let bomb: String = bomb.chain([format!("<node id='n40'>{SHOWN}</node>")]).collect();
+        let deep = ["<node>".repeat(30_000), "</node>".repeat(30_000)].concat();
+        for (what, found) in [
+            ("no XML", corners("solid")),
+            ("expected a `COLLADA` element, found `robot`", corners("<robot/>")),
+            ("`meter`", corners(&file("<unit meter='0'/>", TWO, ""))),
+            ("is no number", faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
+            ("a vertex that there is not", faces(&format!("<triangles>{vertex}<p>0 1 9</p></triangles>"))),
+            ("do not fit its count", faces(&format!("<triangles>{vertex}<p>0 1</p></triangles>"))),
+            (
+                "do not fit its count",
+                faces(&format!("<polylist>{vertex}<vcount>4</vcount><p>0 1 2</p></polylist>")),
+            ),
+            ("no input for its vertices", faces("<triangles><p>0 1 2</p></triangles>")),
+            ("holes", faces(&format!("<polygons>{vertex}<ph><p>0 1 2</p></ph></polygons>"))),
+            (
+                "no source of positions at `#w`",
+                faces("<triangles><input semantic='VERTEX' source='#w'/></triangles>"),
+            ),
+            ("refers to `#cube`", placed("<node><instance_geometry url='#cube'/></node>")),
+            ("placed by `skew`", placed("<node><skew>1 2 3</skew></node>")),
+            ("skins", placed("<node><instance_controller url='#c'/></node>")),
+            ("without end", placed("<node id='a'><instance_node url='#a'/></node>")),
+            ("without end", placed(&bomb)),
+            ("without end", placed(&deep)),
+            ("no XML", corners(&format!("<!DOCTYPE x [<!ENTITY e 'lol'>]>{}", file("", TWO, "")))),
+        ] {
+            let message = found.unwrap_err();
+            assert!(message.contains(what), "{what}: {message}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What is drawn on request: surfaces that have no end, arrows of forces, meshes of files that name their unit.
+
+mod support;
+
+use linkwork::drawing::Kind;
+use linkwork::prelude::*;
+use linkwork::simulate::Sample;
+use linkwork_view::{Error, Figure, Motion, Page};
+use serde_json::Value;
+use support::{channels, motions};
+
+#[mechanism(gravity = -9.81 * z, drawing)]
+struct Ball {
+    #[body(mass = 2, inertia = sphere(2, 0.1))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.1), ground.terrain(0.2 * sin(3 * u)))]
+    hills: Contact,
+}
+
+fn sample(t: f64) -> Sample<f64, 7, 6, 0> {
+    let q = [0.2 * t, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0];
+    Sample { t, q: q.into(), v: SVector::zeros(), u: [].into(), event: None }
+}
+
+fn ball() -> Motion {
+    Motion::of("ball", &Ball {}, &[sample(0.0), sample(0.5), sample(1.0)]).unwrap().without_plots()
+}
+
+fn hill(u: f64, w: f64) -> [f64; 3] {
+    [u, w, 0.2 * (3.0 * u).sin()]
+}
+
+fn data(motion: Motion) -> Value {
+    motions(&Page::new("").motion(motion).html()).remove(0)
+}
+
+fn meshes(motion: &Value) -> Vec<&Value> {
+    motion["pieces"].as_array().unwrap().iter().filter(|piece| piece[0] == "Mesh").collect()
+}
+
+/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the camera stays near.
+#[test]
+fn a_terrain_is_drawn_over_a_region() {
+    let plain = data(ball());
+    let figure = ball().drawn().surface("hills", None, [-1.0, 2.0], [-0.5, 0.5], hill).unwrap();
+    let motion = data(ball().figure(figure).unwrap());
+    let [surface] = meshes(&motion)[..] else { panic!("one surface") };
+    assert_eq!((&surface[1], &surface[2]), (&"Surface".into(), &"hills".into()));
+    let (low, step) = (&surface[6][0], &surface[6][1]);
+    let range = |k: usize| {
+        let low = low[k].as_f64().unwrap();
+        [low, low + 65535.0 * step[k].as_f64().unwrap()]
+    };
+    for (found, known) in [0, 1, 2].map(range).iter().zip([[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]) {
+        assert!(found.iter().zip(known).all(|(x, y)| (x - y).abs() < 2e-3), "{found:?} {known:?}");
+    }
+    assert!(plain["scene"][6].is_number() && motion["scene"][6].is_null());
+    assert_eq!(plain["scene"][2], motion["scene"][2]);
+}
+
+#[test]
+fn surfaces_that_cannot_be_drawn_are_told() {
+    let figure = || Figure::of(&Ball {});
+    let message = |found: Result<Figure, Error>| found.unwrap_err().to_string();
+    let pole = message(figure().surface("pole", None, [0.0, 1.0], [0.0, 1.0], |u, w| [u, w, 1.0 / u]));
+    assert!(pole.contains("the surface `pole`") && pole.contains("at 0, 0"), "{pole}");
+    for bounds in [[1.0, 1.0], [0.0, f64::NAN], [f64::NEG_INFINITY, 0.0]] {
+        assert!(message(figure().surface("", None, bounds, [0.0, 1.0], hill)).contains("increase"));
+    }
+    let nowhere = figure().surface("", Some("moon"), [0.0, 1.0], [0.0, 1.0], hill);
+    assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "moon"));
+}
+
+/// Three components of an arrow come back to a step of their range, those that are not finite as none.
+#[test]
+fn arrows_are_the_vectors_that_were_given() {
+    let vectors = vec![[0.0, 1.0, 20.0], [3.0, f64::NAN, 10.0], [-3.0, 0.0, 0.0]];
+    let motion = ball().force(Some("ball"), [0.0, 0.0, -0.1], vectors).unwrap();
+    let motion = data(motion.torque(None, [1.0, 0.0, 0.0], vec![[0.0, 0.0, 2.0]; 3]).unwrap());
+    let arrows = motion["arrows"].as_array().unwrap();
+    assert_eq!((&arrows[0][0], &arrows[0][1]), (&"Force".into(), &0.into()));
+    assert_eq!((&arrows[1][0], &arrows[1][1]), (&"Torque".into(), &(-1).into()));
+    let channels = channels(&motion);
+    let first = channels.len() - 6;
+    let value = |arrow: usize, axis: usize, sample: usize| {
+        let step = channels[first + 3 * arrow + axis][sample];
+        let [low, size] = [1, 2].map(|k| arrows[arrow][3][axis][k].as_f64().unwrap());
+        (step >= 0).then_some(low + size * step as f64)
+    };
+    for (sample, z) in [20.0, 10.0, 0.0].into_iter().enumerate() {
+        assert!((value(0, 2, sample).unwrap() - z).abs() < 0.01);
+    }
+    assert_eq!((value(0, 1, 1), value(1, 2, 2)), (None, Some(2.0)));
+    let few = ball().force(None, [0.0; 3], vec![[0.0; 3]]);
+    assert!(matches!(few, Err(Error::Count { expected: 3, found: 1, .. })));
+}
+
+/// A wedge in centimetres, with edges of 0.1 m, 0.05 m along x.
+#[test]
+fn collada_files_are_read_in_metres() {
+    let mut numbers = [0.0; 15];
+    [3, 7, 11, 12, 13, 14].into_iter().for_each(|k| numbers[k] = 1.0);
+    let figure = Figure::of(&Ball {}).add("wedge", Kind::Mesh("meshes/wedge.dae"), Some("ball"), &numbers);
+    let figure = figure.unwrap().meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
+    let motion = data(ball().figure(figure).unwrap());
+    let low = meshes(&motion)[0][6][0].as_array().unwrap().iter().map(|x| x.as_f64().unwrap());
+    assert!(low.zip([0.05, 0.0, 0.0]).all(|(x, y)| (x - y).abs() < 1e-6));
+}
