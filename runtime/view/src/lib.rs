@@ -5,6 +5,7 @@ mod encode;
 mod error;
 mod figure;
 mod log;
+mod mcap;
 mod mesh;
 mod motion;
 mod page;
@@ -13,6 +14,7 @@ mod text;
 pub use error::Error;
 pub use figure::Figure;
 pub use log::csv;
+pub use mcap::mcap;
 pub use motion::Motion;
 pub use page::Page;
 

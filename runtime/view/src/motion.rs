@@ -374,7 +374,7 @@ fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {
     }
 }
 
-fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
+pub(crate) fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
     let matrix = Matrix3::from_fn(|i, j| plain(p.rotation.matrix()[(i, j)]));
     let at = Vector3::from_fn(|i, _| plain(p.translation.vector[i]));
     IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))

@@ -1,0 +1,228 @@
+//! Logs of motions as MCAP files, which Foxglove, rerun and other tools of robotics open (<https://mcap.dev/spec>).
+//!
+//! A file is a sequence of records: a byte that says what it is, the length of its content in eight bytes, the content. Numbers are little
+//! endian; strings have their length in four bytes before them. Messages are JSON, and stand one behind the other: without chunks and
+//! without compression.
+
+use crate::figure::plain;
+use crate::motion::as_plain;
+use crate::{Error, text};
+use linkwork::nalgebra::UnitQuaternion;
+use linkwork::simulate::Sample;
+use linkwork::{Frames, Rheonomic};
+
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const HEADER: u8 = 0x01;
+const FOOTER: u8 = 0x02;
+const SCHEMA: u8 = 0x03;
+const CHANNEL: u8 = 0x04;
+const MESSAGE: u8 = 0x05;
+const STATISTICS: u8 = 0x0b;
+const DATA_END: u8 = 0x0f;
+
+/// Topics, the names of their schemas, and these. Foxglove knows the first two by their names.
+const TOPICS: [(&str, &str, &str); 3] = [
+    (
+        "/tf",
+        "foxglove.FrameTransforms",
+        r#"{"type":"object","properties":{"transforms":{"type":"array","items":{"type":"object","properties":{"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"parent_frame_id":{"type":"string"},"child_frame_id":{"type":"string"},"translation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},"rotation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}}}}"#,
+    ),
+    (
+        "/joint_states",
+        "foxglove.JointStates",
+        r#"{"type":"object","properties":{"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"joints":{"type":"array","items":{"type":"object","properties":{"name":{"type":"string"},"position":{"type":"number"},"velocity":{"type":"number"}}}}}}"#,
+    ),
+    (
+        "/state",
+        "linkwork.State",
+        r#"{"type":"object","properties":{"t":{"type":"number"},"q":{"type":"object","additionalProperties":{"type":"number"}},"v":{"type":"object","additionalProperties":{"type":"number"}},"u":{"type":"object","additionalProperties":{"type":"number"}}}}"#,
+    ),
+];
+
+/// A motion as the content of an MCAP file, with a message of each of these topics for every sample:
+///
+/// - `/tf`, `foxglove.FrameTransforms`: the frames of the mechanism in the frame `ground`, m, quaternions;
+/// - `/joint_states`, `foxglove.JointStates`: position and velocity of every coordinate that is one number with a rate of its own name,
+///   m and m/s, rad and rad/s;
+/// - `/state`, `linkwork.State`: time, configuration `q`, velocity `v` and inputs `u` by name, with all their digits, for plots.
+///
+/// ```
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * y)]
+/// struct Pendulum {
+///     #[particle(mass = 1)]
+///     bob: Particle,
+///     #[joint(ground -> bob.at(y), about = z)]
+///     hinge: Pin,
+/// }
+///
+/// let fall: Vec<_> = simulate(&Pendulum {}).from([0.5], [0.0]).duration(0.1).sample_every(0.05).collect::<Result<_, _>>()?;
+/// let log = linkwork_view::mcap(&Pendulum {}, &fall)?;
+/// assert!(log.starts_with(b"\x89MCAP0\r\n"));
+/// # let folder = std::env::temp_dir();
+/// std::fs::write(folder.join("fall.mcap"), log)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+///
+/// If a time is negative, not finite, or before the one that precedes it, or if a number is not finite.
+pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+) -> Result<Vec<u8>, Error>
+where
+    M: Rheonomic<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+{
+    let mut file = File::new();
+    let mut last = 0.0;
+    for (k, sample) in samples.iter().enumerate() {
+        let motion = || "mcap".to_string();
+        let t = plain(sample.t);
+        // What 64 bits hold in nanoseconds.
+        if !(t >= last && t < 1e10) {
+            return Err(Error::Time { motion: motion(), sample: k });
+        }
+        last = t;
+        let numbers = sample.q.iter().chain(&sample.v).chain(&sample.u);
+        if numbers.into_iter().any(|x| !plain(*x).is_finite()) {
+            return Err(Error::NotFinite { motion: motion(), sample: k, frame: "state".to_string() });
+        }
+        let nanoseconds = (t * 1e9).round() as u64;
+        let stamp =
+            format!("{{\"sec\":{},\"nsec\":{}}}", nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
+        let mut transforms = Vec::new();
+        for (frame, name) in M::FRAMES.iter().enumerate() {
+            let Some(placement) = mechanism.placement_of(frame, sample.t, &sample.q) else { continue };
+            let placement = as_plain(&placement);
+            let (at, turn) = (placement.translation.vector, placement.rotation);
+            if at.iter().chain(turn.matrix().iter()).any(|x| !x.is_finite()) {
+                return Err(Error::NotFinite { motion: motion(), sample: k, frame: (*name).to_string() });
+            }
+            let q = UnitQuaternion::from_rotation_matrix(&turn);
+            transforms.push(format!(
+                "{{\"timestamp\":{stamp},\"parent_frame_id\":\"ground\",\"child_frame_id\":{},\"translation\":{{\"x\":{},\"y\":{},\"z\":{}}},\"rotation\":{{\"x\":{},\"y\":{},\"z\":{},\"w\":{}}}}}",
+                text::json(name), at.x, at.y, at.z, q.i, q.j, q.k, q.w
+            ));
+        }
+        let joint = |(k, name): (usize, &&str)| {
+            let rate = M::VELOCITIES.iter().position(|rate| rate == name)?;
+            let (x, v) = (plain(sample.q[k]), plain(sample.v[rate]));
+            Some(format!("{{\"name\":{},\"position\":{x},\"velocity\":{v}}}", text::json(name)))
+        };
+        let joints = M::CONFIGURATION.iter().enumerate().filter_map(joint);
+        let by_name = |names: &[&str], numbers: Vec<f64>| {
+            let entries = names.iter().zip(numbers);
+            let entries: Vec<String> = entries.map(|(name, x)| format!("{}:{x}", text::json(name))).collect();
+            format!("{{{}}}", entries.join(","))
+        };
+        let messages = [
+            format!("{{\"transforms\":{}}}", text::list(transforms)),
+            format!("{{\"timestamp\":{stamp},\"joints\":{}}}", text::list(joints)),
+            format!(
+                "{{\"t\":{t},\"q\":{},\"v\":{},\"u\":{}}}",
+                by_name(&M::CONFIGURATION, sample.q.iter().map(|x| plain(*x)).collect()),
+                by_name(&M::VELOCITIES, sample.v.iter().map(|x| plain(*x)).collect()),
+                by_name(&M::INPUTS, sample.u.iter().map(|x| plain(*x)).collect())
+            ),
+        ];
+        for (channel, message) in (1..).zip(&messages) {
+            file.message(channel, nanoseconds, message);
+        }
+    }
+    Ok(file.finish())
+}
+
+/// A file that is being written.
+struct File {
+    bytes: Vec<u8>,
+    /// Number and extent in time of the messages of each channel, ns.
+    count: u32,
+    first: u64,
+    last: u64,
+}
+
+/// The content of a record.
+#[derive(Default)]
+struct Content(Vec<u8>);
+
+impl Content {
+    fn bytes(mut self, bytes: &[u8]) -> Content {
+        self.0.extend_from_slice(bytes);
+        self
+    }
+
+    fn string(self, text: &str) -> Content {
+        self.bytes(&(text.len() as u32).to_le_bytes()).bytes(text.as_bytes())
+    }
+}
+
+impl File {
+    fn new() -> File {
+        let mut file = File { bytes: MAGIC.to_vec(), count: 0, first: 0, last: 0 };
+        file.record(
+            HEADER,
+            Content::default().string("").string(concat!("linkwork ", env!("CARGO_PKG_VERSION"))),
+        );
+        file.describe();
+        file
+    }
+
+    fn record(&mut self, kind: u8, content: Content) {
+        self.bytes.push(kind);
+        self.bytes.extend((content.0.len() as u64).to_le_bytes());
+        self.bytes.extend(content.0);
+    }
+
+    /// Schemas and channels.
+    fn describe(&mut self) {
+        for (id, (topic, name, schema)) in (1_u16..).zip(TOPICS) {
+            let id = id.to_le_bytes();
+            let content = Content::default().bytes(&id).string(name).string("jsonschema").string(schema);
+            self.record(SCHEMA, content);
+            let content = Content::default().bytes(&id).bytes(&id).string(topic).string("json");
+            // No further data.
+            self.record(CHANNEL, content.bytes(&0_u32.to_le_bytes()));
+        }
+    }
+
+    fn message(&mut self, channel: u16, nanoseconds: u64, message: &str) {
+        if self.count == 0 {
+            self.first = nanoseconds;
+        }
+        self.last = nanoseconds;
+        let time = nanoseconds.to_le_bytes();
+        let sequence = (self.count / TOPICS.len() as u32).to_le_bytes();
+        self.count += 1;
+        let head = Content::default().bytes(&channel.to_le_bytes()).bytes(&sequence);
+        self.record(MESSAGE, head.bytes(&time).bytes(&time).bytes(message.as_bytes()));
+    }
+
+    /// All of it, with a summary: schemas, channels, and how many messages there are.
+    fn finish(mut self) -> Vec<u8> {
+        // A checksum of zero is none.
+        let none = 0_u32.to_le_bytes();
+        self.record(DATA_END, Content::default().bytes(&none));
+        let summary = self.bytes.len() as u64;
+        self.describe();
+        let channels = TOPICS.len() as u16;
+        let statistics = Content::default()
+            .bytes(&u64::from(self.count).to_le_bytes())
+            .bytes(&channels.to_le_bytes())
+            .bytes(&u32::from(channels).to_le_bytes())
+            // Attachments, metadata, chunks.
+            .bytes(&[0; 12])
+            .bytes(&self.first.to_le_bytes())
+            .bytes(&self.last.to_le_bytes())
+            .bytes(&(10 * u32::from(channels)).to_le_bytes());
+        let each = u64::from(self.count / u32::from(channels)).to_le_bytes();
+        let statistics =
+            (1..=channels).fold(statistics, |all, channel| all.bytes(&channel.to_le_bytes()).bytes(&each));
+        self.record(STATISTICS, statistics);
+        let footer = Content::default().bytes(&summary.to_le_bytes()).bytes(&0_u64.to_le_bytes());
+        self.record(FOOTER, footer.bytes(&none));
+        self.bytes.extend_from_slice(MAGIC);
+        self.bytes
+    }
+}
