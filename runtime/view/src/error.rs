@@ -1,9 +1,9 @@
-//! Why there is no page.
+//! Why there is no page, log or live view.
 
 use std::fmt;
 use std::path::PathBuf;
 
-/// Why there is no page. Every variant names what is to blame.
+/// Why there is no page, log or live view. Every variant names what is to blame.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
@@ -44,6 +44,13 @@ pub enum Error {
         /// The frames that there are.
         known: Vec<String>,
     },
+    /// A port where no live view can be opened: another program has it, or the system does not give it.
+    Port {
+        /// The port.
+        port: u16,
+        /// What the system says.
+        cause: std::io::Error,
+    },
     /// A surface that cannot be drawn over its region.
     Surface {
         /// Name of the surface.
@@ -81,6 +88,7 @@ impl fmt::Display for Error {
                 write!(f, "{what}: expected {expected} entries, found {found}")
             }
             Error::Frame { name, known } => write!(f, "no frame `{name}`; there are {}", known.join(", ")),
+            Error::Port { port, cause } => write!(f, "port {port} on this machine: {cause}"),
             Error::Surface { name, what } => write!(f, "the surface `{name}`: {what}"),
             Error::File { path, cause } => write!(f, "{}: {cause}", path.display()),
             Error::Mesh { path, what } => write!(f, "{}: {what}", path.display()),
@@ -91,7 +99,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Error::File { cause, .. } => Some(cause),
+            Error::File { cause, .. } | Error::Port { cause, .. } => Some(cause),
             _ => None,
         }
     }

@@ -1,10 +1,10 @@
 //! A motion: where the frames of a figure are at each instant, and what is plotted beside it.
 
 use crate::encode::Stream;
-use crate::figure::{Figure, Shape, plain};
+use crate::figure::{Figure, plain};
+use crate::scene::Scene;
 use crate::{Error, text};
-use linkwork::drawing::{Kind, Role};
-use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
+use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use linkwork::simulate::Sample;
 use linkwork::{Drawn, Rheonomic};
 
@@ -37,6 +37,7 @@ pub struct Motion {
     trails: Vec<(usize, [f64; 3], f64)>,
     arrows: Vec<Arrow>,
     captions: Vec<(f64, String)>,
+    live: bool,
 }
 
 /// A vector over time.
@@ -120,7 +121,19 @@ impl Motion {
         }
         let inputs = vec![Vec::new(); times.len()];
         let (plots, trails, arrows, captions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Ok(Motion { title: motion(), figure, times, placements, inputs, plots, trails, arrows, captions })
+        let live = false;
+        Ok(Motion {
+            title: motion(),
+            figure,
+            times,
+            placements,
+            inputs,
+            plots,
+            trails,
+            arrows,
+            captions,
+            live,
+        })
     }
 
     /// Draws this figure, which has the same frames: with further pieces, or with meshes.
@@ -258,16 +271,34 @@ impl Motion {
         shown
     }
 
-    /// The motion as data of a page.
-    pub(crate) fn json(&self) -> String {
+    /// The frames that something moves with, by number.
+    pub(crate) fn used(&self) -> Vec<usize> {
         let mut used = self.figure.used();
         used.extend(self.trails.iter().map(|(frame, ..)| *frame));
         used.extend(self.arrows.iter().filter_map(|arrow| arrow.frame));
         used.sort_unstable();
         used.dedup();
+        used
+    }
+
+    /// How many numbers are plotted, and how many inputs there are.
+    pub(crate) fn curves(&self) -> [usize; 2] {
+        let inputs = self.inputs.first().map_or(0, Vec::len);
+        [self.plots.iter().map(|plot| plot.curves.len()).sum(), inputs]
+    }
+
+    /// Its samples come from a control loop while it is shown.
+    pub(crate) fn live(mut self) -> Motion {
+        self.live = true;
+        self
+    }
+
+    /// The motion as data of a page.
+    pub(crate) fn json(&self) -> String {
+        let used = self.used();
         let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
         let shown = self.shown();
-        let scene = Scene::of(self, &shown);
+        let scene = Scene::of(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
         let start = self.times[0];
@@ -311,23 +342,12 @@ impl Motion {
             ("arrows", text::list(arrows)),
             ("trails", text::list(trails)),
             ("captions", text::list(captions)),
+            ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
         let fields: Vec<String> =
             fields.into_iter().map(|(name, value)| format!("{}:{value}", text::json(name))).collect();
         format!("{{{}}}", fields.join(","))
-    }
-}
-
-impl Shape {
-    /// Something is to be seen of it.
-    fn is_shown(&self) -> bool {
-        !matches!(self.kind, Kind::Mesh(_)) || self.mesh.is_some()
-    }
-
-    /// It is part of the mechanism itself, which has a size.
-    fn is_body(&self) -> bool {
-        matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
     }
 }
 
@@ -391,128 +411,4 @@ fn continuous(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
         before
     };
     placements.iter().map(next).collect()
-}
-
-/// What a camera has to know.
-struct Scene {
-    /// Extent of the mechanism at the beginning, m.
-    size: f64,
-    /// Middle of the motion.
-    centre: Vector3<f64>,
-    /// From there to the farthest that anything comes, m.
-    radius: f64,
-    /// Against gravity.
-    up: Vector3<f64>,
-    /// Towards the eye.
-    eye: Vector3<f64>,
-    /// All moves in a plane.
-    plane: bool,
-    /// Height of the floor along `up`, where there is gravity.
-    floor: Option<f64>,
-}
-
-impl Scene {
-    fn of(motion: &Motion, shown: &[usize]) -> Scene {
-        let first = &motion.placements[0];
-        let gravity = Vector3::from(motion.figure.gravity);
-        let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
-        let pieces: Vec<&Shape> = motion.figure.shapes.iter().filter(|s| s.is_shown()).collect();
-        let place = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
-            frame.map_or(point, |f| (motion.placements[k][f] * Point3::from(point)).coords)
-        };
-        let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
-        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reach()) {
-            start.add(&place(0, frame, point), beyond);
-        }
-        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reach()).collect();
-        for k in shown {
-            for (frame, point, beyond) in &reaches {
-                let at = place(*k, *frame, *point);
-                lowest = lowest.min(at.dot(&up) - beyond);
-                whole.add(&at, *beyond);
-            }
-        }
-        let fits = |size: &f64| *size > 0.0 && size.is_finite();
-        let size = [start.size(), whole.size()].into_iter().find(fits).unwrap_or(1.0);
-        let turn = |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
-        let normal = motion.figure.normal(turn).filter(|n| n.dot(&up).abs() < 1e-6);
-        let terrain = |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
-        let hills = pieces.iter().any(terrain);
-        let floor = gravity.norm() > 0.0 && !hills;
-        let plane = motion.figure.ground_along(&up);
-        Scene {
-            size,
-            centre: whole.middle(),
-            radius: (whole.size() / 2.0).max(size / 2.0),
-            up,
-            eye: normal.map_or_else(|| sideways(&up), |n| facing(&up, n)),
-            plane: normal.is_some(),
-            floor: plane.or_else(|| (floor && lowest.is_finite()).then_some(lowest - 0.02 * size)),
-        }
-    }
-
-    fn json(&self) -> String {
-        text::list([
-            text::number(self.size),
-            text::numbers(self.centre.as_slice()),
-            text::number(self.radius),
-            text::numbers(self.up.as_slice()),
-            text::numbers(self.eye.as_slice()),
-            self.plane.to_string(),
-            self.floor.map_or("null".to_string(), text::number),
-        ])
-    }
-}
-
-impl Figure {
-    /// Height of a plane of the ground that bodies touch from above.
-    fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
-        let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
-        let level = planes.filter(|s| vector(s, 3).dot(up) > 1.0 - 1e-9);
-        level.map(|s| vector(s, 0).dot(up)).reduce(f64::min)
-    }
-}
-
-/// A box about what is drawn.
-struct Extent {
-    low: Vector3<f64>,
-    high: Vector3<f64>,
-}
-
-impl Default for Extent {
-    fn default() -> Extent {
-        Extent { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
-    }
-}
-
-impl Extent {
-    fn add(&mut self, at: &Vector3<f64>, beyond: f64) {
-        self.low = self.low.inf(&at.add_scalar(-beyond));
-        self.high = self.high.sup(&at.add_scalar(beyond));
-    }
-
-    fn is_empty(&self) -> bool {
-        self.low.x > self.high.x
-    }
-
-    fn size(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { (self.high - self.low).norm() }
-    }
-
-    fn middle(&self) -> Vector3<f64> {
-        if self.is_empty() { Vector3::zeros() } else { (self.low + self.high) / 2.0 }
-    }
-}
-
-/// Towards an eye that sees the ground's first horizontal axis point to the right.
-fn sideways(up: &Vector3<f64>) -> Vector3<f64> {
-    let right = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
-    (right - up * right.dot(up)).cross(up).normalize()
-}
-
-/// Towards an eye that looks along a normal, from the side that shows the larger coordinates to the right.
-fn facing(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-    let right = up.cross(&normal);
-    if right[right.iamax()] < 0.0 { -normal } else { normal }
 }

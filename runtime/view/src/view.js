@@ -89,6 +89,37 @@ function decode(motion) {
   motion.largest = Math.max(0, ...motion.inputs.map(list => list.reduce((most, u) => Math.max(most, Math.abs(u)), 0)));
   [motion.size, motion.centre, motion.radius, motion.up, motion.eye, motion.plane, motion.floor] = motion.scene;
   motion.duration = motion.times[motion.count - 1];
+  if (motion.live) {
+    const open = list => Array.from(list);
+    motion.times = open(motion.times);
+    motion.tracks = motion.tracks.map(track => track.map(open));
+    for (const plot of motion.plots) for (const curve of plot.curves) curve.values = open(curve.values);
+    motion.inputs = motion.inputs.map(open);
+  }
+}
+// Adds a sample of a control loop: the time in eight bytes, then placements, plots and inputs in four bytes each. What is older than
+// some seconds is forgotten; a loop that begins anew begins a new motion. False if the numbers are those of another mechanism.
+const KEPT = 20;
+function receive(motion, data) {
+  const lists = [...motion.tracks.flat(), ...motion.plots.flatMap(plot => plot.curves.map(curve => curve.values)), ...motion.inputs];
+  if (data.byteLength !== 8 + 4 * lists.length) return false;
+  const t = new DataView(data).getFloat64(0, true), numbers = new Float32Array(data, 8), { times } = motion;
+  lists.push(times);
+  if (!motion.heard || t < motion.start + motion.duration) {
+    for (const list of lists) list.length = 0;
+    [motion.start, motion.largest, motion.heard] = [t, 0, true];
+  }
+  times.push(t - motion.start);
+  numbers.forEach((x, k) => { lists[k].push(x); });
+  const last = times.length - 1;
+  // Of the two quaternions of a rotation that which is nearer to the one before.
+  for (const turn of motion.tracks.map(track => track.slice(3)))
+    if (last > 0 && turn.reduce((sum, list) => sum + list[last] * list[last - 1], 0) < 0) for (const list of turn) list[last] = -list[last];
+  for (const list of motion.inputs) motion.largest = Math.max(motion.largest, Math.abs(list[last]));
+  motion.duration = times[last];
+  const old = times.findIndex(x => x >= motion.duration - KEPT);
+  if (old > 60) for (const list of lists) list.splice(0, old);
+  return true;
 }
 // The sample before a time, and how far it is to the next.
 function locate(times, t) {
@@ -279,6 +310,7 @@ function paint(motion, index) {
     }
     // The floor takes the place of a plane of the ground.
     const isFloor = kind === "Plane" && frame < 0 && motion.floor !== null && dot(piece[5].slice(3), motion.up) > 1 - 1e-6;
+    motion.level ||= isFloor;
     return isFloor ? () => [] : builder(motion, piece, colour, index + "." + k);
   });
   return pieces.concat(motion.arrows.map(arrow => pull(motion, arrow)));
@@ -416,7 +448,9 @@ function start(root) {
   const motions = JSON.parse(root.querySelector("script").textContent);
   motions.forEach(decode);
   if (!motions.length) return;
-  const duration = Math.max(...motions.map(motion => motion.duration));
+  const live = motions.find(motion => motion.live);
+  let duration = Math.max(...motions.map(motion => motion.duration));
+  const begin = () => live ? live.times[0] : 0;
   const painted = motions.map(paint);
   const canvas = element("canvas", { tabindex: "0", role: "img", "aria-label": "motion in three dimensions" });
   const stage = element("div", { class: "stage" }, canvas);
@@ -428,7 +462,7 @@ function start(root) {
   const toggle = (text, on) => { const b = element("button", { type: "button", "aria-pressed": on }, text); b.on = on; return b; };
   const frames = toggle("Frames", false), follow = toggle("Follow", motions.some(m => m.radius > 2.5 * m.size));
   const reset = element("button", { type: "button" }, "Reset view");
-  root.append(stage, element("div", { class: "bar" }, play, slider, clock, speed, frames, follow, reset));
+  root.append(stage, element("div", { class: "bar" }, play, slider, clock, ...(live ? [] : [speed]), frames, follow, reset));
   const labels = motions.map(motion => {
     const label = element("div", { class: "label" }, element("b", {}, motion.title), element("span"));
     stage.append(label);
@@ -438,16 +472,16 @@ function start(root) {
   try { pen = painter(canvas); } catch (error) { console.warn(error); }
   if (!pen) { canvas.remove(); stage.append(element("div", { class: "failure" }, "This browser shows no WebGL 2, which the picture needs; the plots below work without it.")); }
 
-  const state = { now: 0, playing: duration > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches, dirty: true };
+  const state = { now: 0, playing: live || duration > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches, dirty: true };
   const plane = motions.every(motion => motion.plane);
   const home = () => ({ yaw: plane ? 0.25 : 0.7, pitch: plane ? 0.2 : 0.38, zoom: 1, shift: [0, 0] });
   let view = home();
   const plots = motions.flatMap((motion, k) => motion.plots.map(plot => ({ ...plot, motion, title: (motions.length > 1 && motion.title ? motion.title + ": " : "") + plot.title })));
-  const figures = plots.map(plot => figure(plot, duration, t => { seek(t); }));
+  const figures = plots.map(plot => figure(plot, () => [begin(), duration > begin() ? duration : begin() + 1], t => { seek(t); }));
   if (figures.length) root.append(element("div", { class: "plots" }, ...figures.map(f => f.node)));
 
-  function setPlaying(on) { state.playing = on && duration > 0; if (state.playing && state.now >= duration) state.now = 0; play.textContent = state.playing ? "Pause" : "Play"; state.dirty = true; }
-  function seek(t) { state.now = clamp(t, 0, duration); state.dirty = true; }
+  function setPlaying(on) { state.playing = on && (live || duration > 0); if (state.playing && (live || state.now >= duration)) state.now = live ? duration : 0; play.textContent = state.playing ? "Pause" : "Play"; state.dirty = true; }
+  function seek(t) { if (live) setPlaying(false); state.now = clamp(t, begin(), duration); state.dirty = true; }
   const press = button => { button.on = !button.on; button.setAttribute("aria-pressed", button.on); state.dirty = true; };
   play.onclick = () => setPlaying(!state.playing);
   slider.oninput = () => { setPlaying(false); seek(+slider.value); };
@@ -550,6 +584,15 @@ function start(root) {
     });
   }
 
+  // Makes room for what a control loop does: the picture grows, and a floor that is not declared goes down.
+  function widen(motion, parts) {
+    for (const [, , m] of parts) {
+      const place = [m[12], m[13], m[14]], beyond = Math.max(...[0, 4, 8].map(k => Math.hypot(m[k], m[k + 1], m[k + 2]))) / 2;
+      motion.radius = Math.max(motion.radius, norm(sub(place, motion.centre)) + beyond);
+      if (motion.floor !== null && !motion.level) motion.floor = Math.min(motion.floor, dot(place, motion.up) - beyond);
+    }
+  }
+
   const mesh = key => { const [m, k] = key.split(".").map(Number); return motions[m].pieces[k][6]; };
 
   function draw() {
@@ -572,6 +615,7 @@ function start(root) {
       labels[index].lastChild.textContent = caption ? caption[1] : "";
       if (!pen || !w || !h) return;
       const parts = painted[index].flatMap(make => make(now, k, part));
+      if (motion.live) widen(motion, parts.filter(([, , , , alpha]) => alpha === 1));
       if (frames.on) parts.push(...triads(motion, now));
       parts.push(...trails(motion, t));
       let target = motion.centre;
@@ -595,11 +639,27 @@ function start(root) {
     figures.forEach(f => f.draw(state.now));
   }
 
+  // A control loop: while it plays the page shows the newest sample, else one that was.
+  function listen() {
+    const socket = new WebSocket(`ws://${location.host}/socket`);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => { live.captions = []; state.dirty = true; };
+    socket.onmessage = ({ data }) => {
+      if (!receive(live, data)) return location.reload();
+      duration = live.duration;
+      [slider.min, slider.max] = [begin(), duration];
+      state.now = state.playing ? duration : clamp(state.now, begin(), duration);
+      state.dirty = true;
+    };
+    socket.onclose = () => { live.captions = [[-1e9, "the program has ended, or cannot be reached"]]; state.dirty = true; setTimeout(listen, 1000); };
+  }
+  if (live) listen();
+
   let before = null;
   function step(time) {
     const passed = Math.min(0.1, (time - (before ?? time)) / 1000);
     before = time;
-    if (state.playing && visible) {
+    if (state.playing && visible && !live) {
       state.now += passed * +speed.value;
       if (state.now > duration) state.now = 0;
       state.dirty = true;
@@ -619,7 +679,7 @@ function ticks(low, high, count) {
   for (let x = Math.ceil(low / step - 1e-9) * step; x <= high + 1e-9 * step && list.length < 50; x += step) list.push(Math.abs(x) < step * 1e-9 ? 0 : x);
   return list;
 }
-function figure(plot, duration, seek) {
+function figure(plot, span, seek) {
   const { motion, curves } = plot, canvas = element("canvas", { role: "img", "aria-label": plot.title }), pen = canvas.getContext("2d");
   const legend = element("div", { class: "legend" });
   const values = curves.map((curve, k) => {
@@ -628,21 +688,26 @@ function figure(plot, duration, seek) {
     return value;
   });
   const node = element("figure", {}, element("figcaption", {}, plot.title + (plot.unit ? ", " + plot.unit : "")), canvas, legend);
-  let low = Infinity, high = -Infinity;
-  for (const { values } of curves) for (const x of values) if (!Number.isNaN(x)) { low = Math.min(low, x); high = Math.max(high, x); }
-  if (!(low <= high)) [low, high] = [-1, 1];
-  const slack = high > low ? 0.06 * (high - low) : Math.max(1e-9, Math.abs(low)) * 0.5;
-  [low, high] = [low - slack, high + slack];
-  const left = 52, bottom = 20, top = 6, end = duration || 1;
-  const across = (t, w) => left + t / end * (w - left - 8), rise = (x, h) => top + (high - x) / (high - low) * (h - top - bottom);
+  let low, high, from, to;
+  const measure = () => {
+    [low, high, [from, to]] = [Infinity, -Infinity, span()];
+    for (const { values } of curves) for (const x of values) if (!Number.isNaN(x)) { low = Math.min(low, x); high = Math.max(high, x); }
+    if (!(low <= high)) [low, high] = [-1, 1];
+    const slack = high > low ? 0.06 * (high - low) : Math.max(1e-9, Math.abs(low)) * 0.5;
+    [low, high] = [low - slack, high + slack];
+  };
+  measure();
+  const left = 52, bottom = 20, top = 6;
+  const across = (t, w) => left + (t - from) / (to - from) * (w - left - 8), rise = (x, h) => top + (high - x) / (high - low) * (h - top - bottom);
   let held = false;
-  const point = e => { const box = canvas.getBoundingClientRect(); seek((e.clientX - box.left - left) / (box.width - left - 8) * end); };
+  const point = e => { const box = canvas.getBoundingClientRect(); seek(from + (e.clientX - box.left - left) / (box.width - left - 8) * (to - from)); };
   canvas.addEventListener("pointerdown", e => { held = true; canvas.setPointerCapture(e.pointerId); point(e); });
   canvas.addEventListener("pointermove", e => { if (held) point(e); });
   for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, () => { held = false; });
   return { node, draw(now) {
     const w = canvas.clientWidth, h = canvas.clientHeight, ratio = devicePixelRatio || 1;
     if (!w || !h) return;
+    if (motion.live) measure();
     if (canvas.width !== Math.round(w * ratio) || canvas.height !== Math.round(h * ratio)) { canvas.width = Math.round(w * ratio); canvas.height = Math.round(h * ratio); }
     const style = getComputedStyle(node), soft = style.getPropertyValue("--lw-soft"), line = style.getPropertyValue("--lw-line"), ink = style.getPropertyValue("--lw-ink");
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -656,7 +721,7 @@ function figure(plot, duration, seek) {
       pen.fillText(digits(x), left - 6, y);
     }
     pen.textAlign = "center"; pen.textBaseline = "top";
-    for (const t of ticks(0, end, w / 80)) pen.fillText(digits(motion.start + t), across(t, w), h - bottom + 5);
+    for (const t of ticks(from, to, w / 80)) pen.fillText(digits(motion.start + t), across(t, w), h - bottom + 5);
     curves.forEach(({ values }, k) => {
       pen.strokeStyle = `rgb(${PALETTE[k % PALETTE.length].map(x => Math.round(255 * x))})`;
       pen.lineWidth = 1.6;

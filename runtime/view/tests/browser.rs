@@ -1,9 +1,12 @@
 //! Pages in a browser, where there is one: no error on the console, the controls are there, and the picture could be made.
 
 use linkwork::prelude::*;
-use linkwork_view::{Motion, Page};
+use linkwork::simulate::Sample;
+use linkwork_view::{Live, Motion, Page};
+use std::io::Read;
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 #[mechanism(gravity = -9.81 * y, drawing)]
 struct Arm {
@@ -32,59 +35,81 @@ fn browser() -> Option<PathBuf> {
     std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|p| p.is_file())
 }
 
-#[test]
-fn a_browser_plays_the_page() {
+fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
+    let t = f64::from(k) / 60.0;
+    Sample { t: start + t, q: [t, -t].into(), v: [1.0, -1.0].into(), u: [t.sin()].into(), event: None }
+}
+
+/// The document of a page after a second and a half, without a word on the console; `meanwhile` is done until then. `None` where
+/// no browser starts.
+fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
     let Some(browser) = browser() else {
         println!("skipped: no Chromium on the path");
-        return;
+        return None;
     };
-    let sample = |k: u32| {
-        let t = f64::from(k) / 60.0;
-        linkwork::simulate::Sample {
-            t,
-            q: [t, -t].into(),
-            v: [1.0, -1.0].into(),
-            u: [t.sin()].into(),
-            event: None,
-        }
-    };
-    let samples: Vec<_> = (0..120).map(sample).collect();
-    let motion = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
-    let page =
-        Page::new("Two arms").motion(motion().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap()).motion(motion());
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-    let file = folder.join("browser.html");
-    page.write(&file).unwrap();
     let mut command = Command::new(browser);
-    command.args([
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--use-gl=angle",
-        "--use-angle=swiftshader",
-    ]);
-    command.args([
-        "--enable-unsafe-swiftshader",
-        "--enable-logging=stderr",
-        "--virtual-time-budget=1500",
-        "--dump-dom",
-    ]);
-    command.arg(format!("--user-data-dir={}", folder.join("browser").display()));
-    let output = command.arg(format!("file://{}", file.display())).output().unwrap();
-    let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    if !output.status.success() || dom.is_empty() {
+    command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--use-gl=angle"]);
+    command.args(["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-logging=stderr"]);
+    command.args(["--virtual-time-budget=1500", "--dump-dom"]);
+    command.arg(format!("--user-data-dir={}", folder.join(name).display())).arg(address);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // It ends when both of its outputs have been read.
+    let [mut out, mut err] = [Vec::new(), Vec::new()];
+    let (mut stdout, mut stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+    std::thread::scope(|scope| {
+        let out = scope.spawn(|| stdout.read_to_end(&mut out));
+        let err = scope.spawn(|| stderr.read_to_end(&mut err));
+        while !(out.is_finished() && err.is_finished()) {
+            meanwhile();
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    });
+    let (dom, log) = (String::from_utf8_lossy(&out), String::from_utf8_lossy(&err));
+    if !child.wait().unwrap().success() || dom.is_empty() {
         println!("skipped: this browser does not start without a screen");
-        return;
+        return None;
     }
     // Of drawing by software it says that it is slow.
     let is_said = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
     let console: Vec<&str> = log.lines().filter(is_said).collect();
     assert!(console.is_empty(), "{console:?}");
     assert!(dom.contains("class=\"play\"") && dom.contains("<output>"), "the controls are there");
+    assert!(!dom.contains("class=\"failure\""), "the picture could be made");
+    Some(dom.into_owned())
+}
+
+#[test]
+fn a_browser_plays_the_page() {
+    let samples: Vec<_> = (0..120).map(|k| sample(0.0, k)).collect();
+    let motion = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
+    let pull = samples.iter().map(|s| [0.0, s.t, 0.0]).collect::<Vec<_>>();
+    let first =
+        motion().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap().force(Some("lower"), [1.0, 0.0, 0.0], pull);
+    let hill = |u: f64, w: f64| [u, -1.0 + 0.1 * u.sin(), w];
+    let second = motion().drawn().surface("hill", None, [-1.0, 1.0], [-1.0, 1.0], hill).unwrap();
+    let page = Page::new("Two arms").motion(first.unwrap()).motion(motion().figure(second).unwrap());
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser.html");
+    page.write(&file).unwrap();
+    let Some(dom) = look("browser", &format!("file://{}", file.display()), || ()) else { return };
     assert_eq!(
         dom.matches("&lt;i&gt;arm&lt;/i&gt;").count(),
         6,
         "two labels, captions and names of two plots"
     );
-    assert!(!dom.contains("class=\"failure\""), "the picture could be made");
+}
+
+/// A loop whose clock begins at 1000 s.
+#[test]
+fn a_browser_looks_on() {
+    let mut live = Live::open(&Arm {}, 0).unwrap();
+    let (url, mut k) = (live.url(), 0);
+    let meanwhile = || {
+        live.show(&sample(1000.0, k)).unwrap();
+        k += 1;
+    };
+    let Some(dom) = look("live", &url, meanwhile) else { return };
+    let (_, clock) = dom.split_once("<output>").unwrap();
+    let time: f64 = clock.split_once(" s<").unwrap().0.parse().unwrap();
+    assert!((1000.0..=sample(1000.0, k).t).contains(&time), "{time}");
 }

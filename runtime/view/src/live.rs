@@ -1,0 +1,134 @@
+//! What a control loop does, in a browser while it runs.
+
+use crate::figure::plain;
+use crate::motion::as_plain;
+use crate::server::Server;
+use crate::{Error, Figure, Motion, Page};
+use linkwork::nalgebra::UnitQuaternion;
+use linkwork::simulate::Sample;
+use linkwork::{Drawn, Rheonomic};
+
+/// A live view: a page on this machine that shows what a running program [shows](Live::show) it.
+///
+/// The page is that of [`Page`]: the last twenty seconds can be looked at while the loop goes on. Any number of browsers up to
+/// sixteen may look. The page is reached from this machine alone, and only pages of its own may open the socket.
+///
+/// ```
+/// use linkwork::prelude::*;
+/// use linkwork_view::Live;
+///
+/// #[mechanism(gravity = -9.81 * y, drawing)]
+/// struct Pendulum {
+///     #[body(mass = 1, com = y, inertia = rod(1, 2, y))]
+///     bob: Body,
+///     #[joint(ground -> bob, about = z)]
+///     hinge: Pin,
+/// }
+///
+/// // Port 0 is any that is free.
+/// let mut live = Live::open(&Pendulum {}, 0)?;
+/// println!("open {}", live.url());
+/// for sample in simulate(&Pendulum {}).from([3.0], [0.0]).duration(2.0).sample_every(0.01) {
+///     // A loop of a real machine waits for its next instant here.
+///     live.show(&sample?)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
+    mechanism: &'m M,
+    /// The frames of the page.
+    frames: Vec<usize>,
+    /// How many coordinates are plotted.
+    plotted: usize,
+    server: Server,
+    /// The newest message: the time in eight bytes, then of each frame its place and its quaternion x y z w, then what is plotted,
+    /// then the inputs, each in four bytes.
+    message: Vec<u8>,
+    samples: u64,
+}
+
+impl<'m, M, const NQ: usize, const NV: usize, const NU: usize> Live<'m, M, NQ, NV, NU>
+where
+    M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+{
+    /// Opens the view at a port of this machine, `http://127.0.0.1:PORT/`; at any that is free if it is 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Port`] if another program has the port, or the system does not give it; those of [`Motion::of`] for the configuration
+    /// zero.
+    pub fn open(mechanism: &'m M, port: u16) -> Result<Self, Error> {
+        Live::of(mechanism, Figure::of(mechanism), port)
+    }
+
+    /// As [`open`](Self::open), with a figure that has more than what is declared: meshes, terrain.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`open`](Self::open), and of [`Motion::figure`].
+    pub fn of(mechanism: &'m M, figure: Figure, port: u16) -> Result<Self, Error> {
+        let name = std::any::type_name::<M>();
+        let name = name.split('<').next().and_then(|path| path.rsplit("::").next()).unwrap_or("Mechanism");
+        let zero = linkwork::nalgebra::convert(0.0);
+        let neutral = Sample {
+            t: zero,
+            q: mechanism.neutral(),
+            v: linkwork::nalgebra::SVector::repeat(zero),
+            u: linkwork::nalgebra::SVector::repeat(zero),
+            event: None,
+        };
+        let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.live();
+        let frames = motion.used();
+        let [plotted, _] = motion.curves();
+        let server = Server::open(port, Page::new(name).motion(motion).html())?;
+        Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
+    }
+
+    /// Where the page is: to be opened in a browser.
+    pub fn url(&self) -> String {
+        format!("http://{}/", self.server.address())
+    }
+
+    /// Shows a sample. It takes the placements of the frames and a copy of them, waits for nothing, and leaves out what a browser
+    /// does not take: of samples that follow each other faster than a screen shows, the newest is seen.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] if a placement, a coordinate or an input is not finite; nothing is shown then.
+    pub fn show(
+        &mut self,
+        sample: &Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>,
+    ) -> Result<(), Error> {
+        self.message.clear();
+        self.message.extend(plain(sample.t).to_le_bytes());
+        let number = self.samples as usize;
+        self.samples += 1;
+        let broken = |frame: &str| Error::NotFinite {
+            motion: "the live view".to_string(),
+            sample: number,
+            frame: frame.to_string(),
+        };
+        for frame in &self.frames {
+            let name = || broken(M::FRAMES.get(*frame).unwrap_or(&""));
+            let placement = self.mechanism.placement_of(*frame, sample.t, &sample.q).ok_or_else(name)?;
+            let placement = as_plain(&placement);
+            let matrix = placement.rotation.matrix();
+            if !placement.translation.vector.iter().chain(matrix.iter()).all(|x| x.is_finite()) {
+                return Err(name());
+            }
+            let turn = UnitQuaternion::from_rotation_matrix(&placement.rotation);
+            let numbers = placement.translation.vector.iter().chain(turn.coords.iter());
+            self.message.extend(numbers.flat_map(|x| (*x as f32).to_le_bytes()));
+        }
+        let state = sample.q.iter().take(self.plotted).chain(&sample.u).map(|x| plain(*x));
+        for x in state.clone().chain([plain(sample.t)]) {
+            if !x.is_finite() {
+                return Err(broken("state"));
+            }
+        }
+        self.message.extend(state.flat_map(|x| (x as f32).to_le_bytes()));
+        self.server.publish(&self.message);
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! What a camera has to know of a motion: where it is, how large, from where it is seen.
+
+use crate::figure::{Figure, Shape};
+use crate::text;
+use linkwork::drawing::{Kind, Role};
+use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
+
+/// What a camera has to know.
+pub(crate) struct Scene {
+    /// Extent of the mechanism at the beginning, m.
+    pub(crate) size: f64,
+    /// Middle of the motion.
+    centre: Vector3<f64>,
+    /// From there to the farthest that anything comes, m.
+    radius: f64,
+    /// Against gravity.
+    up: Vector3<f64>,
+    /// Towards the eye.
+    eye: Vector3<f64>,
+    /// All moves in a plane.
+    plane: bool,
+    /// Height of the floor along `up`, where there is gravity.
+    floor: Option<f64>,
+}
+
+impl Scene {
+    /// Of a figure whose frames are placed sample by sample; of these some are shown, the first among them.
+    pub(crate) fn of(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
+        let first = &placements[0];
+        let gravity = Vector3::from(figure.gravity);
+        let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
+        let pieces: Vec<&Shape> = figure.shapes.iter().filter(|s| s.is_shown()).collect();
+        let place = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
+            frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
+        };
+        let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
+        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reach()) {
+            start.add(&place(0, frame, point), beyond);
+        }
+        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reach()).collect();
+        for k in shown {
+            for (frame, point, beyond) in &reaches {
+                let at = place(*k, *frame, *point);
+                lowest = lowest.min(at.dot(&up) - beyond);
+                whole.add(&at, *beyond);
+            }
+        }
+        let fits = |size: &f64| *size > 0.0 && size.is_finite();
+        let size = [start.size(), whole.size()].into_iter().find(fits).unwrap_or(1.0);
+        let turn = |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
+        let normal = figure.normal(turn).filter(|n| n.dot(&up).abs() < 1e-6);
+        let terrain = |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
+        let hills = pieces.iter().any(terrain);
+        let floor = gravity.norm() > 0.0 && !hills;
+        let plane = figure.ground_along(&up);
+        Scene {
+            size,
+            centre: whole.middle(),
+            radius: (whole.size() / 2.0).max(size / 2.0),
+            up,
+            eye: normal.map_or_else(|| sideways(&up), |n| facing(&up, n)),
+            plane: normal.is_some(),
+            floor: plane.or_else(|| (floor && lowest.is_finite()).then_some(lowest - 0.02 * size)),
+        }
+    }
+
+    pub(crate) fn json(&self) -> String {
+        text::list([
+            text::number(self.size),
+            text::numbers(self.centre.as_slice()),
+            text::number(self.radius),
+            text::numbers(self.up.as_slice()),
+            text::numbers(self.eye.as_slice()),
+            self.plane.to_string(),
+            self.floor.map_or("null".to_string(), text::number),
+        ])
+    }
+}
+
+impl Figure {
+    /// Height of a plane of the ground that bodies touch from above.
+    fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
+        let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
+        let vector = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let level = planes.filter(|s| vector(s, 3).dot(up) > 1.0 - 1e-9);
+        level.map(|s| vector(s, 0).dot(up)).reduce(f64::min)
+    }
+}
+
+impl Shape {
+    /// Something is to be seen of it.
+    pub(crate) fn is_shown(&self) -> bool {
+        !matches!(self.kind, Kind::Mesh(_)) || self.mesh.is_some()
+    }
+
+    /// It is part of the mechanism itself, which has a size.
+    fn is_body(&self) -> bool {
+        matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
+    }
+}
+
+/// A box about what is drawn.
+struct Extent {
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Default for Extent {
+    fn default() -> Extent {
+        Extent { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
+    }
+}
+
+impl Extent {
+    fn add(&mut self, at: &Vector3<f64>, beyond: f64) {
+        self.low = self.low.inf(&at.add_scalar(-beyond));
+        self.high = self.high.sup(&at.add_scalar(beyond));
+    }
+
+    fn is_empty(&self) -> bool {
+        self.low.x > self.high.x
+    }
+
+    fn size(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.high - self.low).norm() }
+    }
+
+    fn middle(&self) -> Vector3<f64> {
+        if self.is_empty() { Vector3::zeros() } else { (self.low + self.high) / 2.0 }
+    }
+}
+
+/// Towards an eye that sees the ground's first horizontal axis point to the right.
+fn sideways(up: &Vector3<f64>) -> Vector3<f64> {
+    let right = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    (right - up * right.dot(up)).cross(up).normalize()
+}
+
+/// Towards an eye that looks along a normal, from the side that shows the larger coordinates to the right.
+fn facing(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    let right = up.cross(&normal);
+    if right[right.iamax()] < 0.0 { -normal } else { normal }
+}

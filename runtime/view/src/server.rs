@@ -1,0 +1,311 @@
+//! A server on this machine for one page, and for web sockets that the page opens (RFC 6455).
+//!
+//! It sends messages and reads none: of the protocol that is a handshake and the frames of a server, for which a library would bring
+//! a dozen crates.
+
+use crate::Error;
+use crate::encode::base64;
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// Connections at a time.
+const MOST: usize = 16;
+/// Bytes of a request without its content.
+const LONGEST_HEAD: usize = 16_384;
+/// A browser that takes nothing for so long is let go.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Between signs of life where there is nothing to show.
+const SILENCE: Duration = Duration::from_millis(500);
+/// Between messages.
+const SCREEN: Duration = Duration::from_nanos(16_000_000);
+
+const BINARY: u8 = 0x82;
+const CLOSE: u8 = 0x88;
+const PING: u8 = 0x89;
+
+/// A server and its thread. It ends where it is dropped.
+#[derive(Debug)]
+pub(crate) struct Server {
+    address: SocketAddr,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    /// Names by which this machine is reached, with the port.
+    hosts: [String; 2],
+    page: String,
+    newest: Mutex<Newest>,
+    news: Condvar,
+    connections: AtomicUsize,
+}
+
+#[derive(Debug, Default)]
+struct Newest {
+    number: u64,
+    message: Vec<u8>,
+    closed: bool,
+}
+
+impl Server {
+    /// Serves a page at a port of this machine, at any that is free if it is 0.
+    pub(crate) fn open(port: u16, page: String) -> Result<Server, Error> {
+        let failed = |cause| Error::Port { port, cause };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        let shared = Arc::new(Shared {
+            hosts: ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", address.port())),
+            page,
+            newest: Mutex::default(),
+            news: Condvar::new(),
+            connections: AtomicUsize::new(0),
+        });
+        let guests = shared.clone();
+        let thread = thread::Builder::new().name("linkwork-view".to_string());
+        let thread = thread.spawn(move || accept(&listener, &guests)).map_err(failed)?;
+        Ok(Server { address, shared, thread: Some(thread) })
+    }
+
+    pub(crate) fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Sends a message to all who look, unless one of them reads at this moment.
+    pub(crate) fn publish(&self, message: &[u8]) {
+        if let Ok(mut newest) = self.shared.newest.try_lock() {
+            newest.number += 1;
+            newest.message.clear();
+            newest.message.extend_from_slice(message);
+            drop(newest);
+            self.shared.news.notify_all();
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.shared.newest().closed = true;
+        self.shared.news.notify_all();
+        // Wakes the thread, which waits for a connection.
+        if TcpStream::connect_timeout(&self.address, PATIENCE).is_ok()
+            && let Some(thread) = self.thread.take()
+        {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    /// A thread that panics leaves the newest message as it was before.
+    fn newest(&self) -> MutexGuard<'_, Newest> {
+        self.newest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// One of the connections, as long as it is there.
+struct Guest(Arc<Shared>);
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        self.0.connections.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+    for stream in listener.incoming() {
+        if shared.newest().closed {
+            return;
+        }
+        let Ok(stream) = stream else {
+            // No file left, say: the next attempt would fail as well.
+            thread::sleep(Duration::from_millis(10));
+            continue;
+        };
+        let before = shared.connections.fetch_add(1, Ordering::Relaxed);
+        let guest = Guest(shared.clone());
+        if before < MOST {
+            // A browser that goes away is no error.
+            let _ = thread::Builder::new().spawn(move || {
+                let _ = serve(stream, &guest.0);
+            });
+        }
+    }
+}
+
+/// Answers a request.
+fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_nodelay(true)?;
+    let head = head(&mut stream)?;
+    let mut words = head.split(' ');
+    let (method, path) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let field = |name: &str| {
+        let mut fields = head.lines().skip(1).filter_map(|line| line.split_once(':'));
+        fields.find(|(known, _)| known.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim())
+    };
+    // Pages of other origins are kept out, also those that reach this machine by a name of theirs.
+    let host = field("host").filter(|host| shared.hosts.iter().any(|known| known == host));
+    let Some(host) = host else { return answer(&mut stream, "403 Forbidden", "") };
+    if field("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
+        return answer(&mut stream, "403 Forbidden", "");
+    }
+    match (method, path, field("sec-websocket-key")) {
+        ("GET", "/socket", Some(key)) => {
+            let accept = base64(&sha1(format!("{key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11").as_bytes()));
+            write!(
+                stream,
+                "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
+            )?;
+            send_news(stream, shared)
+        }
+        ("GET", "/", _) => answer(&mut stream, "200 OK", &shared.page),
+        _ => answer(&mut stream, "404 Not Found", ""),
+    }
+}
+
+/// A request up to its first empty line.
+fn head(stream: &mut TcpStream) -> io::Result<String> {
+    let (mut head, mut part) = (Vec::new(), [0; 1024]);
+    let start = Instant::now();
+    while !head.windows(4).any(|end| end == b"\r\n\r\n") {
+        let count = stream.read(&mut part)?;
+        if count == 0 || head.len() > LONGEST_HEAD || start.elapsed() > PATIENCE {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        head.extend_from_slice(&part[..count]);
+    }
+    String::from_utf8(head).map_err(|_| io::ErrorKind::InvalidData.into())
+}
+
+fn answer(stream: &mut TcpStream, status: &str, page: &str) -> io::Result<()> {
+    let length = page.len();
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n{page}"
+    )
+}
+
+/// Sends the newest message whenever there is one, as fast as a screen shows it.
+fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+    let (mut seen, mut message) = (0, Vec::new());
+    loop {
+        let newest = shared.newest();
+        let waits = |newest: &mut Newest| newest.number == seen && !newest.closed;
+        let waited = shared.news.wait_timeout_while(newest, SILENCE, waits);
+        let (newest, silence) = waited.unwrap_or_else(PoisonError::into_inner);
+        if newest.closed {
+            drop(newest);
+            return send(&mut stream, CLOSE, &1001_u16.to_be_bytes());
+        }
+        seen = newest.number;
+        message.clone_from(&newest.message);
+        drop(newest);
+        match silence.timed_out() {
+            true => send(&mut stream, PING, &[])?,
+            false => send(&mut stream, BINARY, &message)?,
+        }
+        forget_answers(&mut stream)?;
+        thread::sleep(SCREEN);
+    }
+}
+
+/// A frame of a server: what it is, its length, its content.
+fn send(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
+    let mut frame = vec![kind];
+    match content.len() {
+        length @ 0..126 => frame.push(length as u8),
+        length @ 126..65_536 => {
+            frame.push(126);
+            frame.extend((length as u16).to_be_bytes());
+        }
+        length => {
+            frame.push(127);
+            frame.extend((length as u64).to_be_bytes());
+        }
+    }
+    frame.extend_from_slice(content);
+    stream.write_all(&frame)
+}
+
+/// Takes what a browser answers, and tells if it has gone.
+fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
+    stream.set_nonblocking(true)?;
+    let found = loop {
+        match stream.read(&mut [0; 256]) {
+            Ok(0) => break Err(io::ErrorKind::ConnectionAborted.into()),
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => break Ok(()),
+            Err(error) => break Err(error),
+        }
+    };
+    stream.set_nonblocking(false)?;
+    found
+}
+
+/// The digest of the handshake (FIPS 180-4, SHA-1). It keeps no secret: the protocol uses it as a sign that it was understood.
+fn sha1(text: &[u8]) -> [u8; 20] {
+    let mut bytes = text.to_vec();
+    bytes.push(0x80);
+    bytes.resize(bytes.len().next_multiple_of(64), 0);
+    if bytes.len() - text.len() < 9 {
+        bytes.resize(bytes.len() + 64, 0);
+    }
+    let end = bytes.len();
+    bytes[end - 8..].copy_from_slice(&(8 * text.len() as u64).to_be_bytes());
+    let mut h = [0x6745_2301_u32, 0xefcd_ab89, 0x98ba_dcfe, 0x1032_5476, 0xc3d2_e1f0];
+    for block in bytes.chunks_exact(64) {
+        let mut w = [0_u32; 80];
+        for (word, four) in w.iter_mut().zip(block.chunks_exact(4)) {
+            *word = four.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
+        }
+        for k in 16..80 {
+            w[k] = (w[k - 3] ^ w[k - 8] ^ w[k - 14] ^ w[k - 16]).rotate_left(1);
+        }
+        let [mut a, mut b, mut c, mut d, mut e] = h;
+        for (k, word) in w.into_iter().enumerate() {
+            let (f, constant) = match k / 20 {
+                0 => ((b & c) | (!b & d), 0x5a82_7999),
+                1 => (b ^ c ^ d, 0x6ed9_eba1),
+                2 => ((b & c) | (b & d) | (c & d), 0x8f1b_bcdc),
+                _ => (b ^ c ^ d, 0xca62_c1d6_u32),
+            };
+            let sum = a.rotate_left(5).wrapping_add(f).wrapping_add(e).wrapping_add(constant);
+            (e, d, c, b, a) = (d, c, b.rotate_left(30), a, sum.wrapping_add(word));
+        }
+        for (sum, x) in h.iter_mut().zip([a, b, c, d, e]) {
+            *sum = sum.wrapping_add(x);
+        }
+    }
+    let mut digest = [0; 20];
+    for (bytes, word) in digest.chunks_exact_mut(4).zip(h) {
+        bytes.copy_from_slice(&word.to_be_bytes());
+    }
+    digest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The examples of FIPS 180-4's validation, those at the ends of a block, and the handshake of RFC 6455, section 1.3.
+    #[test]
+    fn digests_are_those_of_the_standard() {
+        let hex =
+            |text: &str| sha1(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        assert_eq!(hex(""), "da39a3ee5e6b4b0d3255bfef95601890afd80709");
+        assert_eq!(hex("abc"), "a9993e364706816aba3e25717850c26c9cd0d89d");
+        assert_eq!(
+            hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "84983e441c3bd26ebaae4aa1f95129e5e54670f1"
+        );
+        assert_eq!(hex(&"a".repeat(1_000_000)), "34aa973cd4c4daa4f61eeb2bdbad27316534016f");
+        let handshake = "dGhlIHNhbXBsZSBub25jZQ==258EAFA5-E914-47DA-95CA-C5AB0DC85B11";
+        assert_eq!(base64(&sha1(handshake.as_bytes())), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+    }
+}

@@ -1,0 +1,174 @@
+//! A live view, as a browser of its own sees it: the page, the handshake, the messages, and what is refused.
+
+use linkwork::prelude::*;
+use linkwork::simulate::Sample;
+use linkwork_view::{Error, Live};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+#[mechanism(gravity = -9.81 * y, drawing)]
+struct Arm {
+    #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
+    upper: Body,
+    #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
+    lower: Body,
+    #[joint(ground -> upper, about = z)]
+    shoulder: Pin,
+    #[joint(upper.at(x) -> lower, about = z)]
+    elbow: Pin,
+    #[acts(on = shoulder)]
+    motor: Torque,
+}
+
+fn sample(t: f64) -> Sample<f64, 2, 2, 1> {
+    Sample { t, q: [0.5 + t, -1.0].into(), v: [1.0, 0.0].into(), u: [3.5].into(), event: None }
+}
+
+/// A connection, with what a browser asks first; `fields` has further lines.
+fn ask(url: &str, path: &str, fields: &str) -> TcpStream {
+    let host = url.trim_start_matches("http://").trim_end_matches('/');
+    let mut stream = TcpStream::connect(host).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    let host = if fields.contains("Host:") { String::new() } else { format!("Host: {host}\r\n") };
+    write!(stream, "GET {path} HTTP/1.1\r\n{host}{fields}\r\n").unwrap();
+    stream
+}
+
+const UPGRADE: &str = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+
+fn text(mut stream: TcpStream) -> String {
+    let mut text = String::new();
+    stream.read_to_string(&mut text).unwrap();
+    text
+}
+
+fn take<const N: usize>(stream: &mut TcpStream) -> [u8; N] {
+    let mut bytes = [0; N];
+    stream.read_exact(&mut bytes).unwrap();
+    bytes
+}
+
+/// An open socket, behind the answer to its handshake.
+fn socket(url: &str) -> TcpStream {
+    let mut stream = ask(url, "/socket", UPGRADE);
+    let mut head = Vec::new();
+    while !head.ends_with(b"\r\n\r\n") {
+        head.extend(take::<1>(&mut stream));
+    }
+    let head = String::from_utf8(head).unwrap();
+    assert!(
+        head.starts_with("HTTP/1.1 101 ") && head.contains("Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"),
+        "{head}"
+    );
+    stream
+}
+
+/// The next frame that is no sign of life: what it is, its content.
+fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
+    loop {
+        let [kind, length] = take(stream);
+        let length = match length {
+            126 => usize::from(u16::from_be_bytes(take(stream))),
+            length => usize::from(length),
+        };
+        let mut content = vec![0; length];
+        stream.read_exact(&mut content).unwrap();
+        if kind != 0x89 {
+            return (kind, content);
+        }
+    }
+}
+
+#[test]
+fn a_browser_gets_the_page_and_then_samples() {
+    let mut live = Live::open(&Arm {}, 0).unwrap();
+    let page = text(ask(&live.url(), "/", ""));
+    assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("<title>Arm</title>"));
+    let (_, data) = page.split_once("<script type=\"application/json\">").unwrap();
+    let motions: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let motion = &motions[0];
+    assert_eq!(motion["live"], true);
+    // One that looks on before there is anything, and one that comes later, get the same.
+    let mut early = socket(&live.url());
+    let sample = sample(0.25);
+    live.show(&sample).unwrap();
+    let (kind, message) = frame(&mut early);
+    assert_eq!((kind, frame(&mut socket(&live.url()))), (0x82, (0x82, message.clone())));
+
+    assert_eq!(message[..8], 0.25_f64.to_le_bytes());
+    let numbers: Vec<f64> =
+        message[8..].chunks(4).map(|x| f64::from(f32::from_le_bytes(x.try_into().unwrap()))).collect();
+    let frames = motion["frames"].as_array().unwrap();
+    assert_eq!(numbers.len(), 7 * frames.len() + 2 + 1);
+    for (name, n) in frames.iter().zip(numbers.chunks(7)) {
+        let k = Arm::FRAMES.iter().position(|known| name == known).unwrap();
+        let placement = Arm {}.frame_placements(&sample.q)[k];
+        assert!((0..3).all(|k| (n[k] - placement.translation.vector[k]).abs() < 1e-6));
+        // Turned about z by the sum of the angles.
+        let angle = if name == "upper" { 0.75 } else { -0.25_f64 };
+        let known = [0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()];
+        assert!(n[3..].iter().zip(known).all(|(x, y)| (x - y).abs() < 1e-6), "{name} {n:?}");
+    }
+    assert_eq!(numbers[7 * frames.len()..], [0.75, -1.0, 3.5]);
+    // The end of the program is told.
+    drop(live);
+    let (kind, reason) = frame(&mut early);
+    assert_eq!((kind, reason), (0x88, 1001_u16.to_be_bytes().to_vec()));
+}
+
+/// One browser takes nothing, another all: the loop goes on, and the newest sample arrives.
+#[test]
+fn the_loop_waits_for_nobody() {
+    let mut live = Live::open(&Arm {}, 0).unwrap();
+    let (_idle, mut busy) = (socket(&live.url()), socket(&live.url()));
+    for k in 0..20_000 {
+        live.show(&sample(f64::from(k) * 1e-3)).unwrap();
+    }
+    let last = sample(100.0);
+    let mut seen = 0.0;
+    while seen < 100.0 {
+        // The one that came while a browser read is left out; the next is not.
+        live.show(&last).unwrap();
+        let (_, message) = frame(&mut busy);
+        let t = f64::from_le_bytes(message[..8].try_into().unwrap());
+        assert!(t >= seen);
+        seen = t;
+    }
+}
+
+#[test]
+fn what_is_no_page_of_its_own_is_refused() {
+    let live = Live::open(&Arm {}, 0).unwrap();
+    let url = live.url();
+    let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
+    let status = |path: &str, fields: &str| text(ask(&url, path, fields))[9..12].to_string();
+    assert_eq!(status("/else", ""), "404");
+    assert_eq!(status("/socket", ""), "404");
+    assert_eq!(status("/socket", &format!("{UPGRADE}Origin: http://elsewhere.example\r\n")), "403");
+    assert_eq!(status("/", &format!("Host: rebound.example:{port}\r\n")), "403");
+    assert_eq!(status("/", &format!("Host: localhost:{port}\r\n")), "200");
+    // What is no request ends the connection, and no other one.
+    let mut noise = ask(&url, "/", "");
+    noise.write_all(&[0xff; 20_000]).ok();
+    assert_eq!(status("/", ""), "200");
+}
+
+#[test]
+fn mistakes_are_told() {
+    let mut live = Live::open(&Arm {}, 0).unwrap();
+    let port = live.url().trim_end_matches('/').rsplit(':').next().unwrap().parse().unwrap();
+    let second = Live::open(&Arm {}, port);
+    let error = second.err().unwrap();
+    assert!(
+        matches!(&error, Error::Port { port: known, cause } if *known == port && cause.kind() == std::io::ErrorKind::AddrInUse)
+    );
+    assert!(error.to_string().starts_with(&format!("port {port} on this machine: ")));
+    assert!(matches!(live.show(&sample(f64::NAN)), Err(Error::NotFinite { sample: 0, .. })));
+    let mut broken = sample(0.0);
+    broken.q[1] = f64::INFINITY;
+    assert!(matches!(live.show(&broken), Err(Error::NotFinite { frame, .. }) if frame == "lower"));
+    // The port is free again where the view has ended.
+    drop(live);
+    assert!(Live::open(&Arm {}, port).is_ok());
+}
