@@ -1,8 +1,9 @@
 //! Large functions choose their arithmetic at run time: their bodies stand in implementations of a trait of the runtime,
 //! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
 
-use super::body::{Build, write_body};
+use super::body::write_body;
 use super::function::{write_function, write_head};
+use super::instruction::Build;
 use super::interface::{ALLOW, Head};
 use super::lanes;
 use super::signature::{Signature, filled};

@@ -1,6 +1,7 @@
 //! How generated functions are spelt: their arguments, their results, and what stands around their bodies.
 
-use super::body::{Build, write_body};
+use super::body::write_body;
+use super::instruction::Build;
 use super::signature::Signature;
 use crate::derive::Function;
 use std::fmt::Write;

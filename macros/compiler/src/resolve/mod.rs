@@ -25,6 +25,7 @@ mod flight;
 mod freedom;
 mod functions;
 mod inertia;
+mod input;
 mod joint;
 mod limit;
 mod masses;

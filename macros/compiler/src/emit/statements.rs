@@ -1,0 +1,55 @@
+//! Bindings in their order.
+
+use super::pieces::{Piece, Statement};
+use std::fmt::Write;
+
+/// Most bindings of a block.
+pub const BLOCK: usize = 200;
+
+/// Writes bindings, those of long bodies in blocks: rustc's debug information needs stack for every binding of a block.
+pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {
+    if statements.len() <= BLOCK {
+        for statement in statements {
+            write_let(out, statement);
+        }
+        return;
+    }
+    // The last block that needs each value decides whether it leaves its own.
+    let blocks: Vec<&[Statement]> = statements.chunks(BLOCK).collect();
+    let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
+    let mut last_need = vec![0; size];
+    for (b, block) in blocks.iter().enumerate() {
+        for need in block.iter().flat_map(|s| &s.needs) {
+            last_need[*need] = b;
+        }
+    }
+    for need in outputs.iter().flat_map(|p| &p.needs) {
+        last_need[*need] = blocks.len();
+    }
+    for (b, block) in blocks.iter().enumerate() {
+        let leaving: Vec<String> = block
+            .iter()
+            .flat_map(|s| &s.names)
+            .filter(|k| last_need[**k] > b)
+            .map(|k| format!("t{k}"))
+            .collect();
+        let tuple = match leaving.as_slice() {
+            [one] => format!("({one},)"),
+            many => format!("({})", many.join(", ")),
+        };
+        let _ = writeln!(out, "let {tuple} = {{");
+        for statement in *block {
+            write_let(out, statement);
+        }
+        let _ = writeln!(out, "{tuple}\n}};");
+    }
+}
+
+/// Writes one.
+pub fn write_let(out: &mut String, statement: &Statement) {
+    if statement.pattern.is_empty() {
+        let _ = writeln!(out, "{}", statement.text);
+        return;
+    }
+    let _ = writeln!(out, "let {} = {};", statement.pattern, statement.text);
+}

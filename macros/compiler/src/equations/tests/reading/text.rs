@@ -1,0 +1,194 @@
+//! Printed linear equations, read back.
+
+use super::*;
+
+/// Values by name.
+pub type Values<'a> = &'a dyn Fn(&str) -> f64;
+
+/// A reader of printed sums: `1/2 m l² cos(theta)/(a + b)`.
+pub struct Reader<'a> {
+    rest: &'a str,
+    values: Values<'a>,
+}
+
+pub fn value(text: &str, values: Values<'_>) -> f64 {
+    let mut reader = Reader { rest: text, values };
+    let found = reader.sum();
+    assert_eq!(reader.rest, "", "{text}");
+    found
+}
+
+impl Reader<'_> {
+    pub fn take(&mut self, text: &str) -> bool {
+        let rest = self.rest.strip_prefix(text);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    pub fn sum(&mut self) -> f64 {
+        let mut sum = if self.take("-") { -self.product() } else { self.product() };
+        loop {
+            if self.take(" + ") {
+                sum += self.product();
+            } else if self.take(" - ") {
+                sum -= self.product();
+            } else {
+                return sum;
+            }
+        }
+    }
+
+    pub fn product(&mut self) -> f64 {
+        let mut product = self.factor();
+        loop {
+            let goes_on = !self.rest.starts_with(" + ") && !self.rest.starts_with(" - ");
+            if self.take("/") {
+                product /= self.factor();
+            } else if goes_on && self.take(" ") {
+                product *= self.factor();
+            } else {
+                return product;
+            }
+        }
+    }
+
+    pub fn factor(&mut self) -> f64 {
+        if self.take("(") {
+            let sum = self.sum();
+            assert!(self.take(")"), "{}", self.rest);
+            return sum.powi(self.power());
+        }
+        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
+        let powers = ['²', '³', '⁴', '⁵', '⁶', '⁷'];
+        let end = self.rest.find(|c| !is_name(c) || powers.contains(&c)).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        let power = self.power();
+        if self.take("(") {
+            let argument = self.sum();
+            assert!(self.take(")"), "{}", self.rest);
+            let found = match word {
+                "sqrt" => argument.sqrt(),
+                "acos" => argument.acos(),
+                "sin" => argument.sin(),
+                "cos" => argument.cos(),
+                other => panic!("the function {other}"),
+            };
+            return found.powi(power);
+        }
+        let found = if word == "pi" { PI } else { word.parse().unwrap_or_else(|_| (self.values)(word)) };
+        found.powi(power)
+    }
+
+    pub fn power(&mut self) -> i32 {
+        let powers = [("²", 2), ("³", 3), ("⁴", 4), ("⁵", 5), ("⁶", 6), ("⁷", 7)];
+        powers.into_iter().find(|(sign, _)| self.take(sign)).map_or(1, |(_, power)| power)
+    }
+}
+
+/// A printed text, taken apart.
+#[derive(Default)]
+pub struct Text {
+    equations: Vec<(String, String)>,
+    polynomial: String,
+    pub frequency: String,
+    pub verdict: String,
+    conditions: Vec<String>,
+}
+
+impl Text {
+    pub fn of(text: &str) -> Text {
+        // Lines that go on are indented.
+        let mut lines: Vec<String> = Vec::new();
+        for line in text.lines() {
+            let ends = lines.last().is_some_and(|last| last.contains(" = ") || last.ends_with("> 0"));
+            match (line.strip_prefix("    "), lines.last_mut()) {
+                (Some(more), Some(last))
+                    if !last.is_empty()
+                        && !last.ends_with("where")
+                        && !last.ends_with("of")
+                        && !last.ends_with(':')
+                        && !last.ends_with(')')
+                        && !(ends && last.ends_with(" 0") && last.starts_with(' ')) =>
+                {
+                    *last += &format!(" {}", more.trim_start());
+                }
+                _ => lines.push(line.to_string()),
+            }
+        }
+        let mut found = Text::default();
+        let mut after = false;
+        for line in &lines {
+            after |= line.starts_with("Motions");
+            if let Some(condition) = line.strip_suffix(" > 0") {
+                found.conditions.push(condition.trim_start().to_string());
+            } else if let Some(polynomial) =
+                line.strip_prefix("    ").and_then(|line| line.strip_suffix(" = 0"))
+            {
+                found.polynomial = polynomial.to_string();
+            } else if let Some(frequency) = line.strip_prefix("    omega = ") {
+                found.frequency = frequency.to_string();
+            } else if line.contains("table") || line.contains("too long") {
+                found.verdict.clone_from(line);
+            } else if let Some((left, right)) =
+                line.split_once(" = ").filter(|_| !after && !line.contains("; what is"))
+            {
+                found.equations.push((left.to_string(), right.to_string()));
+            }
+        }
+        found
+    }
+
+    /// Coefficients of a name in all equations, of the left sides or of the right ones.
+    pub fn column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
+        let one = |word: &str| match word {
+            _ if word == name => 1.0,
+            _ if self.is_moving(word) => 0.0,
+            _ => parameters(word),
+        };
+        self.equations.iter().map(|(a, b)| value(if right { b } else { a }, &one)).collect()
+    }
+
+    /// Names that are no parameters.
+    pub fn is_moving(&self, word: &str) -> bool {
+        [
+            "lambda", "motor", "push", "thrust", "rail", "hinge", "shoulder", "elbow", "pose", "one", "two",
+            "three", "theta", "power",
+        ]
+        .iter()
+        .any(|name| word.starts_with(name))
+    }
+
+    /// Whether all conditions hold.
+    pub fn holds(&self, parameters: Values<'_>) -> bool {
+        self.conditions.iter().all(|condition| value(condition, parameters) > 0.0)
+    }
+
+    /// The coefficients of the characteristic polynomial by power, from its values.
+    pub fn coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
+        let at = |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
+        let degree =
+            ["⁶", "⁵", "⁴", "³", "²"].iter().position(|p| self.polynomial.contains(&format!("s{p}")));
+        let n = degree.map_or(1, |k| 6 - k);
+        // Newton's differences at whole points, multiplied out.
+        let points: Vec<f64> = (0..=n).map(|k| k as f64 - n as f64 / 2.0).collect();
+        let mut table: Vec<f64> = points.iter().map(|s| at(*s)).collect();
+        for order in 1..=n {
+            for k in (order..=n).rev() {
+                table[k] = (table[k] - table[k - 1]) / (points[k] - points[k - order]);
+            }
+        }
+        let mut sum = vec![0.0; n + 1];
+        for k in (0..=n).rev() {
+            for power in (1..=n).rev() {
+                sum[power] = sum[power - 1] - points[k] * sum[power];
+            }
+            sum[0] = table[k] - points[k] * sum[0];
+        }
+        sum
+    }
+
+    pub fn roots(&self, parameters: Values<'_>) -> Vec<Complex<f64>> {
+        roots(&self.coefficients(parameters))
+    }
+}

@@ -1,0 +1,210 @@
+//! Forces and torques from outside: with a value, or as inputs.
+
+use super::builder::Builder;
+use super::scope::{Allowed, Context, Placed, PlacedKind};
+use super::target::Target;
+use crate::diag::Diagnostics;
+use crate::expr::Vec3;
+use crate::kinematics::symbols_in;
+use crate::mechanism::{Direction, Input, Load, Pose, Quantity};
+use crate::syntax::{Action, Expr, ExprKind};
+
+impl<'g> Builder<'_, 'g> {
+    /// A force or torque with a value.
+    pub fn add_value(
+        &mut self,
+        on: &Expr,
+        direction: Option<&Expr>,
+        value: &Expr,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        if let Some(direction) = direction {
+            cx.error(direction.place.clone(), "a value has a direction of its own")
+                .help("write the direction into the value: `value = magnitude * x`");
+            return;
+        }
+        let place = match self.target(on, cx) {
+            Some(Target::Point(place)) => place,
+            Some(Target::Coordinate(c, angle)) => {
+                if let Some(angle) = angle.filter(|angle| *angle != torque) {
+                    wrong_kind(on, angle, cx);
+                    return;
+                }
+                let ground = Some((None, Pose::identity(self.scope.graph)));
+                let context = Context::new(Allowed::Acceleration, ground);
+                if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
+                    let rate = self.coordinate_stretch(&c).rate;
+                    self.add_value_load(rate, force, &value.place, cx);
+                }
+                return;
+            }
+            Some(Target::Expression(stretch)) => {
+                let ground = Some((None, Pose::identity(self.scope.graph)));
+                let context = Context::new(Allowed::Acceleration, ground);
+                if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
+                    self.add_value_load(stretch.rate, force, &value.place, cx);
+                }
+                return;
+            }
+            None => return,
+        };
+        if torque && !turns(on, &place, cx) {
+            return;
+        }
+        let Some(link) = place.link else {
+            cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
+            return;
+        };
+        let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
+        let Some(terms) = self.scope.in_context(context, |scope| scope.terms(value, cx)) else { return };
+        let kinematics = self.scope.kinematics.borrow();
+        let zero = Vec3::zero(self.scope.graph);
+        let force = kinematics.resolve(&terms, place.link, zero);
+        let twist = kinematics.twists[link.0];
+        drop(kinematics);
+        let rate = match torque {
+            true => twist.angular,
+            false => twist.linear + twist.angular.cross(place.pose.translation),
+        };
+        self.add_load(rate, force, &value.place, cx);
+    }
+
+    /// Adds an input on a coordinate, an expression, or a point of a body.
+    pub fn add_input(
+        &mut self,
+        action: &Action,
+        on: &Expr,
+        target: Option<Target<'g>>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        let Some(target) = target else { return };
+        let input = match target {
+            Target::Coordinate(_, Some(angle)) if angle != torque => return wrong_kind(on, angle, cx),
+            Target::Coordinate(c, _) => {
+                if let Some(direction) = direction {
+                    cx.error(direction.place.clone(), "the joint itself gives the direction")
+                        .help("remove this argument, or let it act on a body");
+                }
+                Input::Coordinate(c)
+            }
+            Target::Expression(stretch) => {
+                if let Some(direction) = direction {
+                    cx.error(direction.place.clone(), "the expression itself gives the direction")
+                        .help("remove this argument, or let it act on a body");
+                }
+                return self.add_input_load(&action.name.text, stretch.rate);
+            }
+            Target::Point(place) if is_moving(place.pose.translation) => {
+                return self.add_moving_input(action, on, &place, direction, torque, cx);
+            }
+            Target::Point(place) => match self.point_input(action, on, &place, direction, torque, cx) {
+                Some(input) => input,
+                None => return,
+            },
+        };
+        self.set_input(&action.name.text, input);
+    }
+
+    /// Puts an input at its place in the order of declaration.
+    fn set_input(&mut self, name: &str, input: Input<'g>) {
+        if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
+            *slot = input;
+        }
+    }
+
+    /// An input whose force works on a rate.
+    pub fn add_input_load(&mut self, name: &str, rate: crate::expr::Expr<'g>) {
+        let input = self.model.inputs.iter().position(|(known, _)| known == name);
+        if let Some(k) = input {
+            let force = Quantity::Input(k).expr(self.scope.graph);
+            self.model.loads.push(Load { rate, force, dissipative: false });
+        }
+    }
+
+    /// An input at the point of a body that is somewhere at the moment.
+    fn add_moving_input(
+        &mut self,
+        action: &Action,
+        on: &Expr,
+        place: &Placed<'g>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) {
+        let Some(Input::Force { link, point, along }) =
+            self.point_input(action, on, place, direction, torque, cx)
+        else {
+            return;
+        };
+        let kinematics = self.scope.kinematics.borrow();
+        let Some(twist) = kinematics.twists.get(link.0) else { return };
+        let along = kinematics.resolve(&along, Some(link), Vec3::zero(self.scope.graph));
+        let rate = (twist.linear + twist.angular.cross(point)).dot(along);
+        drop(kinematics);
+        self.add_input_load(&action.name.text, rate);
+    }
+
+    fn point_input(
+        &self,
+        action: &Action,
+        on: &Expr,
+        place: &Placed<'g>,
+        direction: Option<&Expr>,
+        torque: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<Input<'g>> {
+        let Some(direction) = direction else {
+            let key = if torque { "about" } else { "along" };
+            cx.error(action.name.place.clone(), format!("missing `{key}`"))
+                .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
+            return None;
+        };
+        if torque && !turns(on, place, cx) {
+            return None;
+        }
+        let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
+        let terms = self.scope.in_context(context, |scope| scope.terms(direction, cx))?;
+        let Some(link) = place.link else {
+            cx.error(
+                on.place.clone(),
+                "this body is fixed to the ground: nothing that acts on it has an effect",
+            );
+            return None;
+        };
+        let sum: Direction<'g> = terms;
+        if sum.iter().all(|(_, v)| v.is_zero()) {
+            cx.error(direction.place.clone(), "this direction is zero");
+            return None;
+        }
+        Some(match torque {
+            true => Input::Torque { link, about: sum },
+            false => Input::Force { link, point: place.pose.translation, along: sum },
+        })
+    }
+}
+
+/// True for a vector that changes with the configuration or in time.
+fn is_moving(v: Vec3<'_>) -> bool {
+    let moves = |s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time);
+    symbols_in(&v.0).into_iter().any(moves)
+}
+
+/// Reports a torque on a particle or a point, which has nothing to turn.
+fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+    let ExprKind::Name(name) = &on.kind else { return true };
+    if place.kind == PlacedKind::Point {
+        cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
+            .help("let it act on a body, or write a `Force`");
+        return false;
+    }
+    true
+}
+
+fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+    let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
+    cx.error(on.place.clone(), format!("this coordinate is {is}"))
+        .help(format!("what acts on it is a {other}"));
+}

@@ -1,0 +1,122 @@
+//! An arm with a row of springs, compiled in process: what is derived and written of few springs and of many.
+
+use linkwork_compiler::derive::Output;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::{compile, expand, read};
+use proc_macro2::TokenStream;
+use std::ops::Range;
+use std::path::Path;
+use support::compare::assert_similar;
+use support::random::Random;
+
+/// An arm of three spatial pins with those springs of a row, and dashpots beside some.
+fn arm(springs: Range<usize>) -> [TokenStream; 2] {
+    let mut item = "struct Arm {".to_string();
+    let mut parent = "ground".to_string();
+    for (k, axis) in ["z", "y", "x"].into_iter().enumerate() {
+        item += &format!(
+            "#[body(mass = 2, com = 0.2 * z, inertia = diagonal(0.03, 0.04, 0.02))] link{k}: Body,
+            #[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,"
+        );
+        parent = format!("link{k}.at(0.4 * z)");
+    }
+    for k in springs {
+        let (x, y, z) = (0.1 + 0.01 * k as f64, 0.3 + 0.003 * k as f64, 0.1 + 0.002 * k as f64);
+        item += &format!(
+            "#[acts(between = (ground.at({x:.3} * x + {y:.3} * y), link{}.at({z:.3} * z)), stiffness = {}, free_length = 0.{})] spring{k}: Spring,",
+            k % 3,
+            10 + k,
+            1 + k % 9
+        );
+        if k.is_multiple_of(5) {
+            item += &format!(
+                "#[acts(between = (ground.at({y:.3} * x), link2.at({z:.3} * x)), damping = 2)] dashpot{k}: Dashpot,"
+            );
+        }
+    }
+    item.push('}');
+    ["gravity = -9.81 * z, derivatives", &item].map(|text| text.parse().expect("the source is Rust"))
+}
+
+fn compiled([arguments, item]: [TokenStream; 2]) -> Output {
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let source = read(arguments, item, Path::new(""), &mut cx);
+    let Some((_, output)) = source.and_then(|source| compile(&source, &graph, &mut cx)) else {
+        panic!("{}", cx.messages().join("\n"));
+    };
+    output
+}
+
+/// What a function gives at a state and an acceleration, with those that it calls.
+fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
+    let f = output.functions.iter().find(|f| f.name == name)?;
+    let called = ["__passive_forces", "__passive_derivatives"].map(|other| match other == name {
+        true => Vec::new(),
+        false if name.starts_with("__") => Vec::new(),
+        false => run(output, other, state).unwrap_or_default(),
+    });
+    let at = |s| match Quantity::of(s) {
+        Quantity::Configuration(k) => state[0][k],
+        Quantity::Velocity(k) => state[1][k],
+        Quantity::Acceleration(k) => state[2][k],
+        Quantity::PassiveForce(k) => called[0][k],
+        Quantity::PassiveDerivative(k) => called[1][k],
+        _ => f64::NAN,
+    };
+    Some(f.program.run(&at))
+}
+
+/// Forces of springs add up: few of them stand in every function, all of them in one that the others call.
+#[test]
+fn many_springs_are_the_sum_of_few() {
+    const EACH: usize = 20;
+    let (whole, none) = (compiled(arm(0..5 * EACH)), compiled(arm(0..0)));
+    let parts: Vec<Output> = (0..5).map(|k| compiled(arm(k * EACH..(k + 1) * EACH))).collect();
+    let is_called = |output: &Output| output.functions.iter().any(|f| f.name == "__passive_forces");
+    assert!(is_called(&whole) && !parts.iter().any(is_called), "what is compared is derived in two ways");
+    let mut random = Random::new(36);
+    for _ in 0..5 {
+        let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.vector::<3>(1.5).into());
+        for name in ["bias_forces", "inverse_dynamics", "inverse_dynamics_derivatives", "momentum_rate"] {
+            let of = |output: &Output| run(output, name, &state).expect("the function is there");
+            let without = of(&none);
+            let mut sum = without.clone();
+            for part in &parts {
+                for (k, x) in of(part).into_iter().enumerate() {
+                    sum[k] += x - without[k];
+                }
+            }
+            assert_similar(name, &of(&whole), &sum, 1e-11);
+        }
+    }
+}
+
+/// Twice as many springs are twice as many operations, and twice as much text: they stand once in the forces, once in their
+/// derivatives and once in the energy.
+#[test]
+fn what_is_written_grows_as_springs_do() {
+    let sizes = |springs: usize| {
+        let output = compiled(arm(0..springs));
+        let operations = |name: &str| {
+            let f = output.functions.iter().find(|f| f.name == name).expect("the function is there");
+            f.program.counts.total()
+        };
+        for name in
+            ["bias_forces", "inverse_dynamics", "forward_dynamics", "momentum_rate", "coriolis_matrix"]
+        {
+            assert!(operations(name) < 200, "{name}: {}", operations(name));
+        }
+        for name in ["inverse_dynamics_derivatives", "forward_dynamics_derivatives", "linearize"] {
+            assert!(operations(name) < 600, "{name}: {}", operations(name));
+        }
+        let all: usize = output.functions.iter().map(|f| f.program.counts.total()).sum();
+        let [arguments, item] = arm(0..springs);
+        [all, expand(arguments, item, Path::new("")).text.len()]
+    };
+    let (some, more) = (sizes(150), sizes(300));
+    for (some, more) in some.into_iter().zip(more) {
+        assert!(10 * more <= 21 * some, "{more} of twice as many springs instead of {some}");
+    }
+}

@@ -1,0 +1,32 @@
+//! Mechanisms with so many springs that their forces are a function that the others call: energies, powers and differences
+//! know nothing of that.
+
+mod arm;
+mod tent;
+mod trampoline;
+mod web;
+
+use linkwork::Mechanism;
+use linkwork::nalgebra::SVector;
+
+/// Derivative at zero by central differences of fourth order.
+fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
+    let h = 1e-3;
+    ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+}
+
+fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
+    SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
+}
+
+/// `∂U/∂q`, column by column.
+fn gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+) -> SVector<f64, NV>
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let along = |i: usize| slope(|s| [m.potential_energy(&m.integrate(q, &(unit::<NV>(i) * s)))].into())[0];
+    SVector::from_fn(|i, _| along(i))
+}
