@@ -4,7 +4,7 @@
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled, Vector};
-use crate::product::{part, put};
+use crate::multiplication::{part, put};
 use core::array::{from_mut, from_ref};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 

@@ -24,7 +24,7 @@ use core::ops::{
     Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
 use nalgebra::{ArrayStorage, SMatrix};
-pub(crate) use registers::{Registers, Work};
+pub(crate) use registers::{Registers, VectorLoop};
 
 /// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
 ///

@@ -126,11 +126,11 @@ pub mod lanes;
 mod lie;
 mod limits;
 mod mechanism;
+mod multiplication;
 pub mod optimal;
 mod outputs;
 mod parameters;
 mod private;
-mod product;
 mod rheonomic;
 pub mod rotation;
 mod second;
@@ -193,9 +193,11 @@ pub mod __private {
         free_integrate, free_tangent_rate,
     };
     pub use crate::limits::{at_least, at_most};
+    pub use crate::multiplication::{
+        Tile, complete, invert, minus_products, registers_of_eight, registers_of_four, rows,
+    };
     pub use crate::parameters::{Figure, Rule, validate};
     pub use crate::private::{constant, put_block, put_rows};
-    pub use crate::product::{Rows, complete, eights, fours, invert, minus_products, rows};
     pub use crate::second::forward_second_derivatives;
     pub use crate::speeds::{displacement_rate_derivatives_in_speeds, integrate_derivatives_in_speeds};
     pub use nalgebra::{

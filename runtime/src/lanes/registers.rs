@@ -11,11 +11,11 @@ use crate::trigonometry;
 use crate::trigonometry::{LARGEST, same};
 
 /// Loops that a generated body leaves to the runtime.
-pub trait Work {
+pub trait VectorLoop {
     /// It fills several registers of eight numbers at a time.
-    const LONG: bool;
+    const IS_LONG: bool;
 
-    /// Does the work. Always inlined, with everything in it, so that it has the features of the function that it ends up in.
+    /// Runs the loop. Always inlined, with everything in it, so that it has the features of the function that it ends up in.
     fn run<A: Arithmetic>(self);
 }
 
@@ -26,8 +26,8 @@ pub trait Registers: Copy + 'static {
     /// Registers hold eight numbers of double precision, and there are 32 of them; elsewhere four, and 16.
     const WIDE: bool;
 
-    /// Does work in a function that has the instructions.
-    fn within<W: Work>(work: W);
+    /// Runs a loop in a function that has the instructions.
+    fn run_loop<L: VectorLoop>(body: L);
 
     /// `a + b`, lane by lane.
     fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
@@ -106,8 +106,8 @@ impl Registers for Compiled {
     const WIDE: bool = cfg!(target_feature = "avx512f");
 
     #[inline(always)]
-    fn within<W: Work>(work: W) {
-        work.run::<Self>();
+    fn run_loop<L: VectorLoop>(body: L) {
+        body.run::<Self>();
     }
 
     operations! {

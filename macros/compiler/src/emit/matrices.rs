@@ -268,7 +268,7 @@ fn parts(rows: impl Fn(bool) -> String) -> String {
     let of = |wide: bool| {
         let n = rows(wide);
         format!(
-            "{RUNTIME}::Rows<{{ {n} }}, {{ {RUNTIME}::eights({n}, {wide}) }}, {{ {RUNTIME}::fours({n}, {wide}) }}>"
+            "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
         )
     };
     format!("({}, {})", of(true), of(false))

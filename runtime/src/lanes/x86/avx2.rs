@@ -4,7 +4,7 @@
 use super::avx512::{self, Avx512};
 use crate::Real;
 use crate::arithmetic::Compiled;
-use crate::lanes::registers::{Registers, Work};
+use crate::lanes::registers::{Registers, VectorLoop};
 use crate::trigonometry::{self, LARGEST, same};
 use core::any::TypeId;
 use core::arch::x86_64::*;
@@ -102,11 +102,11 @@ mod with_features {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn within<W: Work>(work: W) {
-        if W::LONG && avx512::is_available() {
-            return Avx512::within(work);
+    pub(super) fn run_loop<L: VectorLoop>(body: L) {
+        if L::IS_LONG && avx512::is_available() {
+            return Avx512::run_loop(body);
         }
-        work.run::<Avx2>();
+        body.run::<Avx2>();
     }
 
     #[inline]
@@ -187,9 +187,9 @@ impl Registers for Avx2 {
     const WIDE: bool = false;
 
     #[inline(always)]
-    fn within<W: Work>(work: W) {
+    fn run_loop<L: VectorLoop>(body: L) {
         // SAFETY: the processor has the instructions.
-        unsafe { with_features::within(work) }
+        unsafe { with_features::run_loop(body) }
     }
 
     list!(methods);

@@ -4,12 +4,12 @@
 
 use super::avx2::Avx2;
 use crate::Real;
-use crate::lanes::registers::{Registers, Work};
+use crate::lanes::registers::{Registers, VectorLoop};
 use crate::trigonometry::same;
 use core::arch::x86_64::*;
 use core::mem::transmute;
 
-/// Work with these instructions is done within a function that has the target features, where the processor has them. The
+/// A loop with these instructions runs within a function that has the target features, where the processor has them. The
 /// type is known to this crate alone, so that nobody else can do any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512;
@@ -54,8 +54,8 @@ mod with_features {
     }
 
     #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
-    pub(super) fn within<W: Work>(work: W) {
-        work.run::<Avx512>();
+    pub(super) fn run_loop<L: VectorLoop>(body: L) {
+        body.run::<Avx512>();
     }
 }
 
@@ -64,9 +64,9 @@ impl Registers for Avx512 {
     const WIDE: bool = true;
 
     #[inline(always)]
-    fn within<W: Work>(work: W) {
+    fn run_loop<L: VectorLoop>(body: L) {
         // SAFETY: the processor has the instructions.
-        unsafe { with_features::within(work) }
+        unsafe { with_features::run_loop(body) }
     }
 
     methods! {

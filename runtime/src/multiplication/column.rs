@@ -5,14 +5,14 @@ use crate::arithmetic::{Arithmetic, Vector};
 
 /// How many registers of eight numbers hold most of a column of so many, where there are such registers.
 #[must_use]
-pub const fn eights(numbers: usize, wide: bool) -> usize {
+pub const fn registers_of_eight(numbers: usize, wide: bool) -> usize {
     if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
 }
 
 /// How many registers of four numbers hold the rest.
 #[must_use]
-pub const fn fours(numbers: usize, wide: bool) -> usize {
-    numbers.saturating_sub(8 * eights(numbers, wide)).div_ceil(4)
+pub const fn registers_of_four(numbers: usize, wide: bool) -> usize {
+    numbers.saturating_sub(8 * registers_of_eight(numbers, wide)).div_ceil(4)
 }
 
 /// A column in `E` registers of eight numbers, then `F` of four. The last begins as much earlier as it would be too long.

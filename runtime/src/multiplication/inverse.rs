@@ -2,10 +2,10 @@
 //! straight lines of these products would be longer than what the processor can fetch in the time.
 
 use super::column::Column;
-use super::{Parts, Range, Run, is_long};
+use super::{Range, Run, Tiling, is_long};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
-use crate::lanes::Work;
+use crate::lanes::VectorLoop;
 use core::marker::PhantomData;
 use core::slice::from_ref;
 use nalgebra::SMatrix;
@@ -14,13 +14,13 @@ use nalgebra::SMatrix;
 /// `factors` are columns of `Gᵀ`. Columns are read in parts as for [`minus_products`](super::minus_products), but all rows
 /// together.
 #[inline]
-pub fn complete<A: Arithmetic, T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize>(
+pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &[[T; K]; M],
     runs: &[Run],
 ) {
-    A::within(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+    A::run_loop(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
 }
 
 struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
@@ -31,10 +31,10 @@ struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
     parts: PhantomData<P>,
 }
 
-impl<T: Real, P: Parts<T, N>, const N: usize, const K: usize, const M: usize> Work
+impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> VectorLoop
     for Completion<'_, T, P, N, K, M>
 {
-    const LONG: bool = is_long(N);
+    const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
@@ -57,8 +57,8 @@ pub type Limb<'a> = &'a [Range];
 pub fn invert<
     A: Arithmetic,
     T: Real,
-    P: Parts<T, N>,
-    Q: Parts<T, L>,
+    P: Tiling<T, N>,
+    Q: Tiling<T, L>,
     const N: usize,
     const K: usize,
     const L: usize,
@@ -72,7 +72,7 @@ pub fn invert<
     solved: &mut [[T; N]; S],
 ) {
     let parts = PhantomData;
-    A::within(Inversion::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
+    A::run_loop(Inversion::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
 }
 
 struct Inversion<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
@@ -85,10 +85,17 @@ struct Inversion<'a, T, P, Q, const N: usize, const K: usize, const L: usize, co
     parts: PhantomData<(P, Q)>,
 }
 
-impl<T: Real, P: Parts<T, N>, Q: Parts<T, L>, const N: usize, const K: usize, const L: usize, const S: usize>
-    Work for Inversion<'_, T, P, Q, N, K, L, S>
+impl<
+    T: Real,
+    P: Tiling<T, N>,
+    Q: Tiling<T, L>,
+    const N: usize,
+    const K: usize,
+    const L: usize,
+    const S: usize,
+> VectorLoop for Inversion<'_, T, P, Q, N, K, L, S>
 {
-    const LONG: bool = is_long(N);
+    const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
@@ -228,14 +235,14 @@ pub(super) fn eliminate<
 #[cfg(test)]
 mod tests {
     use super::super::testing::{everywhere, numbers, rows_of};
-    use super::super::{Rows, eights, fours};
+    use super::super::{Tile, registers_of_eight, registers_of_four};
     use super::*;
     use crate::arithmetic::Compiled;
 
     #[test]
     fn columns_are_completed() {
         const N: usize = 14;
-        fn completed<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+        fn completed<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             start: &SMatrix<f64, N, N>,
             factors: &[[f64; 3]; M],
             runs: &[Run],
@@ -290,7 +297,7 @@ mod tests {
         const TRUNK: [usize; 3] = [9, 1, 7];
         // The second limb is not in one piece.
         const LIMBS: [&[usize]; 2] = [&[2, 3, 4, 5, 6], &[0, 8, 10, 11, 12, 13]];
-        fn inverted<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+        fn inverted<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             right: &SMatrix<f64, N, M>,
         ) {
@@ -326,7 +333,7 @@ mod tests {
     #[test]
     fn without_limbs_all_rows_are_swept() {
         const N: usize = 13;
-        fn inverted<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+        fn inverted<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             scale: &SMatrix<f64, N, M>,
         ) {
@@ -355,7 +362,7 @@ mod tests {
     #[test]
     fn an_ill_conditioned_matrix_solves_its_equations() {
         const N: usize = 13;
-        fn solved<A: Arithmetic, P: Parts<f64, N>, const N: usize, const M: usize>(
+        fn solved<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             right: &SMatrix<f64, N, M>,
         ) {

@@ -1,0 +1,205 @@
+//! Sums of products over the rows of a tile, for several columns at a time.
+
+use super::Range;
+use super::column::{Column, Source};
+use crate::Real;
+use crate::arithmetic::Arithmetic;
+use nalgebra::SMatrix;
+
+/// How many registers hold sums at a time. The others are for what is added.
+const fn sums(wide: bool) -> usize {
+    if wide { 24 } else { 12 }
+}
+
+/// Puts minus the products of a matrix with columns in the place of these, `C` at a time if there are registers enough; returns
+/// those that are left. A single sum has to wait for every addition.
+#[inline(always)]
+pub fn multiply<
+    'a,
+    A: Arithmetic,
+    T: Real,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+>(
+    matrix: &SMatrix<T, N, N>,
+    columns: &'a mut [[T; N]],
+    rows: &[usize],
+) -> &'a mut [[T; N]] {
+    if C > 1 && C * (E + F) > sums(A::WIDE) {
+        return columns;
+    }
+    let (some, rest) = columns.as_chunks_mut::<C>();
+    for some in some {
+        if R >= N {
+            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, some, rows, 0);
+            write::<A, T, E, F, N, C, R>(&sums, some, 0);
+            continue;
+        }
+        let given = *some;
+        for block in 0..N.div_ceil(R) {
+            let first = (block * R).min(N - R);
+            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, &given, rows, first);
+            write::<A, T, E, F, N, C, R>(&sums, some, first);
+        }
+    }
+    rest
+}
+
+/// Minus the rows from one on of the products with columns.
+#[inline(always)]
+pub fn minus_sums<
+    A: Arithmetic,
+    T: Real,
+    const R: usize,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+>(
+    matrix: &SMatrix<T, N, N>,
+    columns: &[[T; N]; C],
+    rows: &[usize],
+    first: usize,
+) -> [Column<A, T, E, F>; C] {
+    let mut sums = [Column::<A, T, E, F>::zero(); C];
+    for &k in rows {
+        let Some(from) = matrix.data.0.get(k) else { continue };
+        let Some(from) = from.get(first..).and_then(<[T]>::first_chunk::<R>) else { continue };
+        let from = Column::read(from);
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let Some(factor) = column.get(k) else { continue };
+            sums.add_multiple::<true>(*factor, &from);
+        }
+    }
+    sums
+}
+
+/// Reads columns.
+#[inline(always)]
+pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const C: usize>(
+    columns: &[[T; N]; C],
+) -> [Column<A, T, E, F>; C] {
+    let mut all = [Column::zero(); C];
+    for (place, column) in all.iter_mut().zip(columns) {
+        *place = Column::read(column);
+    }
+    all
+}
+
+/// Writes sums to the rows of columns from one on.
+#[inline(always)]
+pub fn write<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+    const R: usize,
+>(
+    sums: &[Column<A, T, E, F>; C],
+    columns: &mut [[T; N]; C],
+    first: usize,
+) {
+    for (sums, column) in sums.iter().zip(columns) {
+        if let Some(rows) = column.get_mut(first..).and_then(<[T]>::first_chunk_mut::<R>) {
+            sums.write(rows);
+        }
+    }
+}
+
+/// Adds multiples to columns, or subtracts them, `C` at a time if there are registers enough.
+#[inline(always)]
+pub fn add_all<
+    A: Arithmetic,
+    T: Real,
+    S: Source<A, T, E, F>,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const V: usize,
+    const MINUS: bool,
+>(
+    sums: &mut [[T; N]],
+    source: &S,
+    factors: &[[T; V]],
+    range: Range,
+) {
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 4>(sums, source, factors, range);
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 3>(sums, source, factors, range);
+    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 2>(sums, source, factors, range);
+    add::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
+}
+
+/// Adds multiples to as many columns as are left to be taken `C` at a time; returns the others with their factors.
+#[inline(always)]
+pub fn add<
+    'a,
+    'b,
+    A: Arithmetic,
+    T: Real,
+    S: Source<A, T, E, F>,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const V: usize,
+    const MINUS: bool,
+    const C: usize,
+>(
+    columns: &'a mut [[T; N]],
+    source: &S,
+    factors: &'b [[T; V]],
+    (first, end): Range,
+) -> (&'a mut [[T; N]], &'b [[T; V]]) {
+    if C > 1 && C * (E + F) > sums(A::WIDE) {
+        return (columns, factors);
+    }
+    let (columns, columns_left) = columns.as_chunks_mut::<C>();
+    let mut factors_left = factors;
+    for columns in columns {
+        let Some((factors, left)) = factors_left.split_first_chunk::<C>() else { break };
+        factors_left = left;
+        let mut sums = read_each::<A, T, E, F, N, C>(columns);
+        for k in first..end.min(V).min(S::COUNT) {
+            let from = source.column(k);
+            for (sums, factors) in sums.iter_mut().zip(factors) {
+                let Some(factor) = factors.get(k) else { continue };
+                sums.add_multiple::<MINUS>(*factor, &from);
+            }
+        }
+        write::<A, T, E, F, N, C, N>(&sums, columns, 0);
+    }
+    (columns_left, factors_left)
+}
+
+/// Adds products of columns and rows, to so many columns at a time.
+#[inline(always)]
+pub fn add_products<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const W: usize,
+    const C: usize,
+>(
+    sums: &mut [[T; N]; N],
+    vectors: &[[T; N]; W],
+    factors: &[[T; N]; W],
+    (first, end): Range,
+) {
+    for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
+        let mut sums = read_each::<A, T, E, F, N, C>(columns);
+        for k in first..end.min(W) {
+            let Some(factors) = factors[k].as_chunks::<C>().0.get(place) else { continue };
+            let from = Column::read(&vectors[k]);
+            for (sums, factor) in sums.iter_mut().zip(factors) {
+                sums.add_multiple::<false>(*factor, &from);
+            }
+        }
+        write::<A, T, E, F, N, C, N>(&sums, columns, 0);
+    }
+}

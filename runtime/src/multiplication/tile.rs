@@ -1,0 +1,164 @@
+//! Tiles: how many rows of a matrix are calculated together, and in which registers.
+
+use super::column::Columns;
+use super::kernels::{add_all, add_products, multiply};
+use super::{Range, Run, inverse};
+use crate::Real;
+use crate::arithmetic::Arithmetic;
+use nalgebra::SMatrix;
+
+/// How the columns of a matrix are read.
+pub trait Tiling<T: Real, const N: usize> {
+    /// Puts minus the products of a matrix with columns in the place of these, outside whose given rows there are zeros.
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
+
+    /// Adds to each of some columns its multiples of vectors, or subtracts them; of the vectors and their factors only some
+    /// neighbouring ones are taken.
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
+    );
+
+    /// Adds the products of columns `vectors` with rows `factors`, some neighbouring ones of both. `N` is a multiple of four.
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    );
+
+    /// Does what [`complete`] says.
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; V]],
+        runs: &[Run],
+    );
+
+    /// Puts the inverse of a symmetric positive definite matrix of `K` rows, which begins the columns, in its place.
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
+}
+
+/// `R` rows at a time, in `E` registers of eight numbers and `F` of four.
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<const R: usize, const E: usize, const F: usize>;
+
+impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Tiling<T, N> for Tile<R, E, F> {
+    #[inline(always)]
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+        let some = multiply::<A, T, R, E, F, N, 4>(matrix, columns, rows);
+        let some = multiply::<A, T, R, E, F, N, 3>(matrix, some, rows);
+        let some = multiply::<A, T, R, E, F, N, 2>(matrix, some, rows);
+        multiply::<A, T, R, E, F, N, 1>(matrix, some, rows);
+    }
+
+    #[inline(always)]
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
+    ) {
+        add_all::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
+    }
+
+    #[inline(always)]
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    ) {
+        add_products::<A, T, E, F, N, W, 4>(sums, vectors, factors, range);
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; V]],
+        runs: &[Run],
+    ) {
+        let mut known = Columns::<A, T, E, F, K>::zero();
+        for (t, k) in trunk.into_iter().enumerate() {
+            if let Some(column) = matrix.data.0.get(k) {
+                known.set(t, column);
+            }
+        }
+        for ((first, end), range, place) in runs {
+            let columns = matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
+            let factors = factors.get(*place..).unwrap_or(&[]);
+            add_all::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
+        }
+    }
+
+    #[inline(always)]
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+        inverse::eliminate::<A, T, E, F, N, K>(columns);
+    }
+}
+
+/// The first where registers hold eight numbers, else the second.
+impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T, N> for (Wide, Narrow) {
+    #[inline(always)]
+    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+        if A::WIDE {
+            Wide::multiply::<A>(matrix, columns, rows);
+        } else {
+            Narrow::multiply::<A>(matrix, columns, rows);
+        }
+    }
+
+    #[inline(always)]
+    fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
+        sums: &mut [[T; N]],
+        vectors: &[[T; N]; W],
+        factors: &[[T; V]],
+        range: Range,
+    ) {
+        if A::WIDE {
+            Wide::add_multiples::<A, V, W, MINUS>(sums, vectors, factors, range);
+        } else {
+            Narrow::add_multiples::<A, V, W, MINUS>(sums, vectors, factors, range);
+        }
+    }
+
+    #[inline(always)]
+    fn add_products<A: Arithmetic, const W: usize>(
+        sums: &mut [[T; N]; N],
+        vectors: &[[T; N]; W],
+        factors: &[[T; N]; W],
+        range: Range,
+    ) {
+        if A::WIDE {
+            Wide::add_products::<A, W>(sums, vectors, factors, range);
+        } else {
+            Narrow::add_products::<A, W>(sums, vectors, factors, range);
+        }
+    }
+
+    #[inline(always)]
+    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+        matrix: &mut SMatrix<T, N, N>,
+        trunk: [usize; K],
+        factors: &[[T; V]],
+        runs: &[Run],
+    ) {
+        if A::WIDE {
+            Wide::complete::<A, K, V>(matrix, trunk, factors, runs);
+        } else {
+            Narrow::complete::<A, K, V>(matrix, trunk, factors, runs);
+        }
+    }
+
+    #[inline(always)]
+    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+        if A::WIDE {
+            Wide::invert::<A, K>(columns);
+        } else {
+            Narrow::invert::<A, K>(columns);
+        }
+    }
+}
