@@ -2,7 +2,7 @@
 //! many lanes and threads.
 
 use linkwork::batch::{Error, Lockstep, Progress, Rollout, unwatched};
-use linkwork::integrate::{self, State, Steered, System};
+use linkwork::integrate::{self, ContinuousInputs, State, System};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Batch, Lanes, Rk4, SemiImplicitEuler, mechanism};
 use std::ops::ControlFlow;
@@ -83,7 +83,7 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
         let (q, v) = (column::<6>(&states.q, count, k), column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
         let mut memory = method.memory();
-        let inputs = Steered(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
+        let inputs = ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
         let mut system: System<'_, _, _, 6> = System::new(&Ur5, inputs);
         for _ in 0..steps {
             state = method.advance(&mut memory, &mut system, &state, None, false).expect("finite").end;

@@ -36,7 +36,9 @@
 
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
 use crate::derivatives::{RheonomicDerivatives, column, entry};
-use crate::integrate::{Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Steered, Step, System};
+use crate::integrate::{
+    ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System,
+};
 use crate::private::to_f64;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -97,7 +99,7 @@ where
     if NU == 0 {
         return System::new(mechanism, NoInputs).advance(method, &mut memory, t, &start, None, false);
     }
-    let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+    let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
 }
 

@@ -48,7 +48,7 @@ pub use rk4::Rk4;
 pub use rodas::Rodas;
 pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
-pub use system::{Dynamics, Held, Inputs, NoInputs, Steered, System};
+pub use system::{ContinuousInputs, Dynamics, Inputs, NoInputs, SampledInputs, System};
 pub use time_stepping::TimeStepping;
 pub(crate) use time_stepping::{guided, holding};
 

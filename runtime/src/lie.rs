@@ -133,14 +133,14 @@ fn series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
 }
 
 /// Below this `θ²` the eight terms of the series are exact to rounding; above it the closed forms are.
-const SMALL: f64 = 0.25;
+const SERIES_ANGLE: f64 = 0.25;
 
 /// `(1 − (θ/2) cot(θ/2)) / θ²` of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse Jacobians of SO(3).
 /// Not finite at the full turns, where the exponential cannot be inverted.
 fn second_bracket<T: Real>(square: T) -> T {
     let [factor] = choose(
         square,
-        constant(SMALL),
+        constant(SERIES_ANGLE),
         |square| [series(square, 1, |_| 1.0)],
         |square| {
             let half = square.sqrt() * constant(0.5);
@@ -157,7 +157,7 @@ fn second_bracket<T: Real>(square: T) -> T {
 fn even_brackets<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
-        constant(SMALL),
+        constant(SERIES_ANGLE),
         |square| [series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k)],
         |square| {
             let half = square.sqrt() * constant(0.5);

@@ -102,7 +102,7 @@ fn tangent_rates_give_the_velocity() {
 
 #[test]
 fn closed_forms_continue_the_series() {
-    let (below, above) = (SMALL - 1e-15, SMALL);
+    let (below, above) = (SERIES_ANGLE - 1e-15, SERIES_ANGLE);
     assert!((second_bracket(below) - second_bracket(above)).abs() < 1e-14);
     let (a, b) = (even_brackets(below), even_brackets(above));
     assert!((a[0] - b[0]).abs() < 1e-14 && (a[1] - b[1]).abs() < 1e-13);

@@ -12,7 +12,8 @@ pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Re
 pub use start::Start;
 
 use crate::integrate::{
-    DormandPrince, Error, Held, Inputs, Method, NoInputs, State, Steered, System, not_negative, positive,
+    ContinuousInputs, DormandPrince, Error, Inputs, Method, NoInputs, SampledInputs, State, System,
+    not_negative, positive,
 };
 use crate::{Real, Rheonomic};
 use core::fmt;
@@ -136,11 +137,11 @@ where
 
     /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with jumps,
     /// such as digital controllers, use [`control_every`](Self::control_every).
-    pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, Steered<F>, S, E, NQ, NV, NU>
+    pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, ContinuousInputs<F>, S, E, NQ, NV, NU>
     where
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
     {
-        self.with_inputs(Steered(inputs))
+        self.with_inputs(ContinuousInputs(inputs))
     }
 
     /// Inputs of a digital controller: `|t, q, v| u` is called once every `period` seconds, from the start on, and
@@ -149,11 +150,11 @@ where
         self,
         period: T,
         control: F,
-    ) -> Simulation<'m, M, T, Held<T, F, NU>, S, E, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, SampledInputs<T, F, NU>, S, E, NQ, NV, NU>
     where
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
     {
-        self.with_inputs(Held::new(period, control))
+        self.with_inputs(SampledInputs::new(period, control))
     }
 
     /// Integrates with another method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),

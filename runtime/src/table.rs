@@ -184,7 +184,7 @@ impl<const N: usize> Table<N> {
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
-            let place = Place::of(points, x);
+            let place = AxisPosition::of(points, x);
             *range = place.cells(points);
             *weights = Weights { place: Some(place), order };
         }
@@ -264,7 +264,7 @@ struct Shape {
 /// What the weights of an axis are made of.
 #[derive(Clone, Copy)]
 struct Weights<T> {
-    place: Option<Place<T>>,
+    place: Option<AxisPosition<T>>,
     order: u8,
 }
 
@@ -276,7 +276,7 @@ impl<T> Weights<T> {
 
 /// Where a variable is: within the axis, how far beyond it, and whether it is within (one or zero).
 #[derive(Clone, Copy)]
-struct Place<T> {
+struct AxisPosition<T> {
     x: T,
     beyond: T,
     within: T,
@@ -287,14 +287,14 @@ fn step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
-impl<T: Real> Place<T> {
-    fn of(points: &[f64], x: T) -> Place<T> {
+impl<T: Real> AxisPosition<T> {
+    fn of(points: &[f64], x: T) -> AxisPosition<T> {
         let at = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
         let (low, high) = (at(points.first()), at(points.last()));
         let inner = x.max(low).min(high);
         // The extremes of a NaN and a number are the number.
         let nothing = x * T::zero();
-        Place { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
+        AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
     }
 
     /// The cells that may hold it, from the first to before the last: one, or where lanes differ all.

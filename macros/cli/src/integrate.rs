@@ -14,7 +14,7 @@ const STAGES: [(f64, &[f64]); 6] = [
 const DIFFERENCE: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 /// Steps from one sample to the next, before it is given up.
-const MOST: usize = 1_000_000;
+const MAX_STEPS: usize = 1_000_000;
 
 /// A system: the rates of its state, and what is done to a state at the end of a step, which tells whether there is one.
 pub struct System<'a> {
@@ -33,7 +33,7 @@ pub fn advance(
     tolerance: f64,
 ) -> Result<(), f64> {
     let mut t = from;
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         if t >= to {
             return Ok(());
         }

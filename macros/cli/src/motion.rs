@@ -36,7 +36,7 @@ pub struct Start<'a, 'g> {
 /// Moves of a beginning that are told, m and rad.
 const TOLD: f64 = 1e-6;
 /// Most samples of a motion.
-const MOST: f64 = 1e7;
+const MAX_SAMPLES: f64 = 1e7;
 /// How often a mechanism is assembled from another beginning.
 const ASSEMBLIES: u8 = 100;
 
@@ -103,8 +103,8 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         let (duration, every) = (positive("duration", 10.0)?, positive("every", 1.0 / 60.0)?);
         let tolerance = positive("tolerance", 1e-8)?.max(1e-13);
-        if duration / every > MOST {
-            return Err(Stop::Failure(format!("more than {MOST} samples: choose a larger `--every`")));
+        if duration / every > MAX_SAMPLES {
+            return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
         let inputs = self.inputs(matches)?;
         let given = |t: f64| -> Vec<f64> {

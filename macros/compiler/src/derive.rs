@@ -303,9 +303,9 @@ fn functions<'g>(
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
     let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
     let functions = derivation.derive(outputs::declared(model, &facts), functions);
-    let by_forms = facts.requests.derivatives && speeds.is_none();
-    let forms = if by_forms { derivatives::forms(model, passes) } else { Vec::new() };
-    let derivatives = Derivatives::new(model, &forms, passes, specialisation);
+    let by_variants = facts.requests.derivatives && speeds.is_none();
+    let variants = if by_variants { derivatives::variants(model, passes) } else { Vec::new() };
+    let derivatives = Derivatives::new(model, &variants, passes, specialisation);
     // How the derivatives of a large mechanism are put together is known only now.
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);

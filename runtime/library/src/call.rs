@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub const LANES: usize = 8;
 
 /// Most arguments, and most results.
-const MOST: usize = 12;
+const MAX_ARGUMENTS: usize = 12;
 
 /// Why there is no result, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
     let lengths = f.arguments.iter().zip(arguments.iter().map(|array| array.len()));
     let lengths = lengths.chain(f.results.iter().zip(results.iter().map(|array| array.len())));
     let fit = arguments.len() == f.arguments.len() && results.len() == f.results.len();
-    let fit = fit && f.arguments.len() <= MOST && f.results.len() <= MOST;
+    let fit = fit && f.arguments.len() <= MAX_ARGUMENTS && f.results.len() <= MAX_ARGUMENTS;
     if !fit || lengths.into_iter().any(|(one, all)| one.checked_mul(states) != Some(all)) {
         return Err(Failure::of("the arrays do not have the lengths that the function needs"));
     }

@@ -2,7 +2,7 @@
 
 use super::columns::{Output, count};
 use super::{Batch, Error, Lanewise};
-use crate::integrate::{self, Method, Rk4, SemiImplicitEuler, State, Steered, System};
+use crate::integrate::{self, ContinuousInputs, Method, Rk4, SemiImplicitEuler, State, System};
 use crate::lanes::{lane, lane_by_lane};
 use crate::private::to_f64;
 use crate::{Lanes, Real};
@@ -253,7 +253,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         if M::CONSTRAINED && S::ITERATES_CONSTRAINTS {
             return self.one_by_one(rollout, first, start, control);
         }
-        let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
+        let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
         let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
         let method = rollout.method.wide::<L>();
         let mut memory = method.memory();
@@ -299,7 +299,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         let mut failures = [None; L];
         let ends: [_; L] = core::array::from_fn(|k| {
             // `control` keeps lanes apart, so that what stands in the others does not matter.
-            let inputs = Steered(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| {
+            let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| {
                 lane(&control(first, Lanes::splat(t), &q.map(Lanes::splat), &v.map(Lanes::splat)), k)
             });
             let mut system: System<'_, M, _, NU> = System::new(self.mechanism, inputs);

@@ -2,7 +2,7 @@
 
 /// A message that grows at compile time.
 pub struct Message {
-    text: [u8; Message::MOST],
+    text: [u8; Message::CAPACITY],
     length: usize,
 }
 
@@ -14,7 +14,7 @@ const EDITS: usize = 3;
 const LISTED: usize = 8;
 
 impl Message {
-    const MOST: usize = 1024;
+    const CAPACITY: usize = 1024;
 
     /// That a mechanism has no frame of this name, with the names nearest to it, or all if they are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
@@ -32,7 +32,7 @@ impl Message {
     }
 
     const fn empty() -> Message {
-        Message { text: [0; Message::MOST], length: 0 }
+        Message { text: [0; Message::CAPACITY], length: 0 }
     }
 
     /// With the names nearest to one, or all if they are few; whether there was something to say.
@@ -77,7 +77,7 @@ impl Message {
 
     const fn with(mut self, text: &str) -> Message {
         let text = text.as_bytes();
-        if self.length + text.len() > Message::MOST {
+        if self.length + text.len() > Message::CAPACITY {
             return self;
         }
         let mut k = 0;

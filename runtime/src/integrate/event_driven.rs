@@ -4,7 +4,9 @@ use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
 use super::control::Scale;
 use super::eighth::{CONTROL, trial};
 use super::local::Local;
-use super::{Dynamics, Error, Inputs, Jump, Method, State, Steered, Step, System, TimeStepping, settled};
+use super::{
+    ContinuousInputs, Dynamics, Error, Inputs, Jump, Method, State, Step, System, TimeStepping, settled,
+};
 use crate::Real;
 use crate::contact::{Contacts, Phase, Phased, Visitor, Watch, kept, separated};
 use crate::private::{constant, epsilon, to_f64};
@@ -74,7 +76,7 @@ pub struct EventMemory<T, const NV: usize> {
 
 /// Steps of hardly any length after which time stepping takes turns with them: more than the last bounces of a ball, fewer than slip
 /// in space takes to find its way where it has just begun, which is stiff.
-const MANY: u32 = 100;
+const SHORT_STEPS: u32 = 100;
 /// A step of hardly any length, in shortest steps of time stepping.
 const SHORT: f64 = 64.0;
 /// Likewise where contacts slip whose forces the motion does not tell apart: which of them is right is not known, and looking for
@@ -101,9 +103,9 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
 
     /// Whether it is time stepping's turn.
     fn is_stuck(&mut self) -> bool {
-        let is_stuck = self.short > MANY;
+        let is_stuck = self.short > SHORT_STEPS;
         if is_stuck {
-            self.short = MANY - 1;
+            self.short = SHORT_STEPS - 1;
         }
         is_stuck
     }
@@ -207,7 +209,7 @@ where
             memory.stretch = (memory.stretch + 1).min(LONGEST);
             memory.adaptive.tried(&settings, start.t)?;
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
-            let mut system = System::new(mechanism, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut system = System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
             let mut local = Local { system: &mut system, origin };
             TimeStepping::step(h).advance(
                 &mut TimeStepping::step(h).memory(),
@@ -268,7 +270,7 @@ where
         };
         let made = {
             let inputs = &mut *self.inputs;
-            let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
             let mut local = Local { system: &mut system, origin };
             memory.acceleration = Some(self.acceleration);
             let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
@@ -329,7 +331,7 @@ where
     {
         let Self { phased, origin, begin, .. } = *self;
         let inputs = &mut *self.inputs;
-        let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
         let mut local = Local { system: &mut system, origin };
         let scale = Scale { relative: settings.relative, absolute: settings.absolute };
         let attempt =
@@ -347,7 +349,7 @@ where
         let end = step.end.finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
-        let mut system = System::new(phased, Steered(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
         let local = Local { system: &mut system, origin };
         Ok(Step { end: settled(&local, State { q, v, ..end }, begin.t)?, ..step })
     }

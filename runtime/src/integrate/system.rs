@@ -35,12 +35,12 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, N
 
 /// Inputs that are a function of time and state, evaluated whenever an integrator asks.
 #[derive(Clone, Copy, Debug)]
-pub struct Steered<F>(
+pub struct ContinuousInputs<F>(
     /// `|t, q, v| u`.
     pub F,
 );
 
-impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for Steered<F>
+impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for ContinuousInputs<F>
 where
     T: Real,
     F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
@@ -52,20 +52,21 @@ where
 
 /// Inputs of a digital controller: a function evaluated once per control period and held in between.
 #[derive(Clone, Copy, Debug)]
-pub struct Held<T, F, const NU: usize> {
+pub struct SampledInputs<T, F, const NU: usize> {
     period: T,
     control: F,
     u: SVector<T, NU>,
 }
 
-impl<T: Real, F, const NU: usize> Held<T, F, NU> {
+impl<T: Real, F, const NU: usize> SampledInputs<T, F, NU> {
     /// Evaluates `control(t, q, v)` every `period` seconds.
     pub fn new(period: T, control: F) -> Self {
         Self { period, control, u: SVector::zeros() }
     }
 }
 
-impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for Held<T, F, NU>
+impl<T, F, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU>
+    for SampledInputs<T, F, NU>
 where
     T: Real,
     F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,

@@ -116,7 +116,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
 fn even_slopes<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
-        constant(super::SMALL),
+        constant(super::SERIES_ANGLE),
         |square| [series(square, 2, |k| (2.0 - k) * (k - 1.0)), series(square, 3, |k| (1.0 - k) * (k - 2.0))],
         |square| {
             let half = square.sqrt() * constant(0.5);
@@ -239,7 +239,7 @@ mod tests {
                 .zip(&above)
                 .for_each(|(a, b)| assert!((a - b).abs() < 1e-13 + 1e-11 * a.abs(), "{a} {b}"));
         };
-        near(even_slopes, super::super::SMALL);
+        near(even_slopes, super::super::SERIES_ANGLE);
         near(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
         near(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
     }

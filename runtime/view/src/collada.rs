@@ -3,14 +3,14 @@
 //! `up_axis` is not applied. The frames of a robot's file are those of its links, no direction of which is up, and the viewers that such
 //! files are made with (RViz, Gazebo, MoveIt) take the numbers as they stand.
 
-use crate::mesh::MOST;
+use crate::mesh::MAX_TRIANGLES;
 use linkwork::nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node, NodeId};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 /// Nodes inside one another, those that are instances counted in.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 /// Instances of nodes: each may hold further ones, so that a short file could hold any number.
 const MOST_INSTANCES: usize = 100_000;
 
@@ -76,7 +76,7 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
         self.instances += 1;
-        if depth > DEEPEST || self.instances > MOST_INSTANCES {
+        if depth > MAX_DEPTH || self.instances > MOST_INSTANCES {
             return Err("nodes inside one another without end".to_string());
         }
         let mut place = *above;
@@ -110,8 +110,8 @@ impl<'a> Reader<'a> {
 }
 
 fn within_bounds(corners: usize) -> Result<(), String> {
-    match corners / 3 > MOST {
-        true => Err(format!("more than {MOST} triangles: take a simplified mesh")),
+    match corners / 3 > MAX_TRIANGLES {
+        true => Err(format!("more than {MAX_TRIANGLES} triangles: take a simplified mesh")),
         false => Ok(()),
     }
 }

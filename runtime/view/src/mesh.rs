@@ -12,7 +12,7 @@ pub(crate) struct Mesh {
 }
 
 /// Most triangles of a file: a page with more would be large and slow.
-pub(crate) const MOST: usize = 200_000;
+pub(crate) const MAX_TRIANGLES: usize = 200_000;
 
 /// Cells of a surface along each of its two directions.
 const CELLS: u32 = 80;
@@ -111,7 +111,9 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     };
     let mesh = mesh.and_then(|mesh| match mesh.corners.len() / 3 {
         0 => Err("no triangles".to_string()),
-        n if n > MOST => Err(format!("{n} triangles, more than {MOST}: take a simplified mesh")),
+        n if n > MAX_TRIANGLES => {
+            Err(format!("{n} triangles, more than {MAX_TRIANGLES}: take a simplified mesh"))
+        }
         _ if mesh.corners.iter().flatten().any(|x| !x.is_finite()) => {
             Err("a corner is not finite".to_string())
         }

@@ -13,7 +13,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// Connections at a time.
-const MOST: usize = 16;
+const MAX_CONNECTIONS: usize = 16;
 /// Bytes of a request without its content.
 const LONGEST_HEAD: usize = 16_384;
 /// A browser that takes nothing for so long is let go.
@@ -128,7 +128,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
         };
         let before = shared.connections.fetch_add(1, Ordering::Relaxed);
         let guest = Guest(shared.clone());
-        if before < MOST {
+        if before < MAX_CONNECTIONS {
             // A browser that goes away is no error.
             let _ = thread::Builder::new().spawn(move || {
                 let _ = serve(stream, &guest.0);

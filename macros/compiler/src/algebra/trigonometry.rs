@@ -8,7 +8,7 @@ use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};
 mod tests;
 
 /// More terms than these are left alone.
-const MOST: usize = 40;
+const MAX_TERMS: usize = 40;
 /// The highest product that is written as a Fourier sum.
 const DEGREE: u32 = 6;
 /// Relative difference of coefficients that are taken to be equal.
@@ -28,7 +28,7 @@ pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     terms.sort_by_key(|t| t.monomial.without(mask));
     let mut out = Vec::with_capacity(terms.len());
     for group in terms.chunk_by(|a, b| a.monomial.without(mask) == b.monomial.without(mask)) {
-        if group.len() == 1 || group.len() > MOST {
+        if group.len() == 1 || group.len() > MAX_TERMS {
             out.extend_from_slice(group);
             continue;
         }

@@ -17,29 +17,29 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::commutators;
 use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
 use crate::mechanism::{Model, Quantity};
-use crate::passes::{self, Form, Passes};
+use crate::passes::{self, Passes, Variant};
 use crate::vectorise::{self, Limbs};
 
 /// Up to how many velocities differentiation is tried.
 pub(super) const DIFFERENTIATE: usize = 6;
 
-/// The forms of the model that are tried.
-pub(super) fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
-    let mut forms = passes::forms(model, passes);
+/// The variants of the model that are tried.
+pub(super) fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
+    let mut variants = passes::variants(model, passes);
     if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
-        forms.extend(passes::forms(model, Passes { frames: false, ..passes }));
+        variants.extend(passes::variants(model, Passes { frames: false, ..passes }));
     }
-    forms.retain(|form| !form.anchored);
+    variants.retain(|variant| !variant.for_inverse_dynamics);
     if model.nv() > DERIVATIVES_COMPARED {
-        forms.truncate(1);
+        variants.truncate(1);
     }
     if passes.parallel {
-        forms.extend(passes::in_common_axes(&forms));
+        variants.extend(passes::in_common_axes(&variants));
     }
-    forms
+    variants
 }
 
-/// The functions, from the form of the model in which the derivatives of inverse dynamics cost least.
+/// The functions, from the variant of the model in which the derivatives of inverse dynamics cost least.
 pub(super) struct Derivatives<'a, 'g> {
     parts: Parts<'a, 'g>,
     /// The forces of the inputs.
@@ -51,19 +51,17 @@ pub(super) struct Derivatives<'a, 'g> {
 impl<'a, 'g> Derivatives<'a, 'g> {
     pub(super) fn new(
         model: &Model<'g>,
-        forms: &'a [Form<'g>],
+        variants: &'a [Variant<'g>],
         passes: Passes,
         specialisation: Specialisation,
     ) -> Option<Derivatives<'a, 'g>> {
         let mut parts: Vec<Parts<'_, '_>> =
-            forms.iter().map(|form| Parts::new(form, specialisation)).collect();
+            variants.iter().map(|variant| Parts::new(variant, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
-            parts.extend(
-                forms.iter().map(|form| Parts {
-                    method: Method::Differentiation,
-                    ..Parts::new(form, specialisation)
-                }),
-            );
+            parts.extend(variants.iter().map(|variant| Parts {
+                method: Method::Differentiation,
+                ..Parts::new(variant, specialisation)
+            }));
         }
         let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
         if parts.model.acceleration_forces.is_empty() {
@@ -185,12 +183,12 @@ struct InLanes<'g> {
 }
 
 impl<'a, 'g> Parts<'a, 'g> {
-    fn new(form: &'a Form<'g>, specialisation: Specialisation) -> Parts<'a, 'g> {
-        let mass = crba::mass_matrix(&form.model, &form.joints);
+    fn new(variant: &'a Variant<'g>, specialisation: Specialisation) -> Parts<'a, 'g> {
+        let mass = crba::mass_matrix(&variant.model, &variant.joints);
         Parts {
-            model: &form.model,
-            joints: form.joints.clone(),
-            effective: added_mass::effective(&form.model, &mass),
+            model: &variant.model,
+            joints: variant.joints.clone(),
+            effective: added_mass::effective(&variant.model, &mass),
             mass,
             method: Method::Recursion(1),
             specialisation,

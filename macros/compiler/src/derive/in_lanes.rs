@@ -21,7 +21,7 @@ pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<
     limbs.scattered(&whole)
 }
 
-/// Forward dynamics by articulated bodies, with the forces that the motion needs from another form. `None` for a
+/// Forward dynamics by articulated bodies, with the forces that the motion needs from another variant. `None` for a
 /// mechanism with coupled coordinates.
 pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<Expr<'g>>> {
     let v = limbs.symbols(Quantity::Velocity);

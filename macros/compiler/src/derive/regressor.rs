@@ -99,7 +99,7 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
         let link = &mut given.links[site.link.0].inertia;
         *link = link.plus_placed(&own, &site.pose.rotation, site.pose.translation);
     }
-    regroup(&mut given, Regroup { gauge: Gauge::Second, anchors: false, symbolic: true });
+    regroup(&mut given, Regroup { gauge: Gauge::Second, to_children: false, symbolic: true });
 
     let left: Vec<[Expr<'g>; COUNT]> = given.links.iter().map(|link| parameters(&link.inertia)).collect();
     let all = (0..left.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p)));

@@ -7,11 +7,11 @@ use crate::lower::Program;
 use crate::machine::DERIVATIVES_COMPARED;
 use crate::mechanics::derivatives::parameters;
 use crate::mechanism::{Model, Quantity};
-use crate::passes::{self, Form, Passes};
+use crate::passes::{self, Passes, Variant};
 
-/// What both functions are derived from: the model as it is or one of its forms, whichever costs less.
+/// What both functions are derived from: the model as it is or one of its variants, whichever costs less.
 pub(super) struct Sensitivities<'g> {
-    form: Option<Form<'g>>,
+    variant: Option<Variant<'g>>,
     inverse: Program,
     specialisation: Specialisation,
 }
@@ -24,23 +24,27 @@ impl<'g> Sensitivities<'g> {
     ) -> Sensitivities<'g> {
         // Given forces do not show what they depend on.
         let model = &Model { passive: None, ..model.clone() };
-        let mut forms =
-            if model.nv() <= DERIVATIVES_COMPARED { passes::forms(model, passes) } else { Vec::new() };
-        forms.retain(|form| !form.anchored);
-        forms.push(Form { joints: kinematics::joints(model), model: model.clone(), anchored: false });
+        let mut variants =
+            if model.nv() <= DERIVATIVES_COMPARED { passes::variants(model, passes) } else { Vec::new() };
+        variants.retain(|variant| !variant.for_inverse_dynamics);
+        variants.push(Variant {
+            joints: kinematics::joints(model),
+            model: model.clone(),
+            for_inverse_dynamics: false,
+        });
         if passes.parallel {
-            forms.extend(passes::in_common_axes(&forms));
+            variants.extend(passes::in_common_axes(&variants));
         }
-        let inverse = |form: &Form<'_>| {
-            specialisation.program(&parameters::inverse_dynamics(&form.model, &form.joints).concat())
+        let inverse = |variant: &Variant<'_>| {
+            specialisation.program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
         };
-        let all = forms.into_iter().map(|form| {
-            let program = inverse(&form);
-            (form, program)
+        let all = variants.into_iter().map(|variant| {
+            let program = inverse(&variant);
+            (variant, program)
         });
         let best = all.min_by_key(|(_, program)| program.counts.total());
-        let (form, inverse) = best.map_or((None, Program::default()), |(form, p)| (Some(form), p));
-        Sensitivities { form, inverse, specialisation }
+        let (variant, inverse) = best.map_or((None, Program::default()), |(variant, p)| (Some(variant), p));
+        Sensitivities { variant, inverse, specialisation }
     }
 
     pub(super) fn inverse_dynamics(&self) -> Program {
@@ -48,13 +52,13 @@ impl<'g> Sensitivities<'g> {
     }
 
     pub(super) fn forward_dynamics(&self) -> Program {
-        let accelerations = self.form.as_ref().map_or_else(Vec::new, accelerations);
+        let accelerations = self.variant.as_ref().map_or_else(Vec::new, accelerations);
         self.specialisation.program(&accelerations.concat())
     }
 }
 
-fn accelerations<'g>(form: &Form<'g>) -> Vec<Vec<Expr<'g>>> {
-    let model = &form.model;
+fn accelerations<'g>(variant: &Variant<'g>) -> Vec<Vec<Expr<'g>>> {
+    let model = &variant.model;
     let tau: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
-    parameters::forward_dynamics(model, &form.joints, &tau)
+    parameters::forward_dynamics(model, &variant.joints, &tau)
 }

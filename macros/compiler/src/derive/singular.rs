@@ -113,12 +113,12 @@ fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
 
 /// Reports velocities that move nothing, all together: a file may have many.
 fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
-    const MOST: usize = 8;
+    const MAX_REPORTED: usize = 8;
     let place = &model.velocities[singular[0]].1;
     let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
-    let mut list: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
-    if names.len() > MOST {
-        list.push(format!("{} more", names.len() - MOST));
+    let mut list: Vec<String> = names.iter().take(MAX_REPORTED).map(|name| format!("`{name}`")).collect();
+    if names.len() > MAX_REPORTED {
+        list.push(format!("{} more", names.len() - MAX_REPORTED));
     }
     let (subject, verb, joints) = match names.len() {
         1 => ("coordinate", "moves", "the joint carries"),

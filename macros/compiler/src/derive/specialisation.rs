@@ -7,7 +7,7 @@ use crate::mechanism::Quantity;
 /// By how many operations equal functions may change places when their sums are factored: so many, and one in so many.
 const SPREAD: (usize, usize) = (3, 100);
 
-/// Outputs of one of several forms of a function, with their size in operations.
+/// Outputs of one of several variants of a function, with their size in operations.
 pub struct Candidate<'g> {
     /// Operations.
     pub size: usize,

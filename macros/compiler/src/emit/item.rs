@@ -115,7 +115,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
         write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
     }
-    emitted.text = at_home(emitted.text, interface.shell);
+    emitted.text = with_runtime(emitted.text, interface.shell);
     emitted
 }
 
@@ -172,7 +172,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     if interface.facts.requests.prepare {
         write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
     }
-    emitted.text = at_home(emitted.text, interface.shell);
+    emitted.text = with_runtime(emitted.text, interface.shell);
     emitted
 }
 
@@ -235,15 +235,15 @@ fn alias_of(ident: &syn::Ident) -> String {
 
 /// The path of the runtime in tokens.
 pub(super) fn runtime(shell: &Shell) -> TokenStream {
-    match shell.home {
+    match shell.runtime {
         None => quote!(::linkwork),
         Some(_) => quote::format_ident!("{}", alias_of(&shell.ident)).to_token_stream(),
     }
 }
 
 /// The text with the runtime where the attribute says that it is.
-fn at_home(text: String, shell: &Shell) -> String {
-    match shell.home {
+fn with_runtime(text: String, shell: &Shell) -> String {
+    match shell.runtime {
         None => text,
         Some(_) => text.replace("::linkwork::", &format!("{}::", alias_of(&shell.ident))),
     }
@@ -251,7 +251,7 @@ fn at_home(text: String, shell: &Shell) -> String {
 
 /// Puts struct and implementations together.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
-    let Shell { attributes, visibility, ident, parameters, tables, elements, home, .. } = i.shell;
+    let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
@@ -267,7 +267,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     // The types of the elements, so that an editor explains them.
     let words = elements.iter().map(|(_, kind)| kind);
     // Under a name of its own, since the path may be one that can be written in the user's source alone.
-    let alias = home.as_ref().map(|path| {
+    let alias = path.as_ref().map(|path| {
         let alias = quote::format_ident!("{}", alias_of(ident));
         quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)
     });

@@ -11,13 +11,13 @@ use std::fmt;
 
 /// An entry of a matrix.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Place {
+struct Entry {
     matrix: &'static str,
     column: usize,
     row: usize,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Entry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}.data.0[{}][{}]", self.matrix, self.column, self.row)
     }
@@ -43,14 +43,14 @@ pub fn with_stores(
 
 /// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added; nor do the
 /// columns of it that are still to come.
-fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
+fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     let given = given(f);
     let Some(&matrix) = given.first() else { return Vec::new() };
     let (before, forces, n) = match f.shape {
         Shape::Symmetric(_) => {
             let both = |&(row, column): &(usize, usize)| {
                 let mut places =
-                    vec![Place { matrix, column, row }, Place { matrix, column: row, row: column }];
+                    vec![Entry { matrix, column, row }, Entry { matrix, column: row, row: column }];
                 places.dedup();
                 places
             };
@@ -60,7 +60,7 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
         Shape::Pair(n) | Shape::Forward(n) => (0, 2 * n * n, n),
         _ => return Vec::new(),
     };
-    let square = |matrix: &'static str| (0..n * n).map(move |k| Place { matrix, column: k / n, row: k % n });
+    let square = |matrix: &'static str| (0..n * n).map(move |k| Entry { matrix, column: k / n, row: k % n });
     let all = given.into_iter().flat_map(square).enumerate();
     let overwritten = match &f.structure.inverse {
         InverseForm::BlockArrow { trunk, .. } => trunk.as_slice(),
@@ -77,7 +77,7 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Place>> {
 fn as_known(
     program: &Program,
     statements: Vec<Statement>,
-    places: &[Vec<Place>],
+    places: &[Vec<Entry>],
     outputs: &Outputs<'_>,
 ) -> Vec<Statement> {
     let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
@@ -93,7 +93,7 @@ fn as_known(
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
-        let Place { matrix, column, row } = one.place;
+        let Entry { matrix, column, row } = one.place;
         let text = format!(
             "Ops::store_two::<{}, {}, {row}, _, _, _, _>(&mut {matrix}.data.0[{column}], t{}, t{});",
             one.lane, next.lane, one.vector, next.vector
@@ -120,7 +120,7 @@ fn as_known(
 
 /// A lane of a vector that is stored.
 struct Lane {
-    place: Place,
+    place: Entry,
     output: usize,
     vector: usize,
     lane: usize,
@@ -129,7 +129,7 @@ struct Lane {
 }
 
 /// All results that are lanes of vectors with names, place by place.
-fn lanes(program: &Program, places: &[Vec<Place>], known: &dyn Fn(usize) -> Option<usize>) -> Vec<Lane> {
+fn lanes(program: &Program, places: &[Vec<Entry>], known: &dyn Fn(usize) -> Option<usize>) -> Vec<Lane> {
     let mut all = Vec::new();
     for (output, (operand, places)) in program.outputs.iter().zip(places).enumerate() {
         if let Operand::Value(v) = operand
@@ -148,7 +148,7 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     let mut pairs = Vec::new();
     let mut rest = lanes.into_iter().peekable();
     while let Some(one) = rest.next() {
-        let below = Place { row: one.place.row + 1, ..one.place };
+        let below = Entry { row: one.place.row + 1, ..one.place };
         let is_next = |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
         if let Some(next) = rest.next_if(is_next) {
             pairs.push([one, next]);
@@ -160,14 +160,14 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
 /// All results after the last statement.
 fn at_the_end(
     mut statements: Vec<Statement>,
-    places: &[Vec<Place>],
+    places: &[Vec<Entry>],
     outputs: &Outputs<'_>,
 ) -> Vec<Statement> {
     let stored =
         || outputs.pieces.iter().zip(places).enumerate().filter(|(_, (_, places))| !places.is_empty());
     let mut text: Vec<String> =
         stored().map(|(k, (piece, _))| format!("let entry{k} = {};", piece.text)).collect();
-    let mut all: Vec<(Place, usize)> =
+    let mut all: Vec<(Entry, usize)> =
         stored().flat_map(|(k, (_, places))| places.iter().map(move |place| (*place, k))).collect();
     all.sort_unstable();
     text.extend(all.iter().map(|(place, k)| format!("{place} = entry{k};")));

@@ -1,6 +1,6 @@
 //! Evaluation of expressions with numbers: the oracle of the tests and of the checks of a model.
 
-use super::lanes::MOST;
+use super::lanes::MAX_LANES;
 use super::node::{Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
@@ -56,7 +56,7 @@ impl<'g> Tape<'g> {
     pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         match self.graph {
             None => Vec::new(),
-            Some(graph) if self.in_lanes => self.run::<MOST>(graph, symbol),
+            Some(graph) if self.in_lanes => self.run::<MAX_LANES>(graph, symbol),
             Some(graph) => self.run::<1>(graph, symbol),
         }
     }

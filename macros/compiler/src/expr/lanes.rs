@@ -8,7 +8,7 @@ use super::{Expr, Graph};
 use std::collections::BTreeMap;
 
 /// Most lanes of an expression.
-pub const MOST: usize = 8;
+pub const MAX_LANES: usize = 8;
 
 /// Constants and inputs of each lane, every combination once.
 #[derive(Default)]
@@ -154,7 +154,7 @@ impl<'g> Expr<'g> {
 
     /// True for a constant whose size is in no lane above a bound, which is constant too.
     pub fn is_within(self, bound: Expr<'g>) -> bool {
-        match (self.lane_values(MOST), bound.lane_values(MOST)) {
+        match (self.lane_values(MAX_LANES), bound.lane_values(MAX_LANES)) {
             (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
             _ => false,
         }

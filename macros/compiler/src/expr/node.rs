@@ -109,7 +109,7 @@ pub struct Lookup(u16);
 
 impl Lookup {
     /// Most tables of a mechanism.
-    pub const MOST: usize = 256;
+    pub const MAX_TABLES: usize = 256;
 
     /// The table of this number, with so many variables, one to three.
     pub fn new(table: usize, variables: usize) -> Lookup {

@@ -7,9 +7,9 @@ use crate::syntax::Name;
 use std::path::{Path, PathBuf};
 
 /// Files that include one another, each in the next.
-pub(super) const DEEPEST: usize = 32;
+pub(super) const MAX_DEPTH: usize = 32;
 /// Files of one mechanism.
-pub(super) const MOST: usize = 256;
+pub(super) const MAX_FILES: usize = 256;
 
 /// A file that was read.
 pub(super) struct Read {
@@ -94,8 +94,11 @@ pub(super) fn report_circle(
 
 /// Reports files that are too many or too deep.
 pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
-    let (most, what) =
-        if depth > DEEPEST { (DEEPEST, "files inside one another") } else { (MOST, "included files") };
+    let (most, what) = if depth > MAX_DEPTH {
+        (MAX_DEPTH, "files inside one another")
+    } else {
+        (MAX_FILES, "included files")
+    };
     cx.error(at.place.clone(), format!("more than {most} {what}"));
 }
 

@@ -10,7 +10,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 /// Elements inside one another. URDF needs six, MJCF one for each link of a chain.
-const DEEPEST: [(FileFormat, usize); 3] =
+const MAX_DEPTHS: [(FileFormat, usize); 3] =
     [(FileFormat::Urdf, 64), (FileFormat::Mjcf, 256), (FileFormat::Sdf, 64)];
 /// Attributes of one element: the parser compares each with each.
 const MOST_ATTRIBUTES: usize = 64;
@@ -138,7 +138,7 @@ fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
-    let deepest = DEEPEST.iter().find(|(known, _)| *known == format).map_or(0, |(_, deepest)| *deepest);
+    let deepest = MAX_DEPTHS.iter().find(|(known, _)| *known == format).map_or(0, |(_, deepest)| *deepest);
     let mut open = Vec::new();
     let (mut at, mut root) = (0, None);
     let (mut prefixes, mut known) = (Vec::new(), BTreeSet::new());

@@ -26,12 +26,12 @@ const OPEN: f64 = 1e-4;
 const SMALL_PIVOT: f64 = 1e-6;
 
 /// A configuration with the seed of the parameters that it belongs to.
-pub type Witness = (Vec<f64>, u64);
+pub type Sample = (Vec<f64>, u64);
 
 /// Some configurations that fulfil the constraints, first one near the configuration with all coordinates zero, if there
 /// is one. Reports loops that nothing closes if all their numbers are known.
-pub fn witnesses(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Witness> {
-    let mut found: Vec<Witness> = Vec::new();
+pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Sample> {
+    let mut found: Vec<Sample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
     let wanted = if is_numeric(model) { STARTS } else { STARTS / 3 };
     let possible = WORK / rows.cost().max(1);
@@ -64,25 +64,25 @@ fn is_numeric(model: &Model<'_>) -> bool {
         .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
 }
 
-/// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first witness belongs to:
+/// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first sample belongs to:
 /// linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move.
 pub fn degrees_of_freedom(
     model: &Model<'_>,
     rows: &Rows<'_>,
-    witnesses: &[Witness],
+    samples: &[Sample],
     cx: &mut Diagnostics,
 ) -> [usize; 2] {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let free = |(q, seed): &Witness, count: usize| {
+    let free = |(q, seed): &Sample, count: usize| {
         let mut basis = Basis::default();
         rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
         nv - basis.rank()
     };
     // The first that can move: others may be locked.
-    let witness = witnesses.iter().find(|w| free(w, nc) > 0).or(witnesses.first());
-    let count = |rank: usize| witness.map_or(nv.saturating_sub(rank), |w| free(w, rank));
+    let sample = samples.iter().find(|w| free(w, nc) > 0).or(samples.first());
+    let count = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free(w, rank));
     let freedom = [count(model.holonomic()), count(nc)];
-    if freedom[1] == 0 && !witnesses.is_empty() {
+    if freedom[1] == 0 && !samples.is_empty() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
             "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
@@ -92,14 +92,14 @@ pub fn degrees_of_freedom(
 }
 
 /// A pivot for each constraint, constraint and velocity, among the velocities that need not be independent, in the order of
-/// an elimination that is well conditioned at a witness. `None` if some constraint has none.
+/// an elimination that is well conditioned at a sample. `None` if some constraint has none.
 pub fn dependent(
     model: &Model<'_>,
     rows: &Rows<'_>,
-    witnesses: &[Witness],
+    samples: &[Sample],
     independent: &[usize],
 ) -> Option<Vec<(usize, usize)>> {
-    let (q, seed) = witnesses.first()?;
+    let (q, seed) = samples.first()?;
     let mut rows = rows.jacobian(q, *seed);
     let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
     let mut pivots: Vec<(usize, usize)> = Vec::new();

@@ -2,7 +2,7 @@
 //! random configurations and in some that fulfil the constraints, for random parameters, where only what holds
 //! everywhere is seen.
 
-use super::mobility::Witness;
+use super::mobility::Sample;
 use super::rows::{Rows, random_configuration, value_of};
 use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
@@ -53,9 +53,9 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
 }
 
 /// Drops rows that follow from the others wherever the mechanism is, constant ones among them; true if there are such rows.
-pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], witnesses: &[Witness]) -> bool {
+pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples: &[Sample]) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
-    let all = random.chain(witnesses.iter().cloned());
+    let all = random.chain(samples.iter().cloned());
     let samples: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
     let mut bases: Vec<Basis> = samples.iter().map(|_| Basis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
@@ -63,7 +63,7 @@ pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], witnesse
         // Where no configuration is known that fulfils the constraints, only rows without any influence go.
         let none = Basis::default();
         let depends = samples.iter().zip(&bases).all(|(j, basis)| {
-            let others = if witnesses.is_empty() { &none } else { basis };
+            let others = if samples.is_empty() { &none } else { basis };
             others.explains(&j[row], TOLERANCE)
         });
         if !depends {

@@ -1,7 +1,7 @@
 //! Straight-line programs: instructions with operands, and what they cost.
 
 use crate::expr::eval::joined;
-use crate::expr::lanes::MOST;
+use crate::expr::lanes::MAX_LANES;
 use crate::expr::{Extreme, Function, Lookup, Symbol};
 use std::collections::BTreeSet;
 
@@ -261,7 +261,7 @@ impl Program {
     ) -> Vec<f64> {
         let joins = self.instructions.iter().any(|op| matches!(op, Op::Join(..)));
         match joins || !self.tuples.is_empty() || !self.gathers.is_empty() {
-            true => self.run_lanes::<MOST>(symbol, table),
+            true => self.run_lanes::<MAX_LANES>(symbol, table),
             false => self.run_lanes::<1>(symbol, table),
         }
     }

@@ -14,7 +14,7 @@ use pairs::{Pair, Pairs};
 /// Largest program that is looked at, in instructions.
 const MOST_INSTRUCTIONS: usize = 3000;
 /// Up to how many instructions all ways are tried that may take as few operations as another.
-const SMALL: usize = 1000;
+const EXHAUSTIVE_INSTRUCTIONS: usize = 1000;
 /// Most times that sums are shared again where that has helped.
 const ROUNDS: usize = 5;
 /// Longest sum that is looked at as one: there are as many pairs as half its square.
@@ -81,7 +81,7 @@ impl Program {
     /// first, with its length once products are fused. `None` if none is shorter than `length`.
     fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
         let all = Sums::of(self);
-        let is_small = self.instructions.len() <= SMALL;
+        let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;
         let mut cost = (length, self.counts.total());
         let mut best: Option<(usize, Program)> = None;
         let mut fewest = all.operations();

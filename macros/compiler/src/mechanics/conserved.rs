@@ -102,7 +102,7 @@ fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     if model.constraints.is_empty() {
         return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
     }
-    let found = mobility::witnesses(model, &Rows::of(model), &mut Diagnostics::new());
+    let found = mobility::sample_configurations(model, &Rows::of(model), &mut Diagnostics::new());
     found.into_iter().cycle().take(STATES as usize).collect()
 }
 
@@ -239,7 +239,7 @@ impl State {
 /// `x` of `m x = r` by elimination with complete pivoting; what rows leave open is zero.
 fn solved(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
     /// Pivots below this part of the first count as zero.
-    const SMALL: f64 = 1e-11;
+    const PIVOT_TOLERANCE: f64 = 1e-11;
     let n = r.len();
     let mut pivots: Vec<(usize, usize)> = Vec::new();
     let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
@@ -253,7 +253,7 @@ fn solved(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
         columns.retain(|j| *j != column);
         let pivot = m[row][column];
         first = f64::max(first, pivot.abs());
-        if pivot.abs() <= SMALL * first {
+        if pivot.abs() <= PIVOT_TOLERANCE * first {
             break;
         }
         pivots.push((row, column));

@@ -1,7 +1,7 @@
 //! Frames worth trying for a link.
 
 use super::number::{
-    IDENTITY, Mass, Place, Vector, about, axis, clean, column, cross, dot, norm, times, transpose,
+    Frame, IDENTITY, Mass, Vector, about, axis, clean, column, cross, dot, norm, times, transpose,
     transposed_times,
 };
 use super::regroup::coordinate_axis;
@@ -32,7 +32,7 @@ pub struct Site {
     /// The parent link.
     pub parent: Option<usize>,
     /// The joint's frame on the parent, if in numbers.
-    pub place: Option<Place>,
+    pub place: Option<Frame>,
     /// Which choice there is.
     pub freedom: Freedom,
     /// Mass properties, if in numbers.
@@ -46,7 +46,7 @@ pub struct Site {
 impl Site {
     /// The site of a link of some size; where parameters cost nothing (`free`), its mass properties need not be numbers.
     pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
-        let (place, mass) = (Place::of(&link.placement), Mass::of(&link.inertia));
+        let (place, mass) = (Frame::of(&link.placement), Mass::of(&link.inertia));
         let free = match &link.motion {
             Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
             Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: false }),
@@ -76,7 +76,7 @@ impl Site {
 }
 
 /// Most angles and most shifts that are tried for one link.
-const MOST: usize = 5;
+const MAX_CANDIDATES: usize = 5;
 
 /// How many times its size a link's origin may be moved. With the sine of the angle between them above its inverse the common
 /// normal of two axes is within reach whatever their places are. At this distance rounding takes two digits at most off the
@@ -88,16 +88,16 @@ const REACH: f64 = 8.0;
 const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Frames for link `k`, in its present one; that one is the first. `chosen` are the candidates of later links.
-pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Place>]) -> Vec<Place> {
+pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
     match sites[k].freedom {
-        Freedom::None => vec![Place::IDENTITY],
+        Freedom::None => vec![Frame::IDENTITY],
         Freedom::Turn { k: a, .. } => {
             let list = turning(sites, k, a, chosen);
             let mut places = Vec::new();
             for angle in &list.angles {
                 let rotation = about(a, *angle);
                 places.extend(
-                    list.shifts.iter().map(|s| Place { rotation, translation: axis(a).map(|c| c * s) }),
+                    list.shifts.iter().map(|s| Frame { rotation, translation: axis(a).map(|c| c * s) }),
                 );
             }
             places
@@ -143,12 +143,12 @@ impl Choices {
 
 /// Adds a number that comes from numbers of size `scale`, unless it is there.
 fn push(list: &mut Vec<f64>, x: f64, scale: f64) {
-    if list.len() < MOST && !list.iter().any(|y| clean(x - y, 4.0 * (scale + x.abs())) == 0.0) {
+    if list.len() < MAX_CANDIDATES && !list.iter().any(|y| clean(x - y, 4.0 * (scale + x.abs())) == 0.0) {
         list.push(x);
     }
 }
 
-fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Place>]) -> Choices {
+fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices {
     let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
     for c in children(sites, k) {
         if let Some(place) = &sites[c].place {
@@ -178,7 +178,7 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Place>]) -> Choices
 }
 
 /// On the common normal with a child's axis, and along it.
-fn towards(list: &mut Choices, child: &Site, place: &Place, chosen: &[Place]) {
+fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
     let direction = child.direction();
@@ -208,7 +208,7 @@ fn towards(list: &mut Choices, child: &Site, place: &Place, chosen: &[Place]) {
 }
 
 /// Frames for a sliding link: turned as its parent or a child, at their places or its own.
-fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Place> {
+fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];
     if let Some(place) = &sites[k].place {
@@ -222,8 +222,8 @@ fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Place> {
     // Sliding along a coordinate axis is cheap, so it stays so.
     let entries = |v: Vector| v.iter().filter(|c| clean(**c, 1.0) != 0.0).count();
     rotations.retain(|rotation| entries(transposed_times(rotation, slide)) <= entries(slide));
-    rotations.truncate(MOST);
-    points.truncate(MOST);
-    let all = rotations.iter().flat_map(|r| points.iter().map(|p| Place { rotation: *r, translation: *p }));
+    rotations.truncate(MAX_CANDIDATES);
+    points.truncate(MAX_CANDIDATES);
+    let all = rotations.iter().flat_map(|r| points.iter().map(|p| Frame { rotation: *r, translation: *p }));
     all.collect()
 }

@@ -3,7 +3,7 @@
 
 use super::candidates::{Freedom, Site};
 use super::number::{
-    Matrix, Place, Vector, axis, clean, clean_rotation, column, cross, dot, norm, times, transposed_times,
+    Frame, Matrix, Vector, axis, clean, clean_rotation, column, cross, dot, norm, times, transposed_times,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,12 +22,12 @@ const GROUND: f64 = 0.02;
 
 /// The cheapest way to place a link's new frame `frame` in its parent's `parent`: cost, placement, and the angle that
 /// is left to the joint. `None` if the placement is not made of numbers.
-pub fn joint(site: &Site, parent: &Place, frame: &Place) -> Option<(f64, Place, f64)> {
+pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
     let plain = site.place.as_ref()?.between(parent, frame);
     let mut best = (placement(site, &plain, frame), plain, 0.0);
     if let Freedom::Turn { k, offset: true } = site.freedom {
         for (rotation, angle) in alignments(&plain.rotation, k) {
-            let place = Place { rotation, ..plain };
+            let place = Frame { rotation, ..plain };
             let angle = clean(angle, 1.0);
             let cost = placement(site, &place, frame) + if angle == 0.0 { 0.0 } else { OFFSET };
             if cost < best.0 - 1e-9 {
@@ -38,7 +38,7 @@ pub fn joint(site: &Site, parent: &Place, frame: &Place) -> Option<(f64, Place, 
     Some(best)
 }
 
-fn placement(site: &Site, place: &Place, frame: &Place) -> f64 {
+fn placement(site: &Site, place: &Frame, frame: &Frame) -> f64 {
     let mut lengths = place.translation;
     if let Freedom::Slide { along } = site.freedom {
         // The way goes through all components of the sliding axis.
@@ -94,7 +94,7 @@ fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 }
 
 /// Cost of the mass properties seen from a frame.
-pub fn masses(site: &Site, frame: &Place) -> f64 {
+pub fn masses(site: &Site, frame: &Frame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
     let seen = mass.seen_from(frame);
     let along = match site.freedom {

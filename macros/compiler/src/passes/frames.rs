@@ -8,7 +8,7 @@
 
 use super::candidates::{Freedom, Site, candidates};
 use super::cost;
-use super::number::{Mass, Place, clean, norm};
+use super::number::{Frame, Mass, clean, norm};
 use crate::expr::Vec3;
 use crate::mechanism::{Coordinate, Direction, Inertia, Input, Link, Model, Motion, Pose};
 
@@ -16,9 +16,9 @@ use crate::mechanism::{Coordinate, Direction, Inertia, Input, Link, Model, Motio
 #[derive(Clone, Copy)]
 struct Step {
     /// The new frame in the old one.
-    frame: Place,
+    frame: Frame,
     /// The joint's frame in the parent's new one.
-    placement: Place,
+    placement: Frame,
     /// What the joint's coordinate starts at, about or along the coordinate axis.
     offset: f64,
 }
@@ -29,7 +29,7 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
     let Some(frames) = choose(&sites) else { return };
     let steps: Vec<Option<Step>> = (0..sites.len())
         .map(|k| {
-            let parent = sites[k].parent.map_or(Place::IDENTITY, |p| frames[p]);
+            let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
             let (_, placement, offset) = cost::joint(&sites[k], &parent, &frames[k])?;
             Some(Step { frame: frames[k], placement, offset })
         })
@@ -40,7 +40,7 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
 /// The size of every link: the distances of its own joint from the parent's origin, of its children's joints, and of its
 /// mass from its own origin, as far as they are numbers.
 pub fn sizes(model: &Model<'_>) -> Vec<f64> {
-    let places: Vec<Option<Place>> = model.links.iter().map(|link| Place::of(&link.placement)).collect();
+    let places: Vec<Option<Frame>> = model.links.iter().map(|link| Frame::of(&link.placement)).collect();
     let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
     let size = |(k, link): (usize, &Link<'_>)| {
         let children =
@@ -65,11 +65,11 @@ fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
 }
 
 /// The cheapest frame of every link, in its present one. `None` if nothing can move.
-fn choose(sites: &[Site]) -> Option<Vec<Place>> {
+fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
     if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
         return None;
     }
-    let mut choices: Vec<Vec<Place>> = vec![Vec::new(); sites.len()];
+    let mut choices: Vec<Vec<Frame>> = vec![Vec::new(); sites.len()];
     let mut costs: Vec<Vec<f64>> = vec![Vec::new(); sites.len()];
     for k in (0..sites.len()).rev() {
         choices[k] = candidates(sites, k, &choices);
@@ -80,16 +80,16 @@ fn choose(sites: &[Site]) -> Option<Vec<Place>> {
             }
         }
     }
-    let mut frames: Vec<Place> = Vec::with_capacity(sites.len());
+    let mut frames: Vec<Frame> = Vec::with_capacity(sites.len());
     for k in 0..sites.len() {
-        let parent = sites[k].parent.map_or(Place::IDENTITY, |p| frames[p]);
+        let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
         frames.push(choices[k][best(&sites[k], &parent, &choices[k], &costs[k]).0]);
     }
     Some(frames)
 }
 
 /// The best choice for a link, given its parent's frame: its index, and its cost with all that it carries.
-fn best(site: &Site, parent: &Place, choices: &[Place], costs: &[f64]) -> (usize, f64) {
+fn best(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (c, frame) in choices.iter().enumerate() {
         let own = cost::joint(site, parent, frame).map_or(0.0, |(cost, ..)| cost);

@@ -51,17 +51,17 @@ impl Passes {
 
 /// A model that has the same functions as another.
 #[derive(Clone)]
-pub struct Form<'g> {
+pub struct Variant<'g> {
     /// The model. Its mass properties are seen from the axes of its joints.
     pub model: Model<'g>,
     /// The model's joints.
     pub joints: Vec<Joint<'g>>,
     /// Masses were moved to children too: that is good for inverse dynamics alone.
-    pub anchored: bool,
+    pub for_inverse_dynamics: bool,
 }
 
 /// The model after the passes, its mass properties distributed in several ways. The frames are the same in all.
-pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
+pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     let mut start = model.clone();
     if passes.regroup {
         // Frames are chosen by what is left of the mass properties.
@@ -73,26 +73,26 @@ pub fn forms<'g>(model: &Model<'g>, passes: Passes) -> Vec<Form<'g>> {
     }
     let joints = joints(&start);
     if !passes.regroup {
-        return vec![Form { model: start, joints, anchored: false }];
+        return vec![Variant { model: start, joints, for_inverse_dynamics: false }];
     }
-    let mut forms: Vec<Form<'g>> = Vec::new();
-    let small = model.nv() <= SMALL;
-    for (gauge, anchors, symbolic, always) in DISTRIBUTIONS {
+    let mut variants: Vec<Variant<'g>> = Vec::new();
+    let small = model.nv() <= EXHAUSTIVE_VELOCITIES;
+    for (gauge, to_children, symbolic, always) in DISTRIBUTIONS {
         if !(small || always) {
             continue;
         }
         let mut model = start.clone();
-        regroup(&mut model, Regroup { gauge, anchors, symbolic });
-        add(&mut forms, Form { model, joints: joints.clone(), anchored: anchors });
+        regroup(&mut model, Regroup { gauge, to_children, symbolic });
+        add(&mut variants, Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children });
     }
     if !passes.frames {
-        add(&mut forms, Form { model: model.clone(), joints, anchored: false });
+        add(&mut variants, Variant { model: model.clone(), joints, for_inverse_dynamics: false });
     }
-    forms
+    variants
 }
 
 /// Up to how many velocities all distributions are tried: beyond, the little that some may save is not worth the time.
-const SMALL: usize = 18;
+const EXHAUSTIVE_VELOCITIES: usize = 18;
 
 /// Gauge, whether masses go to children, whether parameters are moved too, whether it is tried for any size.
 const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
@@ -104,10 +104,10 @@ const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
     (Gauge::Flat, true, false, true),
 ];
 
-/// Adds a form unless it is there.
-fn add<'g>(forms: &mut Vec<Form<'g>>, form: Form<'g>) {
-    let links = |f: &Form<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
-    if !forms.iter().any(|known| links(known) == links(&form)) {
-        forms.push(form);
+/// Adds a variant unless it is there.
+fn add<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
+    let links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
+    if !variants.iter().any(|known| links(known) == links(&variant)) {
+        variants.push(variant);
     }
 }

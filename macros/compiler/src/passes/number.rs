@@ -91,26 +91,26 @@ pub fn clean_rotation(m: &Matrix) -> Matrix {
 
 /// A frame in another.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct Frame {
     /// Columns are its axes.
     pub rotation: Matrix,
     /// Its origin.
     pub translation: Vector,
 }
 
-impl Place {
+impl Frame {
     /// The same frame.
-    pub const IDENTITY: Place = Place { rotation: IDENTITY, translation: [0.0; 3] };
+    pub const IDENTITY: Frame = Frame { rotation: IDENTITY, translation: [0.0; 3] };
 
     /// The numbers of a pose, if it is made of numbers, and its rotation is one up to rounding.
-    pub fn of(pose: &Pose<'_>) -> Option<Place> {
+    pub fn of(pose: &Pose<'_>) -> Option<Frame> {
         let rotation = clean_rotation(&pose.rotation.matrix().values()?);
         let square = product(&transpose(&rotation), &rotation);
         let error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
         if (0..9).any(|k| error(k / 3, k % 3) > 4.0 * ROUNDING) {
             return None;
         }
-        Some(Place { rotation, translation: clean_vector(pose.translation.values()?) })
+        Some(Frame { rotation, translation: clean_vector(pose.translation.values()?) })
     }
 
     /// It as a pose.
@@ -120,14 +120,14 @@ impl Place {
     }
 
     /// This frame in one that is placed at `other`, moved on by `next` in itself.
-    pub fn between(&self, other: &Place, next: &Place) -> Place {
+    pub fn between(&self, other: &Frame, next: &Frame) -> Frame {
         let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
         let ahead = times(&self.rotation, next.translation);
         let scale = norm(self.translation) + norm(ahead) + norm(other.translation);
         let from =
             std::array::from_fn(|k| clean(self.translation[k] + ahead[k] - other.translation[k], scale));
         let translation = transposed_times(&other.rotation, from).map(|c| clean(c, scale));
-        Place { rotation: clean_rotation(&rotation), translation }
+        Frame { rotation: clean_rotation(&rotation), translation }
     }
 }
 
@@ -175,7 +175,7 @@ impl Mass {
 
     /// The same about the origin of a frame placed in this one, in its axes: with `p` its origin, the tensor loses
     /// `2 (p · h) 1 − p hᵀ − h pᵀ` and gains `m (|p|² 1 − p pᵀ)`.
-    pub fn seen_from(&self, place: &Place) -> Mass {
+    pub fn seen_from(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
         let tensor: Matrix = std::array::from_fn(|i| {

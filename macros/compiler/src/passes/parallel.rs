@@ -6,15 +6,15 @@
 //! Axes are those in which components are told. Velocities and accelerations stay those of the links, so that all
 //! recursions of vectors hold as they are; a link's mass properties become expressions of its angle.
 
-use super::Form;
+use super::Variant;
 use super::regroup::coordinate_axis;
 use crate::expr::{Expr, Rotation};
 use crate::kinematics::position_in;
 use crate::mechanism::{Link, Model, Motion};
 
-/// The forms with the axes of parallel joints in common. Empty if there are no such joints.
-pub fn in_common_axes<'g>(forms: &[Form<'g>]) -> Vec<Form<'g>> {
-    forms.iter().filter_map(with_common_axes).collect()
+/// The variants with the axes of parallel joints in common. Empty if there are no such joints.
+pub fn in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
+    variants.iter().filter_map(with_common_axes).collect()
 }
 
 /// Axes of which the sine is no larger are parallel. The equations in common axes are those of axes that are: they change by as
@@ -32,17 +32,17 @@ struct Member {
     along: Option<f64>,
 }
 
-fn with_common_axes<'g>(form: &Form<'g>) -> Option<Form<'g>> {
-    let members = members(&form.model);
+fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
+    let members = members(&variant.model);
     if members.iter().all(Option::is_none) {
         return None;
     }
-    let mut form = form.clone();
+    let mut variant = variant.clone();
     // By link: the angle about the axis that its own axes have in the common ones.
     let mut angles: Vec<Option<Expr<'g>>> = Vec::new();
     // Of its own axes in those in which it is described now.
     let mut turned: Vec<Option<Rotation<'g>>> = Vec::new();
-    for ((link, joint), member) in form.model.links.iter_mut().zip(&mut form.joints).zip(members) {
+    for ((link, joint), member) in variant.model.links.iter_mut().zip(&mut variant.joints).zip(members) {
         let above = joint.parent.and_then(|p| turned[p.0].clone());
         if let Some(above) = &above {
             joint.translation = above.to_parent(joint.translation);
@@ -67,7 +67,7 @@ fn with_common_axes<'g>(form: &Form<'g>) -> Option<Form<'g>> {
         angles.push(angle);
         turned.push(turn);
     }
-    Some(form)
+    Some(variant)
 }
 
 /// By link: its place among joints that are parallel to each other, of which two turn at least.

@@ -6,7 +6,7 @@
 //! `z` these are a mass at the origin, a moment along `z`, and equal moments of inertia about `x` and `y`; for a sliding
 //! joint all moments of inertia; for a screw equal moments about `x` and `y`; for a ball a mass at the centre.
 
-use super::number::{Mass, Place};
+use super::number::{Frame, Mass};
 use crate::expr::{Sym3, Vec3};
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
@@ -28,15 +28,15 @@ pub struct Regroup {
     /// What is left of the moments of inertia.
     pub gauge: Gauge,
     /// A part of a link's mass goes to a child's origin where that takes away a component of the link's first moment.
-    pub anchors: bool,
+    pub to_children: bool,
     /// Also where mass properties or places are not numbers: moving them costs operations too.
     pub symbolic: bool,
 }
 
 /// Moves all that can be moved.
-pub fn regroup(model: &mut Model<'_>, Regroup { gauge, anchors, symbolic }: Regroup) {
+pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
     for k in (0..model.links.len()).rev() {
-        if anchors {
+        if to_children {
             anchor(model, k);
         }
         let link = &model.links[k];
@@ -73,7 +73,7 @@ fn anchor(model: &mut Model<'_>, k: usize) {
     for c in k + 1..model.links.len() {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
-        let (Some(place), Some(mut other)) = (Place::of(&child.placement), Mass::of(&child.inertia)) else {
+        let (Some(place), Some(mut other)) = (Frame::of(&child.placement), Mass::of(&child.inertia)) else {
             continue;
         };
         // Without a first moment the child's acceleration may not be needed at all.

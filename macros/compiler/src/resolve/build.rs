@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
 const MAX_VELOCITIES: usize = 128;
 /// Parameters that nothing uses: so many are told one by one.
-const FEW: usize = 3;
+const TOLD_ONE_BY_ONE: usize = 3;
 
 /// What to do with more.
 const TOO_MANY: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
@@ -266,7 +266,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
         // A whole attribute that says nothing of what was meant is one mistake.
         if let [first, rest @ ..] = unused.as_slice()
-            && rest.len() >= FEW
+            && rest.len() >= TOLD_ONE_BY_ONE
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
             cx.error(first.place.clone(), format!("nothing uses the parameters {}", all_of(&list)))

@@ -15,18 +15,18 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             return;
         }
-        let witnesses = mobility::witnesses(&self.model, &rows, cx);
+        let samples = mobility::sample_configurations(&self.model, &rows, cx);
         let before = self.model.constraints.clone();
-        if redundancy::prune(&mut self.model, &rows, &constant, &witnesses) {
+        if redundancy::prune(&mut self.model, &rows, &constant, &samples) {
             contact::check_pressed(&before, &self.model.redundant, cx);
             rows = Rows::of(&self.model);
         }
-        self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &witnesses, cx);
-        self.choose_speeds(&rows, &witnesses, cx);
+        self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &samples, cx);
+        self.choose_speeds(&rows, &samples, cx);
     }
 
     /// Finds the velocities that follow from independent speeds, if those are asked for.
-    fn choose_speeds(&mut self, rows: &Rows<'_>, witnesses: &[mobility::Witness], cx: &mut Diagnostics) {
+    fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
             cx.error(place.clone(), "independent speeds leave no normal force for friction to follow")
@@ -63,7 +63,7 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             return;
         }
-        self.model.dependent = mobility::dependent(&self.model, rows, witnesses, &independent);
+        self.model.dependent = mobility::dependent(&self.model, rows, samples, &independent);
         if self.model.dependent.is_none() {
             let diagnostic =
                 cx.error(place.clone(), "the other velocities do not follow from independent speeds");

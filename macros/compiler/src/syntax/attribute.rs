@@ -9,7 +9,7 @@ use super::parameter::type_name;
 use super::sound::Reading;
 use super::state::give_type;
 use super::table::table_variables;
-use super::{Description, ScalarType, declaration, guard, home};
+use super::{Description, ScalarType, crate_path, declaration, guard};
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
 use syn::spanned::Spanned;
@@ -29,7 +29,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if cx.len() > before {
         reading.lose();
     }
-    let (arguments, home) = home::take_path(arguments, cx);
+    let (arguments, runtime) = crate_path::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
     let mut description = Description::empty(name(&item.ident));
     let mut shell = Shell {
@@ -43,7 +43,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         elements: Vec::new(),
         notes: declaration::notes(&item),
         declaration: declaration::text(&item, fields),
-        home,
+        runtime,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
     // A type that is not known is told once.

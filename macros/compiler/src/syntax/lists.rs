@@ -11,7 +11,7 @@ use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
 /// What counts the elements of a list.
 const INDEX: &str = "i";
 /// Most elements of all lists together.
-const MOST: usize = 4096;
+const MAX_LIST_ELEMENTS: usize = 4096;
 /// Most tokens that lists may be written out to.
 const MOST_TOKENS: usize = 1_000_000;
 /// Most tokens in brackets behind the name of a list.
@@ -55,7 +55,7 @@ impl Lists {
         {
             return None;
         }
-        let left = MOST - self.lists.iter().map(|(_, count)| count).sum::<usize>();
+        let left = MAX_LIST_ELEMENTS - self.lists.iter().map(|(_, count)| count).sum::<usize>();
         let count = match &array.len {
             Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse::<usize>().unwrap_or(usize::MAX),
             other => {
@@ -67,7 +67,10 @@ impl Lists {
         };
         let found = cx.len();
         if count > left {
-            cx.error(span(&array.len), format!("the lists of a mechanism have {MOST} elements at most"));
+            cx.error(
+                span(&array.len),
+                format!("the lists of a mechanism have {MAX_LIST_ELEMENTS} elements at most"),
+            );
         } else if count == 0 && matches!(&array.len, Expr::Lit(_)) {
             cx.error(span(&array.len), "a list has one element at least")
                 .help("write its length, as in `[Body; 2]`");

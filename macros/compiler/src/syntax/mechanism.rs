@@ -122,7 +122,7 @@ pub struct Shell {
     /// The attribute and the struct as they are written, if the compiler can tell.
     pub declaration: Option<String>,
     /// Where generated code finds the runtime, if not in a crate of its own name.
-    pub home: Option<syn::Path>,
+    pub runtime: Option<syn::Path>,
 }
 
 impl Shell {

@@ -8,7 +8,7 @@ use syn::spanned::Spanned;
 use syn::{ExprLit, Field, GenericArgument, Lit, PathArguments, Type};
 
 /// Most tables of a mechanism.
-const MOST: usize = 256;
+const MAX_TABLES: usize = 256;
 
 /// How many variables a table has, as it is written: nothing else stands between the angle brackets of its type. `None` for
 /// a type that is no table.
@@ -48,11 +48,11 @@ pub fn read_table(
     }
     field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     match variables {
-        Some(variables @ 1..=3) if description.tables.len() < MOST => {
+        Some(variables @ 1..=3) if description.tables.len() < MAX_TABLES => {
             description.tables.push(Table { name: name.clone(), variables });
         }
         Some(1..=3) => {
-            let most = MOST;
+            let most = MAX_TABLES;
             cx.error(span_of(&field.ty), format!("a mechanism has {most} tables at most"))
                 .help("remove some");
         }

@@ -1,6 +1,6 @@
 //! Limbs that are alike: subtrees on one link, or on the ground, with the same joints in the same order.
 
-use crate::expr::lanes::MOST;
+use crate::expr::lanes::MAX_LANES;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Motion};
 use std::collections::BTreeMap;
@@ -61,8 +61,12 @@ impl Shapes {
     fn groups(&self, joints: &[Joint<'_>], among: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
         let mut left: Vec<usize> = among.iter().copied().filter(|k| self.shape[*k] != 0).collect();
         while let Some(&first) = left.first() {
-            let mut roots: Vec<usize> =
-                left.iter().copied().filter(|k| self.shape[*k] == self.shape[first]).take(MOST).collect();
+            let mut roots: Vec<usize> = left
+                .iter()
+                .copied()
+                .filter(|k| self.shape[*k] == self.shape[first])
+                .take(MAX_LANES)
+                .collect();
             left.retain(|k| !roots.contains(k));
             roots.retain(|k| is_apart(joints, *k));
             if roots.len() < 2 {

@@ -4,7 +4,7 @@
 
 use super::find::Group;
 use super::merge::Merge;
-use super::velocities::{Place, Velocity, configuration, paired};
+use super::velocities::{Location, Velocity, configuration, paired};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity};
@@ -17,7 +17,7 @@ pub struct Limbs<'g> {
     pub joints: Vec<Joint<'g>>,
     velocities: Vec<Velocity>,
     /// By velocity of the whole mechanism.
-    places: Vec<Place>,
+    places: Vec<Location>,
     /// Forces of springs, dashpots and the like, by velocity here.
     passive_forces: Vec<Expr<'g>>,
 }
@@ -59,7 +59,7 @@ impl<'g> Limbs<'g> {
             let link = limbs.link(&links, parent, merge)?;
             limbs.model.links.push(link);
         }
-        limbs.passive_forces = limbs.gathered(&passive_forces(), merge)?;
+        limbs.passive_forces = limbs.lane_groups(&passive_forces(), merge)?;
         limbs.model.velocities.truncate(limbs.velocities.len());
         Some(limbs)
     }
@@ -117,7 +117,7 @@ impl<'g> Limbs<'g> {
     }
 
     /// One expression for each velocity here, from those of the whole mechanism.
-    fn gathered(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
+    fn lane_groups(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let gather = |velocity: &Velocity| {
             let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
@@ -144,7 +144,7 @@ impl<'g> Limbs<'g> {
     /// One expression for each velocity of the whole mechanism, from those here.
     pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let scatter = |place: &Place| match place.lane {
+        let scatter = |place: &Location| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
             None => values[place.index],
         };
@@ -161,8 +161,8 @@ impl<'g> Limbs<'g> {
         let g = self.model.graph;
         let signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
         let mut whole = Vec::with_capacity(self.places.len() * self.places.len());
-        for &Place { index: i, lane: row } in &self.places {
-            for &Place { index: j, lane: column } in &self.places {
+        for &Location { index: i, lane: row } in &self.places {
+            for &Location { index: j, lane: column } in &self.places {
                 let entry = matrix[i][j];
                 whole.push(match (row, column) {
                     (None, None) => entry,

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const DEPTH: u8 = 8;
 
 /// Most operations one in another. Each takes stack, which compilers and their plug-ins have little of.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// Most steps of one mechanism, of about a tenth of a microsecond each in an unoptimised build.
 const STEPS: usize = 2_000_000;
@@ -69,7 +69,7 @@ impl<'g> Merge<'g> {
 
     /// What is made one level deeper; `None` if that is too deep.
     fn deeper(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
-        if self.depth == DEEPEST {
+        if self.depth == MAX_DEPTH {
             return None;
         }
         self.depth += 1;

@@ -14,7 +14,7 @@ pub struct Velocity {
 
 /// Where a velocity of the whole mechanism is found.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct Location {
     /// The velocity that it is, or is a lane of.
     pub index: usize,
     /// Its lane, if it is one of several.
@@ -27,7 +27,7 @@ pub fn paired(
     model: &Model<'_>,
     joints: &[Joint<'_>],
     rows: &[Vec<usize>],
-) -> Option<(Vec<Velocity>, Vec<Place>)> {
+) -> Option<(Vec<Velocity>, Vec<Location>)> {
     let alone = |k| Some(Velocity { lanes: vec![k], signs: vec![1.0] });
     let mut left: Vec<Option<Velocity>> = (0..model.nv()).map(alone).collect();
     for row in rows.iter().filter(|row| row.len() > 1) {
@@ -46,10 +46,10 @@ pub fn paired(
         }
     }
     let velocities: Vec<Velocity> = left.into_iter().flatten().collect();
-    let mut places = vec![Place { index: 0, lane: None }; model.nv()];
+    let mut places = vec![Location { index: 0, lane: None }; model.nv()];
     for (index, velocity) in velocities.iter().enumerate() {
         for (lane, k) in velocity.lanes.iter().enumerate() {
-            places[*k] = Place { index, lane: (velocity.lanes.len() > 1).then_some(lane) };
+            places[*k] = Location { index, lane: (velocity.lanes.len() > 1).then_some(lane) };
         }
     }
     Some((velocities, places))

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 /// Rounds of scaling; three are usual.
-const MOST: usize = 40;
+const MAX_SWEEPS: usize = 40;
 
 /// `D⁻¹ A D` with rows and columns of alike norm, and the diagonal of `D` (Parlett and Reinsch, *Balancing a matrix for
 /// calculation of eigenvalues and eigenvectors*, 1969).
@@ -22,7 +22,7 @@ pub(crate) fn balance_system(
 ) -> (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
     let (mut a, mut b, mut c) = (a.clone(), b.clone(), c.clone());
     let mut d = vec![1.0; a.nrows()];
-    for _ in 0..MOST {
+    for _ in 0..MAX_SWEEPS {
         let mut settled = true;
         for i in 0..d.len() {
             let own = a[(i, i)].abs();

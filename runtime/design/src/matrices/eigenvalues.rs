@@ -5,7 +5,7 @@ use crate::Error;
 use nalgebra::DMatrix;
 
 /// Steps for one eigenvalue or pair; three are usual.
-const MOST: usize = 120;
+const MAX_ITERATIONS: usize = 120;
 
 /// The eigenvalues of a square matrix: after balancing, by Francis' double QR steps on its Hessenberg form (Golub and Van
 /// Loan, *Matrix Computations*, § 7.5). Complex ones come in pairs that are exactly conjugate; sorted by real part, then by
@@ -32,7 +32,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
             (left, steps) = (left - 2, 0);
         } else {
             steps += 1;
-            if steps > MOST {
+            if steps > MAX_ITERATIONS {
                 return Err(Error::NotConverged { what: "the QR algorithm" });
             }
             if steps.is_multiple_of(10) {

@@ -5,7 +5,7 @@ use crate::Error;
 use nalgebra::DMatrix;
 
 /// Square roots taken at most; each halves the distance from the identity.
-const MOST: usize = 100;
+const MAX_ROOTS: usize = 100;
 /// Nodes and weights of Gauss and Legendre's rule with eight points on [0, 1].
 const RULE: [(f64, f64); 8] = [
     (0.019855071751231884, 0.05061426814518813),
@@ -40,7 +40,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let identity = CMatrix::identity(n, n);
     let mut roots = 0;
     while (&t - &identity).norm() > 0.25 {
-        if roots == MOST {
+        if roots == MAX_ROOTS {
             return Err(Error::NotConverged { what: "the logarithm" });
         }
         t = square_root(&t);

@@ -9,7 +9,7 @@ use crate::Error;
 use nalgebra::DMatrix;
 
 /// Steps of doubling; ten are usual.
-const MOST: usize = 60;
+const MAX_ITERATIONS: usize = 60;
 
 /// The weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or a sum): `Q` positive semidefinite, `R` positive definite.
 #[derive(Clone, Debug, PartialEq)]
@@ -252,7 +252,7 @@ fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMat
     let n = f.nrows();
     let (mut a_k, mut g_k, mut h_k) = (f.clone(), g.clone(), q.clone());
     let identity = DMatrix::<f64>::identity(n, n);
-    for _ in 0..MOST {
+    for _ in 0..MAX_ITERATIONS {
         let lu = (&identity + &g_k * &h_k).lu();
         let singular = Error::Singular { what: "the doubled equation" };
         let (Some(wa), Some(wg)) = (lu.solve(&a_k), lu.solve(&g_k)) else { return Err(singular) };

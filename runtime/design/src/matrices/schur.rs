@@ -4,7 +4,7 @@ use super::{C, CMatrix};
 use crate::Error;
 
 /// Steps for one eigenvalue; three are usual.
-const MOST: usize = 120;
+const MAX_ITERATIONS: usize = 120;
 
 /// `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular: the eigenvalues of `A` are on its diagonal (Golub and Van Loan,
 /// *Matrix Computations*, ch. 7).
@@ -96,7 +96,7 @@ impl Schur {
                 continue;
             }
             steps += 1;
-            if steps > MOST {
+            if steps > MAX_ITERATIONS {
                 return Err(Error::NotConverged { what: "the QR algorithm" });
             }
             let shift = shift(&t, high, steps);

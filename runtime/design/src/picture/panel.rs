@@ -23,7 +23,7 @@ const UNITS: u32 = 10;
 const HEADING: u32 = 26;
 const NAMES: u32 = 22;
 /// Points drawn of a curve at the most: more would be closer together than a pixel.
-const MOST: usize = 3000;
+const MAX_POINTS: usize = 3000;
 
 fn units(pixels: u32) -> u32 {
     pixels * UNITS
@@ -212,11 +212,11 @@ fn as_i32(n: u32) -> i32 {
 
 /// The lowest and the highest of each bunch of points, so that thinning hides no peak.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= MOST {
+    if points.len() <= MAX_POINTS {
         return points.to_vec();
     }
-    let mut out = Vec::with_capacity(MOST + 2);
-    for bunch in points.chunks(2 * points.len().div_ceil(MOST)) {
+    let mut out = Vec::with_capacity(MAX_POINTS + 2);
+    for bunch in points.chunks(2 * points.len().div_ceil(MAX_POINTS)) {
         let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
         if let (Some(low), Some(high)) = (bunch.iter().min_by(by_height), bunch.iter().max_by(by_height)) {
             let (first, second) = if low.0 < high.0 { (low, high) } else { (high, low) };

@@ -23,7 +23,7 @@ const ENOUGH: usize = 6;
 const ROUNDING: f64 = 1e-10;
 
 /// Characters of a message that print a force; more are cut off.
-const LONG: usize = 100;
+const MAX_FORCE_CHARACTERS: usize = 100;
 
 /// The state at rest.
 pub struct Rest<'g> {
@@ -214,8 +214,8 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
     }
     let name = |symbol| super::super::written::name(model, &[], symbol).0;
     let text = Writer::new(&normal.ring, &name).polynomial(&p);
-    Err(match text.chars().count() > LONG {
-        true => format!("`{} …`", text.chars().take(LONG).collect::<String>().trim_end()),
+    Err(match text.chars().count() > MAX_FORCE_CHARACTERS {
+        true => format!("`{} …`", text.chars().take(MAX_FORCE_CHARACTERS).collect::<String>().trim_end()),
         false => format!("`{text}`"),
     })
 }

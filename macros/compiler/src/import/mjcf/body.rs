@@ -12,7 +12,7 @@ use crate::import::element::{
 };
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, about, add, apply, product, scale};
-use crate::import::robot::{FileJoint, FileLimits, MOST, bare_link, unused};
+use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
 /// MuJoCo's name of what does not move.
@@ -99,8 +99,8 @@ impl<'a> Reader<'a> {
         self.free_base(&open, cx);
         // With a stack of its own: a chain may be as long as the file allows.
         while let Some(next) = open.pop() {
-            if self.robot.links.len() > MOST {
-                cx.error(&place(next.node, cx), format!("more than {MOST} bodies"), |d| d);
+            if self.robot.links.len() > MAX_ELEMENTS {
+                cx.error(&place(next.node, cx), format!("more than {MAX_ELEMENTS} bodies"), |d| d);
                 return None;
             }
             let below = self.read_body(next, cx);
@@ -366,8 +366,8 @@ impl<'a> Reader<'a> {
 
     fn place_sites(&mut self, cx: &mut Cx<'_>) {
         for (mut site, body, pose) in std::mem::take(&mut self.sites) {
-            if self.robot.links.len() > 2 * MOST {
-                cx.error(&site.place, format!("more than {MOST} bodies and sites"), |d| d);
+            if self.robot.links.len() > 2 * MAX_ELEMENTS {
+                cx.error(&site.place, format!("more than {MAX_ELEMENTS} bodies and sites"), |d| d);
                 return;
             }
             if self.link_names.contains(&site.text) {

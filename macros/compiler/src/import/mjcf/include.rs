@@ -6,7 +6,7 @@
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, position, quote};
 use crate::import::element::{Node, check_attributes, name};
-use crate::import::whole::{DEEPEST, MOST, Read, Whole, plain, report_circle, report_many};
+use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, plain, report_circle, report_many};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
@@ -40,7 +40,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
                     report_again(known, &open, &whole.files, &places, &at, cx);
                     return None;
                 }
-                if depth > DEEPEST || whole.files.len() >= MOST {
+                if depth > MAX_DEPTH || whole.files.len() >= MAX_FILES {
                     report_many(depth, &at, cx);
                     return None;
                 }

@@ -26,7 +26,7 @@ pub(super) use limit::{FileLimits, IGNORE_LIMITS};
 pub(super) use motion::resolve_motions;
 pub(super) use names::{check_ends, check_locks, check_names, declare_world, rename_ground, unused};
 pub(super) use origin::Origin;
-pub(super) use parts::{MOST, Robot, bare_link};
+pub(super) use parts::{MAX_ELEMENTS, Robot, bare_link};
 pub(super) use snap::snap;
 pub(super) use tree::{Order, order_joints};
 pub(super) use visual::FileVisual;

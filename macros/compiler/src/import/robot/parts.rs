@@ -7,7 +7,7 @@ use super::visual::FileVisual;
 use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
 
 /// Links or joints of one file.
-pub(in crate::import) const MOST: usize = 1024;
+pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
 
 /// What the file says, in its own order.
 #[derive(Default)]

@@ -10,7 +10,7 @@ use crate::syntax::Name;
 use std::collections::BTreeMap;
 
 /// Frames inside one another that a pose is looked up through.
-const DEEPEST: usize = 1024;
+const MAX_DEPTH: usize = 1024;
 
 /// A frame of the file: a link, a joint, a model, or one that is nothing else.
 #[derive(Clone, Debug)]
@@ -91,7 +91,7 @@ impl Frames {
     /// The link that carries a frame, with the place of what was said; tells of names that there are not, and of circles.
     pub(super) fn carrier(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
         let mut at = name.clone();
-        for _ in 0..DEEPEST {
+        for _ in 0..MAX_DEPTH {
             if at.text == WORLD {
                 return Some(Name { text: at.text, place: name.place.clone() });
             }
@@ -119,7 +119,7 @@ impl Frames {
     pub(super) fn resolve(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
         let mut pose = Pose::ZERO;
         let mut at = name.clone();
-        for _ in 0..DEEPEST {
+        for _ in 0..MAX_DEPTH {
             if at.text == WORLD {
                 return Some(pose);
             }

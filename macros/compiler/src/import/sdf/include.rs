@@ -6,7 +6,7 @@
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, elements, place, word};
-use crate::import::whole::{DEEPEST, MOST, Read, Whole, plain, report_circle, report_many};
+use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, plain, report_circle, report_many};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
@@ -56,7 +56,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
             Step::Include(include) => {
                 let found = find(&whole.files, &include, cx)?;
                 count += 1;
-                if include.depth > DEEPEST || count > MOST {
+                if include.depth > MAX_DEPTH || count > MAX_FILES {
                     report_many(include.depth, &include.uri, cx);
                     return None;
                 }

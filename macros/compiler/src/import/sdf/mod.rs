@@ -8,7 +8,7 @@ use super::element::{Node, check_attributes, check_element_name, content, elemen
 use super::pose::Pose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
-use crate::import::robot::{self, MOST, Robot};
+use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::import::xml;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
 use frames::{Frame, Frames, WORLD, model, origin, read_frame};
@@ -233,8 +233,8 @@ impl<'a> Reader<'a> {
                     _ => check_element_name(child, &MODEL, cx),
                 }
             }
-            if self.links.len() > MOST || self.joints.len() > MOST {
-                cx.error(&place(node, cx), format!("more than {MOST} links or joints"), |d| d);
+            if self.links.len() > MAX_ELEMENTS || self.joints.len() > MAX_ELEMENTS {
+                cx.error(&place(node, cx), format!("more than {MAX_ELEMENTS} links or joints"), |d| d);
                 return None;
             }
         }

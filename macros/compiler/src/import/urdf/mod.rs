@@ -7,7 +7,7 @@
 use super::context::Cx;
 use super::element::{Node, check_element_name, elements, place, tag};
 use crate::import::imported::Imported;
-use crate::import::robot::{self, MOST, Robot};
+use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::syntax::FileOptions;
 
 mod collision;
@@ -72,8 +72,8 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
             }
         };
         counts[kind] += 1;
-        if counts[kind] > MOST {
-            cx.error(&place(child, cx), format!("more than {MOST} elements {}", tag(child)), |d| d);
+        if counts[kind] > MAX_ELEMENTS {
+            cx.error(&place(child, cx), format!("more than {MAX_ELEMENTS} elements {}", tag(child)), |d| d);
             return None;
         }
         match kind {

@@ -14,7 +14,7 @@ use crate::syntax::contact::{EXAMPLE, collision};
 use crate::syntax::{self, ExprKind, GROUND};
 
 /// Most points of all contacts of a mechanism: what is generated grows as their number.
-const MOST: usize = 128;
+const MAX_CONTACT_POINTS: usize = 128;
 
 /// Square of the sine of an angle between lines that are parallel.
 const PARALLEL: f64 = 1e-12;
@@ -58,9 +58,9 @@ impl<'g> Builder<'_, 'g> {
             self.add_stops(limit, cx);
         }
         let count = self.model.contacts.len();
-        if count > MOST {
+        if count > MAX_CONTACT_POINTS {
             let place = description.contacts.first().map_or(&description.name.place, |c| &c.name.place);
-            cx.error(place.clone(), format!("{count} points of contact, more than {MOST}"))
+            cx.error(place.clone(), format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"))
                 .help("each has code of its own: let fewer points touch, or divide the mechanism");
         }
     }

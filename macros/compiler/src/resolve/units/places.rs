@@ -63,7 +63,7 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
     for particle in &d.particles {
         places.add(&particle.mass, &MASS, "kg");
-        particle.at.iter().for_each(|at| places.spot(at));
+        particle.at.iter().for_each(|at| places.position(at));
     }
     d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.joint(j));
     for frame in &d.frames {
@@ -118,7 +118,7 @@ impl<'a> Places<'a> {
         self.all(&body.mass, &MASS, "kg");
         self.all(body.com.iter().chain(&body.about), &LENGTH, "m");
         body.inertia.iter().for_each(|e| self.inertia(e));
-        body.at.iter().for_each(|e| self.spot(e));
+        body.at.iter().for_each(|e| self.position(e));
     }
 
     /// `rod(m, l, y).rotated(…) + [[…], …]`
@@ -180,8 +180,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A place by name, `place.at(vector)`, or a vector from the ground's origin.
-    fn spot(&mut self, e: &'a Expr) {
+    /// A position: a place by name, `place.at(vector)`, or a vector from the ground's origin.
+    fn position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
             // The name of a place has no dimension of its own.
