@@ -290,7 +290,7 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    match closed(mechanism, t, q, free, &SVector::zeros())? {
+    match closed(mechanism, t, q, free, None)? {
         Some(closed) => act(mechanism, t, (q, free), &closed, before, &mut Acted::nothing()),
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }
@@ -325,9 +325,9 @@ where
     let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = settled(&system, free, t)?;
     let before = mechanism.contact_rates(t, q, v);
-    let held = given * (h * constant(0.5));
+    let came = Came { q: &start.q, rates: &before, h, held: given * (h * constant(0.5)) };
     let v = free.v - given;
-    let Some(closed) = closed(mechanism, t + h, &free.q, &v, &held).map_err(reported)? else {
+    let Some(closed) = closed(mechanism, t + h, &free.q, &v, Some(&came)).map_err(reported)? else {
         return Ok(SVector::zeros());
     };
     let solved = act(mechanism, t + h, (&free.q, &v), &closed, &before, &mut Acted::nothing());
@@ -406,35 +406,54 @@ impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK
     }
 }
 
-/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`. Gaps are those
-/// without the displacement `held`.
+/// Where a step has come from.
+struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
+    /// The configuration.
+    q: &'a SVector<T, NQ>,
+    /// The rates of the contacts there.
+    rates: &'a SVector<T, NR>,
+    /// How long it has taken.
+    h: T,
+    /// By how much contacts have been taken to move it.
+    held: SVector<T, NV>,
+}
+
+/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`: those whose gap is
+/// none there, with or without what contacts have been taken to do, and those that were closed before and did not part. Of these the
+/// other contacts may press any, whichever way it would go without them all.
 fn closed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     q: &SVector<T, NQ>,
     free: &SVector<T, NV>,
-    held: &SVector<T, NV>,
+    came: Option<&Came<'_, T, NQ, NV, NR>>,
 ) -> Result<Option<[bool; NK]>, ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let mut gaps = mechanism.contact_gaps(t, q);
-    let still = SVector::<T, NV>::zeros();
-    if *held != still {
-        // What is driven moves by itself.
-        let apart = mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still);
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-        for (k, gap) in gaps.iter_mut().enumerate() {
-            let (_, first) = layout.pressing(k);
-            *gap -= apart.get(first).copied().unwrap_or(T::zero());
-        }
-    }
+    let gaps = mechanism.contact_gaps(t, q);
     if gaps.iter().any(|gap| !gap.is_finite()) || free.iter().any(|x| !x.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
-    Ok(closed.iter().any(|is_closed| *is_closed).then_some(closed))
+    let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
+    if let Some(Came { q: start, rates, h, held }) = came.filter(|came| came.h > T::zero() && open(&closed)) {
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let still = SVector::<T, NV>::zeros();
+        let apart = match *held == still {
+            true => SVector::zeros(),
+            // What is driven moves by itself.
+            false => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
+        };
+        let starts = mechanism.contact_gaps(t - *h, start);
+        for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
+            let of = |vector: &SVector<T, NR>| problem::entry(vector, layout.pressing(k).1);
+            let parts = (of(rates) * *h).max(T::zero());
+            *closed |= *gap - of(&apart) <= near() || *start + parts <= near();
+        }
+    }
+    Ok(closed.contains(&true).then_some(closed))
 }
 
 /// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has.
@@ -530,8 +549,10 @@ where
     // Where nothing is closed its matrices are not made.
     let mut acted = None;
     let mut after = *free;
-    if let Some(closed) = closed(mechanism, t, q, free, &(given * half))? {
-        let before = mechanism.contact_rates(t, start, v);
+    // `act` needs them anyway where something is closed.
+    let before = mechanism.contact_rates(t, start, v);
+    let came = Came { q: start, rates: &before, h, held: given * half };
+    if let Some(closed) = closed(mechanism, t, q, free, Some(&came))? {
         let acted = acted.insert(Acted::nothing());
         after = act(mechanism, t, (q, free), &closed, &before, acted)?.v;
     }

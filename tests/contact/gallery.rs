@@ -280,3 +280,79 @@ fn a_strut_is_a_one_way_clutch() {
     assert!((slips.v[0] - 0.4).abs() < 1e-6, "{slips:?} {drag}");
     assert!(run(&slippery, drag - 0.1, 0.0, 0.2).v.amax() < 1e-9);
 }
+
+/// A belt of three links over a drum, which it touches at its joints and ends.
+#[mechanism]
+struct Belt {
+    friction: f64,
+    length: f64,
+    radius: f64,
+    #[body(mass = 0.05, com = length / 2 * x, inertia = rod(0.05, length, x))]
+    first: Body,
+    #[joint(ground -> first, about = z)]
+    pose: Planar,
+    #[body(mass = 0.05, com = length / 2 * x, inertia = rod(0.05, length, x))]
+    second: Body,
+    #[joint(first.at(length * x) -> second, about = z)]
+    front: Pin,
+    #[body(mass = 0.05, com = length / 2 * x, inertia = rod(0.05, length, x))]
+    third: Body,
+    #[joint(second.at(length * x) -> third, about = z)]
+    back: Pin,
+    #[acts(on = first, along = ground.x)]
+    slack_x: Force,
+    #[acts(on = first, along = ground.y)]
+    slack_y: Force,
+    #[acts(on = third.at(length * x), along = ground.x)]
+    taut_x: Force,
+    #[acts(on = third.at(length * x), along = ground.y)]
+    taut_y: Force,
+    #[contact(first, ground.cylinder(radius, z), friction = friction)]
+    start: Contact,
+    #[contact(second, ground.cylinder(radius, z), friction = friction)]
+    one: Contact,
+    #[contact(third, ground.cylinder(radius, z), friction = friction)]
+    two: Contact,
+    #[contact(third.at(length * x), ground.cylinder(radius, z), friction = friction)]
+    end: Contact,
+}
+
+/// A belt that turns by `δ` at each of `n` points holds while its tensions are below `((1 + μ tan δ/2) / (1 − μ tan δ/2))ⁿ` of each
+/// other: at a point between the tensions `T` and `T'` the drum presses with `(T + T') sin δ/2`, and friction holds
+/// `(T' − T) cos δ/2`. This is more than the `e^{μ n δ}` of a belt that touches everywhere (Eytelwein's or Euler's formula).
+#[test]
+fn a_belt_holds_up_to_its_limit() {
+    let (friction, radius, slack) = (0.3_f64, 0.1, 10.0);
+    for turn in [0.3_f64, core::f64::consts::FRAC_PI_3] {
+        let m = Belt { friction, length: 2.0 * radius * (turn / 2.0).sin(), radius };
+        // The first joint, and the way the belt goes from there.
+        let (at, way) = (core::f64::consts::FRAC_PI_2 + 1.5 * turn, turn);
+        let q: SVector<f64, 5> = [radius * at.cos(), radius * at.sin(), way, -turn, -turn].into();
+        let grip = friction * (turn / 2.0).tan();
+        let limit = ((1.0 + grip) / (1.0 - grip)).powi(4);
+        assert!(limit > (friction * 4.0 * turn).exp() * 1.002, "{limit}");
+        let run = |part: f64| {
+            let (back, on) = ((way + turn).sin_cos(), (way - 3.0 * turn).sin_cos());
+            let taut = slack * limit * part;
+            let loads = [-slack * back.1, -slack * back.0, taut * on.1, taut * on.0];
+            simulate(&m).from(q, [0.0; 5]).inputs(move |_, _, _| loads.into())
+        };
+        let steps = |part: f64, h: f64, t: f64| {
+            let end = run(part).method(TimeStepping::step(h)).duration(t).finish().unwrap();
+            (end.q - q).amax()
+        };
+        let events = |part: f64| {
+            let end = run(part).method(EventDriven::new()).duration(0.02).finish().unwrap();
+            (end.q - q).amax()
+        };
+        for part in [0.5, 0.9, 0.999, 1.0 - 1e-6] {
+            let (steps, events) = (steps(part, 1e-3, 0.1), events(part));
+            assert!(steps < 1e-12 && events < 1e-11, "{turn} {part}: {steps} {events}");
+        }
+        // Above it slips, first in proportion to what is too much.
+        let (little, more) = (events(1.0 + 1e-6), events(1.0 + 1e-5));
+        assert!(little > 1e-8 && (more / little - 10.0).abs() < 0.01, "{little} {more}");
+        let slips = steps(1.0 + 1e-5, 1e-4, 0.02);
+        assert!((slips / more - 1.0).abs() < 0.01, "{slips} {more}");
+    }
+}
