@@ -22,22 +22,25 @@ pub struct Evaluated<'a, 'g> {
 
 /// What programs are functions of.
 #[derive(Clone, Copy, Default)]
-struct Values<'a> {
-    t: f64,
-    q: &'a [f64],
-    v: &'a [f64],
-    u: &'a [f64],
-    tau: &'a [f64],
-    given: &'a [f64],
-    passive: &'a [f64],
+pub struct Values<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Configuration.
+    pub q: &'a [f64],
+    /// Velocity.
+    pub v: &'a [f64],
+    /// Inputs.
+    pub u: &'a [f64],
+    /// Generalized forces.
+    pub tau: &'a [f64],
+    /// What frames hang from: the placement of their link.
+    pub given: &'a [f64],
+    /// Passive forces.
+    pub passive: &'a [f64],
 }
 
-/// Accelerations and velocities that miss a constraint by this part contradict it.
+/// Accelerations that miss a constraint by this part contradict it.
 const CONTRADICTION: f64 = 1e-6;
-/// Residuals of a configuration that lies on the constraints, m and rad.
-const SETTLED: f64 = 1e-12;
-/// Steps of Newton's method.
-const ATTEMPTS: usize = 50;
 /// A rotation matrix row by row, and a position: those of the ground.
 const GROUND: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
 
@@ -119,11 +122,13 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         self.output.functions.iter().find(|f| f.name == name)
     }
 
-    fn called(&self, name: &str, state: Values<'_>) -> Option<Vec<f64>> {
+    /// What a generated function gives, if there is one of this name.
+    pub fn called(&self, name: &str, state: Values<'_>) -> Option<Vec<f64>> {
         Some(self.run(&self.find(name)?.program, state))
     }
 
-    fn is_constrained(&self) -> bool {
+    /// There are constraints.
+    pub fn is_constrained(&self) -> bool {
         !self.model.constraints.is_empty()
     }
 
@@ -140,42 +145,6 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         let (a, off) = self.metric(state)?.nearest(force, &jacobian, &target);
         let scale = target.iter().chain(&a).fold(1.0_f64, |most, x| most.max(x.abs()));
         (off <= CONTRADICTION * scale).then_some(a)
-    }
-
-    /// Brings a state onto the constraints, the nearest one in the metric of the mass matrix: first the configuration by Newton's
-    /// method, then the velocity. `None` where no state is near.
-    pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut Vec<f64>) -> Option<()> {
-        if !self.is_constrained() {
-            return Some(());
-        }
-        for _ in 0..ATTEMPTS {
-            let state = Values { t, q, v, ..Values::default() };
-            let residuals = self.called("constraint_residuals", state)?;
-            let largest = residuals.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            if !largest.is_finite() {
-                return None;
-            }
-            if largest <= SETTLED {
-                let target: Vec<f64> =
-                    self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
-                let jacobian = self.called("constraint_jacobian", state)?;
-                let (change, off) = self.metric(state)?.nearest(vec![0.0; v.len()], &jacobian, &target);
-                v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
-                return (off <= CONTRADICTION).then_some(());
-            }
-            let (all, held) = (self.model.constraints.len(), residuals.len());
-            let jacobian = self.called("constraint_jacobian", state)?;
-            // Those on configurations come first.
-            let jacobian: Vec<f64> =
-                jacobian.chunks(all).flat_map(|column| &column[..held]).copied().collect();
-            let target: Vec<f64> = residuals.iter().map(|x| -x).collect();
-            let (moved, _) = self.metric(state)?.nearest(vec![0.0; v.len()], &jacobian, &target);
-            let mut rates = vec![0.0; q.len()];
-            self.rates(q, &moved, &mut rates);
-            q.iter_mut().zip(rates).for_each(|(q, rate)| *q += rate);
-            self.normalise(q).ok()?;
-        }
-        None
     }
 
     /// Why its accelerations cannot be computed here.

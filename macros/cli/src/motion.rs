@@ -31,14 +31,14 @@ pub struct Start<'a, 'g> {
     pub q: Vec<f64>,
     v: Vec<f64>,
     u: Vec<f64>,
+    /// Which entries of the configuration and of the velocity are given.
+    given: [Vec<bool>; 2],
 }
 
 /// Moves of a beginning that are told, m and rad.
 const TOLD: f64 = 1e-6;
 /// Most samples of a motion.
 const MAX_SAMPLES: f64 = 1e7;
-/// How often a mechanism is assembled from another beginning.
-const ASSEMBLIES: u8 = 100;
 
 impl<'a, 'g> Start<'a, 'g> {
     /// What `--set` says.
@@ -57,15 +57,16 @@ impl<'a, 'g> Start<'a, 'g> {
         let mut parameters = vec![None; model.parameters.len()];
         let empty = Evaluated::new(model, output, Vec::new(), Vec::new());
         let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
+        let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for given in matches.get_many::<String>("set").into_iter().flatten() {
             let (name, value) = parse(given)?;
             let place = |list: &[String]| list.iter().position(|known| known == name);
             if let Some(k) = place(&model.parameters) {
                 parameters[k] = Some(value);
             } else if let Some(k) = place(&configuration) {
-                q[k] = value;
+                (q[k], known[0][k]) = (value, true);
             } else if let Some(k) = place(&velocities) {
-                v[k] = value;
+                (v[k], known[1][k]) = (value, true);
             } else if let Some(k) = place(&inputs) {
                 u[k] = value;
             } else {
@@ -84,7 +85,7 @@ impl<'a, 'g> Start<'a, 'g> {
             grid::given(matches, &source.tables())?.iter().map(Grid::looked).collect();
         let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect(), tables?);
         mechanism.normalise(&mut q)?;
-        Ok(Start { mechanism, q, v, u })
+        Ok(Start { mechanism, q, v, u, given: known })
     }
 
     /// The motion, sample by sample.
@@ -133,15 +134,9 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         let system = System { rates: &rates, settle: &settle };
         let (mut y, mut step) = ([self.q.clone(), self.v.clone()].concat(), every.min(1e-3));
-        if !settle(0.0, &mut y) {
-            y = self.assembled(&settle).ok_or_else(|| {
-                Stop::Failure(format!(
-                    "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set q.NAME=VALUE`",
-                    self.mechanism.model.name
-                ))
-            })?;
+        if self.mechanism.is_constrained() {
+            y = self.begin()?;
         }
-        self.tell_of_moves(&y);
         let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
         if times[count] < duration * (1.0 - 1e-9) {
             times.push(duration);
@@ -161,8 +156,34 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(samples)
     }
 
-    /// Says where a motion begins whose wanted beginning does not fulfil the constraints.
-    fn tell_of_moves(&self, begins: &[f64]) {
+    /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest. Says what moved.
+    fn begin(&self) -> Result<Vec<f64>, Stop> {
+        let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
+        let (none_q, none_v) = (vec![false; self.q.len()], vec![false; self.v.len()]);
+        let held = m.assembled(0.0, &self.q, in_q, &m.moving(in_q));
+        let mut kept = held.is_some();
+        let q = held.or_else(|| m.assembled(0.0, &self.q, &none_q, &none_v));
+        let q = q.ok_or_else(|| {
+            Stop::Failure(format!(
+                "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set q.NAME=VALUE`",
+                m.model.name
+            ))
+        })?;
+        let mut v = self.v.clone();
+        if m.move_along(0.0, &q, &mut v, in_v).is_none() {
+            kept = false;
+            v.clone_from(&self.v);
+            m.move_along(0.0, &q, &mut v, &none_v).ok_or_else(|| {
+                Stop::Failure(format!("`{}` has constraints that contradict each other", m.model.name))
+            })?;
+        }
+        let begins = [q, v].concat();
+        self.tell_of_moves(&begins, kept);
+        Ok(begins)
+    }
+
+    /// Says where a motion begins whose wanted beginning does not fulfil the constraints; `kept` if what was given of it stays.
+    fn tell_of_moves(&self, begins: &[f64], kept: bool) {
         let wanted = self.q.iter().chain(&self.v);
         let names = self.mechanism.model.configuration.iter().map(|name| format!("q.{name}"));
         let names = names.chain(self.mechanism.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
@@ -171,28 +192,15 @@ impl<'a, 'g> Start<'a, 'g> {
             .filter(|(_, (wanted, is))| (*wanted - *is).abs() > TOLD * (1.0 + wanted.abs()))
             .map(|(name, (_, is))| format!("{name} = {is:.6}"))
             .collect();
+        let some = self.given.iter().flatten().any(|given| *given);
+        let why = match (kept, some) {
+            (true, true) => "what is given is kept, and the constraints put the rest",
+            (false, _) => "what is given does not fulfil the constraints; the motion begins near it,",
+            (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
+        };
         if !moved.is_empty() {
-            eprintln!(
-                "linkwork: the beginning does not fulfil the constraints; the motion begins near it, at {}",
-                moved.join(", ")
-            );
+            eprintln!("linkwork: {why} at {}", moved.join(", "));
         }
-    }
-
-    /// A state that constraints allow, from beginnings that are more and more off.
-    fn assembled(&self, settle: &dyn Fn(f64, &mut Vec<f64>) -> bool) -> Option<Vec<f64>> {
-        (1..=ASSEMBLIES).find_map(|attempt| {
-            let mut q = self.q.clone();
-            let size = 0.02 * f64::from(attempt);
-            for (k, x) in q.iter_mut().enumerate() {
-                // Numbers that repeat nothing: parts of a golden angle.
-                let turn = (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract();
-                *x += size * (2.0 * turn - 1.0);
-            }
-            self.mechanism.normalise(&mut q).ok()?;
-            let mut y = [q, self.v.clone()].concat();
-            settle(0.0, &mut y).then_some(y)
-        })
     }
 
     /// Inputs of a file, by their number.

@@ -142,8 +142,9 @@ fn loops_stay_closed() {
     ]
     .concat();
     let (status, log, told) = linkwork(&here, &arguments);
-    // The angles that are given close the loop but for a part, which is told.
-    assert!(status == 0 && told.contains("the motion begins near it, at q.input = "), "{told}");
+    // The two angles that are given close the loop but for a part, which is told.
+    assert!(status == 0 && told.contains("what is given does not fulfil the constraints"), "{told}");
+    assert!(told.contains("the motion begins near it, at q.input = "), "{told}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
@@ -166,6 +167,17 @@ fn loops_stay_closed() {
             sample.v
         );
     }
+    // One angle and one rate are kept, and the loop gives the others.
+    let one = ["simulate", "closed.rs", "--duration", "0.1", "--set", "q.input=0.3", "--set", "v.output=2"];
+    let (status, log, told) = linkwork(&here, &one);
+    assert!(
+        status == 0 && told.contains("what is given is kept, and the constraints put the rest at q.elbow = "),
+        "{told}"
+    );
+    assert!(told.contains("v.input = ") && !told.contains("q.input") && !told.contains("v.output"), "{told}");
+    let (at, rate) = state(&self::rows(&log)[0]);
+    assert_eq!((at[0], rate[2]), (0.3, 2.0));
+    assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
     // A loop that is stretched out is assembled near by, which is told; the page of it shows the motion.
     let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
     assert!(status == 0 && told.contains("the motion begins near it, at q."), "{told}");

@@ -1,0 +1,141 @@
+//! States that constraints allow: near a given one, with what is held of it.
+
+use crate::constrained::Metric;
+use crate::evaluate::{Evaluated, Values};
+use linkwork_compiler::mechanism::Chart;
+
+/// Velocities that miss a constraint by this part contradict it.
+const CONTRADICTION: f64 = 1e-6;
+/// Residuals of a configuration that lies on the constraints, m and rad.
+const SETTLED: f64 = 1e-12;
+/// Steps of Newton's method.
+const ATTEMPTS: usize = 50;
+/// A step that must be shorter than this part of Newton's leads nowhere.
+const SHORTEST: f64 = 1e-6;
+/// The least decrease of the residuals that a step is taken for, next to that which its linear equations promise.
+const DECREASE: f64 = 1e-4;
+/// How often a mechanism is assembled from another beginning.
+const ASSEMBLIES: u8 = 100;
+
+impl Evaluated<'_, '_> {
+    /// Brings a state onto the constraints: the configuration, then the velocity. `None` where no state is near.
+    pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut [f64]) -> Option<()> {
+        if !self.is_constrained() {
+            return Some(());
+        }
+        let free = vec![false; v.len()];
+        self.configure(t, q, &free)?;
+        self.move_along(t, q, v, &free)
+    }
+
+    /// The velocities that entries of a configuration move with: all three of a rotation or of the place of a free body, if one
+    /// of its numbers is marked.
+    pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
+        let mut moving = vec![false; self.model.nv()];
+        let mut mark = |entries: std::ops::Range<usize>, from: usize, count: usize| {
+            if marks[entries].contains(&true) {
+                moving[from..from + count].fill(true);
+            }
+        };
+        for chart in &self.model.charts {
+            match *chart {
+                Chart::Plain(at, from) => mark(at..at + 1, from, 1),
+                Chart::Ball(at, from) => mark(at..at + 4, from, 3),
+                Chart::Free(at, from) => {
+                    mark(at..at + 3, from, 3);
+                    mark(at + 3..at + 7, from + 3, 3);
+                }
+            }
+        }
+        moving
+    }
+
+    /// A configuration on the constraints, from this one or from others that are more and more off in what is not held.
+    pub fn assembled(&self, t: f64, q: &[f64], given: &[bool], held: &[bool]) -> Option<Vec<f64>> {
+        (0..=ASSEMBLIES).find_map(|attempt| {
+            let mut from = q.to_vec();
+            let size = 0.02 * f64::from(attempt);
+            for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
+                // Numbers that repeat nothing: parts of a golden angle.
+                let turn = (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract();
+                *x += size * (2.0 * turn - 1.0);
+            }
+            self.normalise(&mut from).ok()?;
+            self.configure(t, &mut from, held)?;
+            Some(from)
+        })
+    }
+
+    /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass matrix, without the
+    /// velocities that are held. Steps that do not bring it nearer are halved.
+    fn configure(&self, t: f64, q: &mut Vec<f64>, held: &[bool]) -> Option<()> {
+        let v = vec![0.0; held.len()];
+        let residuals = |q: &[f64]| {
+            let found = self.called("constraint_residuals", Values { t, q, v: &v, ..Values::default() })?;
+            found.iter().all(|x| x.is_finite()).then_some(found)
+        };
+        let mut left = residuals(q)?;
+        for _ in 0..ATTEMPTS {
+            if left.iter().all(|x| x.abs() <= SETTLED) {
+                return Some(());
+            }
+            let state = Values { t, q, v: &v, ..Values::default() };
+            let (all, positions) = (self.model.constraints.len(), left.len());
+            let jacobian = self.called("constraint_jacobian", state)?;
+            // Those on configurations come first.
+            let jacobian: Vec<f64> =
+                jacobian.chunks(all).flat_map(|column| &column[..positions]).copied().collect();
+            let target: Vec<f64> = left.iter().map(|x| -x).collect();
+            let (moved, _) = self.nearest(state, &jacobian, &target, held)?;
+            let mut rates = vec![0.0; q.len()];
+            self.rates(q, &moved, &mut rates);
+            let mut part = 1.0;
+            (*q, left) = loop {
+                let mut next: Vec<f64> = q.iter().zip(&rates).map(|(q, rate)| q + part * rate).collect();
+                self.normalise(&mut next).ok()?;
+                match residuals(&next) {
+                    Some(found) if norm(&found) <= (1.0 - DECREASE * part) * norm(&left) => {
+                        break (next, found);
+                    }
+                    _ if part < SHORTEST => return None,
+                    _ => part /= 2.0,
+                }
+            };
+        }
+        None
+    }
+
+    /// Changes those velocities that are not held, as little as the constraints allow. `None` where these contradict what is held.
+    pub fn move_along(&self, t: f64, q: &[f64], v: &mut [f64], held: &[bool]) -> Option<()> {
+        let state = Values { t, q, v, ..Values::default() };
+        let target: Vec<f64> = self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
+        let jacobian = self.called("constraint_jacobian", state)?;
+        let (change, off) = self.nearest(state, &jacobian, &target, held)?;
+        v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
+        (off <= CONTRADICTION).then_some(())
+    }
+
+    /// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities that are not held.
+    fn nearest(
+        &self,
+        state: Values<'_>,
+        jacobian: &[f64],
+        target: &[f64],
+        held: &[bool],
+    ) -> Option<(Vec<f64>, f64)> {
+        let (n, m) = (held.len(), target.len());
+        let free: Vec<usize> = (0..n).filter(|k| !held[*k]).collect();
+        let mass = self.called("mass_matrix", state)?;
+        let mass: Vec<f64> =
+            free.iter().flat_map(|j| free.iter().map(move |i| j * n + i)).map(|at| mass[at]).collect();
+        let jacobian: Vec<f64> = free.iter().flat_map(|k| &jacobian[k * m..(k + 1) * m]).copied().collect();
+        let (x, off) = Metric::of(&mass, free.len())?.nearest(vec![0.0; free.len()], &jacobian, target);
+        let mut motion = vec![0.0; n];
+        free.iter().zip(x).for_each(|(k, x)| motion[*k] = x);
+        Some((motion, off))
+    }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
