@@ -25,29 +25,7 @@ pub fn command() -> Command {
             ))
             .arg(out_file()),
         )
-        .subcommand(
-            with_motion(with_input(
-                Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
-            ))
-            .arg(
-                text(
-                    "motion",
-                    "FILE",
-                    "A motion to be shown: comma-separated values with the columns t and q.…",
-                )
-                .value_parser(value_parser!(PathBuf))
-                .conflicts_with_all(["duration", "inputs"]),
-            )
-            .arg(
-                text("meshes", "FOLDER", "Where the meshes of a robot file are [default: next to it]")
-                    .value_parser(value_parser!(PathBuf)),
-            )
-            .arg(
-                text("out", "FILE", "Where the page goes [default: the mechanism's name with .html]")
-                    .short('o')
-                    .value_parser(value_parser!(PathBuf)),
-            ),
-        )
+        .subcommand(view())
         .subcommand(
             with_input(
                 Command::new("convert").about("Writes a robot file as the struct that one goes on editing"),
@@ -68,59 +46,80 @@ pub fn command() -> Command {
                 .about("Prints what a shell completes of this command")
                 .arg(Arg::new("shell").required(true).value_parser(value_parser!(clap_complete::Shell))),
         )
+        .subcommand(export())
+}
+
+fn view() -> Command {
+    with_motion(with_input(
+        Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
+    ))
+    .arg(
+        text("motion", "FILE", "A motion to be shown: comma-separated values with the columns t and q.…")
+            .value_parser(value_parser!(PathBuf))
+            .conflicts_with_all(["duration", "inputs"]),
+    )
+    .arg(
+        text("meshes", "FOLDER", "Where the meshes of a robot file are [default: next to it]")
+            .value_parser(value_parser!(PathBuf)),
+    )
+    .arg(
+        text("out", "FILE", "Where the page goes [default: the mechanism's name with .html]")
+            .short('o')
+            .value_parser(value_parser!(PathBuf)),
+    )
+}
+
+fn export() -> Command {
+    Command::new("export")
+        .about("Writes a mechanism's functions")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(export_c())
+        .subcommand(export_library())
         .subcommand(
-            Command::new("export")
-                .about("Writes a mechanism's functions")
-                .subcommand_required(true)
-                .arg_required_else_help(true)
-                .subcommand(
-                    with_input(
-                        Command::new("c").about("C99: a source file and a header that need libm alone"),
-                    )
-                    .arg(
-                        text("out", "FOLDER", "Where the two files go")
-                            .short('o')
-                            .default_value(".")
-                            .value_parser(value_parser!(PathBuf)),
-                    )
-                    .arg(text(
-                        "prefix",
-                        "NAME",
-                        "What names and files begin with [default: the mechanism's name]",
-                    ))
-                    .arg(
-                        text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
-                            .value_parser(["double", "float"]),
-                    )
-                    .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
-                    .arg(switch("casadi", "A third file: the functions as CasADi and acados take them"))
-                    .arg(
-                        text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
-                            .action(ArgAction::Append)
-                            .requires("casadi"),
-                    ),
-                )
-                .subcommand(
-                    with_tables(with_input(Command::new("library").about(
-                        "A crate and a header: all functions on plain arrays, as a shared and a static library",
-                    )))
-                    .arg(
-                        text("out", "FOLDER", "Where the crate goes [default: the prefix]")
-                            .short('o')
-                            .value_parser(value_parser!(PathBuf)),
-                    )
-                    .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
-                    .arg(text(
-                        "linkwork",
-                        "FOLDER",
-                        "The sources of Linkwork that it is built with [default: its release]",
-                    )),
-                )
-                .subcommand(
-                    with_input(Command::new("rust").about("What the attribute generates, for reading"))
-                        .arg(out_file()),
-                ),
+            with_input(Command::new("rust").about("What the attribute generates, for reading"))
+                .arg(out_file()),
         )
+}
+
+fn export_c() -> Command {
+    with_input(Command::new("c").about("C99: a source file and a header that need libm alone"))
+        .arg(
+            text("out", "FOLDER", "Where the two files go")
+                .short('o')
+                .default_value(".")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(text("prefix", "NAME", "What names and files begin with [default: the mechanism's name]"))
+        .arg(
+            text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
+                .value_parser(["double", "float"]),
+        )
+        .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
+        .arg(switch("casadi", "A third file: the functions as CasADi and acados take them"))
+        .arg(
+            text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
+                .action(ArgAction::Append)
+                .requires("casadi"),
+        )
+}
+
+fn export_library() -> Command {
+    with_tables(with_input(
+        Command::new("library")
+            .about("A crate and a header: all functions on plain arrays, as a shared and a static library"),
+    ))
+    .arg(
+        text("out", "FOLDER", "Where the crate goes [default: the prefix]")
+            .short('o')
+            .value_parser(value_parser!(PathBuf)),
+    )
+    .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
+    .arg(text(
+        "linkwork",
+        "FOLDER",
+        "The sources of Linkwork that it is built with [default: its release]",
+    ))
 }
 
 fn with_input(command: Command) -> Command {

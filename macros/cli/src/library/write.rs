@@ -166,7 +166,6 @@ fn checked(known: &Known<'_, '_>) -> &'static str {
 /// What every library has.
 fn write_exports(text: &mut String, known: &Known<'_, '_>) {
     let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
-    let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let _ = write!(
         text,
         "/// Names, shapes, units and documentation, as JSON.
@@ -206,8 +205,21 @@ fn write_exports(text: &mut String, known: &Known<'_, '_>) {
             threads: usize,
         ) -> c_int {{
             unsafe {{ raw::call::<{kind}>(function, parameters, arguments, results, states, threads) }}
-        }}
+        }}\n"
+    );
+    write_motions(text, known);
+    if !m.parameters.is_empty() {
+        write_defaults(text, known);
+    }
+}
 
+/// The functions for motions, one and many.
+fn write_motions(text: &mut String, known: &Known<'_, '_>) {
+    let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
+    let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
+    let _ = write!(
+        text,
+        "
         /// A motion.
         ///
         /// # Safety
@@ -242,9 +254,11 @@ fn write_exports(text: &mut String, known: &Known<'_, '_>) {
             unsafe {{ raw::roll_out::<{kind}>([{nq}, {nv}, {nu}], parameters, settings, inputs, q, v) }}
         }}\n"
     );
-    if m.parameters.is_empty() {
-        return;
-    }
+}
+
+/// The function for the parameters that a file has.
+fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
+    let (prefix, number, m) = (known.prefix, known.number(), known.model);
     let of_file = known.source.mechanism.shell.file_fields.is_empty();
     let values: String = match of_file {
         true => format!("[{number}::NAN; {}]", m.parameters.len()),

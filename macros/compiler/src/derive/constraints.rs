@@ -22,6 +22,21 @@ pub(super) fn contact_rows<'g>(model: &Model<'g>) -> Vec<Vec<Expr<'g>>> {
     constraints::jacobian_of(model, &model.contact_rates())
 }
 
+/// The gaps of the contacts.
+pub(super) fn contact_gaps<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.contacts.iter().map(|contact| contact.gap).collect()
+}
+
+/// What the rates of contacts gain beside what accelerations add to them.
+pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.contacts.iter().flat_map(|contact| contact.biases.clone()).collect()
+}
+
+/// Friction and restitution of each contact.
+pub(super) fn contact_laws<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.contacts.iter().flat_map(|contact| [contact.friction, contact.restitution]).collect()
+}
+
 /// What contacts add to the motion to first order, at given accelerations `a` and forces `f`: derivatives of `Gᵀ f` by `q`, of
 /// `G a + b` by `q` and by `v`, and of the rates by `q`, each column by column.
 pub(super) fn contact_first_order<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {

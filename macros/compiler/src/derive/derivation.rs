@@ -96,11 +96,26 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// A function of the word `derivatives`, which is given where one is declared.
-    fn derivatives(
+    fn derivative(&self, function: impl FnOnce(&Derivatives<'a, 'g>) -> Program) -> (Program, Structure) {
+        self.structured_derivative(|derivatives| (function(derivatives), Structure::default()))
+    }
+
+    /// A function of the word `derivatives` whose results are put together by the runtime.
+    fn structured_derivative(
         &self,
         function: impl FnOnce(&Derivatives<'a, 'g>) -> (Program, Structure),
     ) -> (Program, Structure) {
         self.derivatives.map(function).unwrap_or_default()
+    }
+
+    fn contact_responses(&self) -> Program {
+        self.dynamics().contact_responses(&constraints::contact_rows(self.model))
+    }
+
+    /// What is conserved, for the word of that name.
+    fn conserved(&self) -> Vec<Expr<'g>> {
+        let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
+        kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect())
     }
 
     /// What a function of the word `regressor` gives; the word is given where one is declared.
@@ -162,27 +177,17 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Routhian => of(&self.routh(|r| vec![r.routhian])),
             Id::CyclicVelocities => of(&self.routh(|r| r.velocity.clone())),
             Id::ReducedAccelerations => of(&self.routh(|r| r.acceleration.clone())),
-            Id::Conserved => {
-                let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
-                of(&kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect()))
-            }
+            Id::Conserved => of(&self.conserved()),
             Id::ConstraintResiduals => of(&constraints::residuals(model)),
             Id::ConstraintRates => of(&constraints::rates(model)),
             Id::ConstraintJacobian => of(&constraints::jacobian(model)),
             Id::ConstraintBias => of(&constraints::biases(model)),
-            Id::ContactGaps => of(&model.contacts.iter().map(|contact| contact.gap).collect::<Vec<_>>()),
+            Id::ContactGaps => of(&constraints::contact_gaps(model)),
             Id::ContactRates => of(&model.contact_rates()),
             Id::ContactJacobian => of(&constraints::contact_jacobian(model)),
-            Id::ContactBias => {
-                of(&model.contacts.iter().flat_map(|contact| contact.biases.clone()).collect::<Vec<_>>())
-            }
-            Id::ContactLaws => {
-                let laws = model.contacts.iter().flat_map(|contact| [contact.friction, contact.restitution]);
-                of(&laws.collect::<Vec<_>>())
-            }
-            Id::ContactResponses => {
-                plain(self.dynamics().contact_responses(&constraints::contact_rows(model)))
-            }
+            Id::ContactBias => of(&constraints::contact_biases(model)),
+            Id::ContactLaws => of(&constraints::contact_laws(model)),
+            Id::ContactResponses => plain(self.contact_responses()),
             Id::ContactDerivatives => of(&constraints::contact_first_order(model)),
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
             Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
@@ -193,27 +198,27 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::OutputByParameters
             | Id::Reaction
             | Id::Touched => of(&outputs::values(model, declared)),
-            Id::MassMatrixInverse => self.derivatives(Derivatives::mass_matrix_inverse),
-            Id::CoriolisMatrix => self.derivatives(|d| plain(d.coriolis_matrix())),
-            Id::InverseDynamicsDerivatives => self.derivatives(|d| plain(d.inverse_dynamics_derivatives())),
-            Id::GeneralizedMomentumDerivatives => self.derivatives(|d| plain(d.momentum_derivatives())),
-            Id::MomentumRateDerivatives => self.derivatives(|d| plain(d.momentum_rate_derivatives())),
-            Id::ForwardDynamicsDerivatives => {
-                self.derivatives(|d| d.forward_dynamics_derivatives(known(Id::InverseDynamicsDerivatives)))
-            }
-            Id::Linearize => self.derivatives(|d| plain(d.linearize())),
-            Id::AccelerationsAndInverse => self.derivatives(Derivatives::accelerations_and_inverse),
-            Id::MotionDerivatives => self.derivatives(|d| plain(d.motion_derivatives())),
-            Id::InputDerivatives => self.derivatives(|d| plain(d.input_derivatives())),
+            Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
+            Id::CoriolisMatrix => self.derivative(Derivatives::coriolis_matrix),
+            Id::InverseDynamicsDerivatives => self.derivative(Derivatives::inverse_dynamics_derivatives),
+            Id::GeneralizedMomentumDerivatives => self.derivative(Derivatives::momentum_derivatives),
+            Id::MomentumRateDerivatives => self.derivative(Derivatives::momentum_rate_derivatives),
+            Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
+                d.forward_dynamics_derivatives(known(Id::InverseDynamicsDerivatives))
+            }),
+            Id::Linearize => self.derivative(Derivatives::linearize),
+            Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
+            Id::MotionDerivatives => self.derivative(Derivatives::motion_derivatives),
+            Id::InputDerivatives => self.derivative(Derivatives::input_derivatives),
             Id::InverseDynamicsDerivativesInto => as_of(known(Id::InverseDynamicsDerivatives)),
             Id::ForwardDynamicsDerivativesInto => as_of(known(Id::ForwardDynamicsDerivatives)),
             Id::InverseDynamicsSecondDerivatives => {
-                self.derivatives(|d| plain(d.inverse_dynamics_second_derivatives()))
+                self.derivative(Derivatives::inverse_dynamics_second_derivatives)
             }
             Id::GeneralizedForcesSecondDerivatives => {
-                self.derivatives(|d| plain(d.generalized_forces_second_derivatives()))
+                self.derivative(Derivatives::generalized_forces_second_derivatives)
             }
-            Id::ConstraintCurvature => self.derivatives(|d| plain(d.constraint_curvature())),
+            Id::ConstraintCurvature => self.derivative(Derivatives::constraint_curvature),
             Id::JointTorqueRegressor => of(&self.identified(|i| i.joint_torque_regressor(joints))),
             Id::StandardParameters => of(&self.identified(Identification::standard_parameters)),
             Id::BaseRegressor => of(&self.identified(Identification::base_regressor)),

@@ -54,48 +54,54 @@ pub fn write_impls(
         out.push_str("}\n");
     }
     if !i.contacts.is_empty() {
-        let sizes = [s.nq, s.nv, s.nu, i.facts.contacts[0], i.facts.contacts[1]];
-        let sizes = sizes.map(|n| n.to_string()).join(", ");
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::Contacts<{sizes}> for {name}{arguments} {bounds} {{"
-        );
-        contacts::write_trait(out, i, s);
-        out.push_str("}\n");
-        if i.facts.requests.derivatives {
-            let _ = writeln!(
-                out,
-                "{ALLOW}impl{generics} ::linkwork::contact::ContactDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
-            );
-            contacts::write_derivatives(out, i, s);
-            out.push_str("}\n");
-        }
+        write_contacts(head, out, name, i, s);
     }
     if !i.constraints.names.is_empty() {
-        let sizes = [s.nq, s.nv, s.nu, i.constraints.holonomic, i.constraints.names.len()];
-        let sizes = sizes.map(|n| n.to_string()).join(", ");
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::Constrained<{sizes}> for {name}{arguments} {bounds} {{"
-        );
-        constraints::write_trait(out, &i.constraints, s);
+        write_constraints(head, out, name, i, s);
+    }
+}
+
+/// The head of an implementation of a trait with the sizes of state and inputs and two more.
+fn begin_with(
+    Head { generics, arguments, bounds }: &Head,
+    out: &mut String,
+    name: &str,
+    of: &str,
+    s: &Signature<'_>,
+    more: [usize; 2],
+) {
+    let sizes = [s.nq, s.nv, s.nu, more[0], more[1]].map(|n| n.to_string()).join(", ");
+    let _ =
+        writeln!(out, "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{");
+}
+
+/// The traits of contacts.
+fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+    begin_with(head, out, name, "Contacts", s, i.facts.contacts);
+    contacts::write_trait(out, i, s);
+    out.push_str("}\n");
+    if i.facts.requests.derivatives {
+        begin_with(head, out, name, "contact::ContactDerivatives", s, i.facts.contacts);
+        contacts::write_derivatives(out, i, s);
         out.push_str("}\n");
-        if constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives {
-            let _ = writeln!(
-                out,
-                "{ALLOW}impl{generics} ::linkwork::ConstrainedDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
-            );
-            constraints::write_derivatives_trait(out, &i.constraints, s);
-            out.push_str("}\n");
-        }
-        if differentiable::has_second(i) {
-            let _ = writeln!(
-                out,
-                "{ALLOW}impl{generics} ::linkwork::ConstrainedSecondDerivatives<{sizes}> for {name}{arguments} {bounds} {{"
-            );
-            differentiable::write_constrained_second_trait(out, i.constraints.names.len(), s);
-            out.push_str("}\n");
-        }
+    }
+}
+
+/// The traits of constraints.
+fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+    let counts = [i.constraints.holonomic, i.constraints.names.len()];
+    begin_with(head, out, name, "Constrained", s, counts);
+    constraints::write_trait(out, &i.constraints, s);
+    out.push_str("}\n");
+    if constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives {
+        begin_with(head, out, name, "ConstrainedDerivatives", s, counts);
+        constraints::write_derivatives_trait(out, &i.constraints, s);
+        out.push_str("}\n");
+    }
+    if differentiable::has_second(i) {
+        begin_with(head, out, name, "ConstrainedSecondDerivatives", s, counts);
+        differentiable::write_constrained_second_trait(out, i.constraints.names.len(), s);
+        out.push_str("}\n");
     }
 }
 

@@ -7,6 +7,19 @@ use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
+/// The outputs of a mechanism that follow from state, accelerations and inputs, and for which type they are implemented.
+struct Measurements<'a> {
+    name: &'a str,
+    outputs: Vec<&'a Function>,
+    /// Entries of all together.
+    count: usize,
+    head: Head,
+    i: &'a Interface<'a>,
+    s: &'a Signature<'a>,
+    /// The arguments of all functions.
+    parameters: String,
+}
+
 /// Implements them for the type of this name, if it has outputs that follow from state, accelerations and inputs.
 pub fn write_impls(
     out: &mut String,
@@ -25,86 +38,114 @@ pub fn write_impls(
     if count == 0 {
         return;
     }
-    let Head { generics, arguments, bounds } = &Head::new(i, s);
-    let begin = |out: &mut String, of: &str| {
-        let sizes = [s.nq, s.nv, s.nu, count].map(|n| n.to_string()).join(", ");
-        let _ = writeln!(
-            out,
-            "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{"
-        );
-    };
-    let taken = [Argument::T, Argument::Q, Argument::V, Argument::A, Argument::U];
-    let parameters = s.parameters(&taken);
-    let call = |f: &Function, suffix: &str| {
-        let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
-        format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
-    };
-    let vector = s.vector(count);
-    let names: Vec<String> =
-        outputs.iter().flat_map(|f| entries(f)).map(|name| format!("{name:?}")).collect();
-    let unit = |f: &Function| {
-        let place = i.outputs.iter().position(|name| *name == f.name);
-        place.and_then(|k| i.units.outputs.get(k)).map_or("", |unit| unit)
-    };
-    let units: Vec<&str> = outputs.iter().flat_map(|f| std::iter::repeat_n(unit(f), rows(f))).collect();
-    begin(out, "Outputs");
-    let _ = writeln!(
-        out,
-        "type Scalar = {};\nconst OUTPUTS: [&'static str; {count}] = [{}];
-        const OUTPUT_UNITS: [&'static str; {count}] = {units:?};
-        #[inline]\nfn outputs({parameters}) -> {vector} {{\nlet mut all = <{vector}>::zeros();",
-        s.scalar.name(),
-        names.join(", "),
-    );
-    let mut first = 0;
-    for f in &outputs {
-        let value = match f.shape {
-            Shape::Scalar => format!("::linkwork::nalgebra::SVector::from([{}])", call(f, "")),
-            _ => call(f, ""),
-        };
-        let _ = writeln!(out, "::linkwork::__private::put_rows(&mut all, {first}, &{value});");
-        first += rows(f);
-    }
-    out.push_str("all\n}\n}\n");
+    let parameters = s.parameters(&[Argument::T, Argument::Q, Argument::V, Argument::A, Argument::U]);
+    let measurements = Measurements { name, outputs, count, head: Head::new(i, s), i, s, parameters };
+    measurements.write_outputs(out);
     if !i.facts.requests.derivatives {
         return;
     }
-    begin(out, "OutputDerivatives");
-    let of = s.shape(Shape::Jacobians(count, s.nv, s.nu));
-    let _ = writeln!(
-        out,
-        "#[inline]\nfn output_derivatives({parameters}) -> {of} {{\nlet mut all = <{of}>::zeros();"
-    );
-    let mut first = 0;
-    for f in &outputs {
-        let _ = writeln!(out, "all.put_rows({first}, &{});", call(f, DERIVATIVES));
-        first += rows(f);
-    }
-    out.push_str("all\n}\n}\n");
+    measurements.write_derivatives(out);
     // As of the derivatives of the states themselves.
-    if i.states.is_empty() || i.facts.kinematic || i.facts.constraints.is_some() {
-        return;
+    if !(i.states.is_empty() || i.facts.kinematic || i.facts.constraints.is_some()) {
+        measurements.write_by_states(out);
     }
-    let n = i.states.len();
-    let sizes = [s.nq, s.nv, s.nu, n, count].map(|n| n.to_string()).join(", ");
-    let of = s.shape(Shape::Matrix(count, n));
-    let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
-    let _ = writeln!(
-        out,
-        "{ALLOW}impl{generics} ::linkwork::OutputsByStates<{sizes}> for {name}{arguments} {bounds} {{
-        #[inline]\nfn outputs_by_states({parameters}) -> {of} {{\nlet mut all = <{of}>::zeros();"
-    );
-    let mut first = 0;
-    for f in &outputs {
+}
+
+impl Measurements<'_> {
+    /// The head of an implementation of a trait with these sizes.
+    fn begin(&self, out: &mut String, of: &str, sizes: &[usize]) {
+        let Head { generics, arguments, bounds } = &self.head;
+        let sizes = sizes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let _ = writeln!(
             out,
-            "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, [{}]));",
-            call(f, BY_PARAMETERS),
-            which.join(", "),
+            "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {}{arguments} {bounds} {{",
+            self.name
         );
-        first += rows(f);
     }
-    out.push_str("all\n}\n}\n");
+
+    /// The sizes of state, inputs and outputs.
+    fn sizes(&self) -> [usize; 4] {
+        [self.s.nq, self.s.nv, self.s.nu, self.count]
+    }
+
+    /// A statement for each output, with its first entry; then the end of function and implementation.
+    fn write_each(&self, out: &mut String, statement: impl Fn(usize, &Function) -> String) {
+        let mut first = 0;
+        for f in &self.outputs {
+            let _ = writeln!(out, "{}", statement(first, f));
+            first += rows(f);
+        }
+        out.push_str("all\n}\n}\n");
+    }
+
+    /// The trait of the values, with names and units.
+    fn write_outputs(&self, out: &mut String) {
+        let (count, vector) = (self.count, self.s.vector(self.count));
+        let names: Vec<String> =
+            self.outputs.iter().flat_map(|f| entries(f)).map(|name| format!("{name:?}")).collect();
+        let unit = |f: &Function| {
+            let place = self.i.outputs.iter().position(|name| *name == f.name);
+            place.and_then(|k| self.i.units.outputs.get(k)).map_or("", |unit| unit)
+        };
+        let units: Vec<&str> =
+            self.outputs.iter().flat_map(|f| std::iter::repeat_n(unit(f), rows(f))).collect();
+        self.begin(out, "Outputs", &self.sizes());
+        let _ = writeln!(
+            out,
+            "type Scalar = {};\nconst OUTPUTS: [&'static str; {count}] = [{}];
+        const OUTPUT_UNITS: [&'static str; {count}] = {units:?};
+        #[inline]\nfn outputs({}) -> {vector} {{\nlet mut all = <{vector}>::zeros();",
+            self.s.scalar.name(),
+            names.join(", "),
+            self.parameters,
+        );
+        self.write_each(out, |first, f| {
+            let value = match f.shape {
+                Shape::Scalar => format!("::linkwork::nalgebra::SVector::from([{}])", call(f, "")),
+                _ => call(f, ""),
+            };
+            format!("::linkwork::__private::put_rows(&mut all, {first}, &{value});")
+        });
+    }
+
+    /// The trait of the derivatives.
+    fn write_derivatives(&self, out: &mut String) {
+        self.begin(out, "OutputDerivatives", &self.sizes());
+        let of = self.s.shape(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn output_derivatives({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
+            self.parameters
+        );
+        self.write_each(out, |first, f| format!("all.put_rows({first}, &{});", call(f, DERIVATIVES)));
+    }
+
+    /// The trait of the derivatives by states of first order.
+    fn write_by_states(&self, out: &mut String) {
+        let [nq, nv, nu, count] = self.sizes();
+        let n = self.i.states.len();
+        let of = self.s.shape(Shape::Matrix(count, n));
+        let which: Vec<String> = self.i.states.iter().map(|(_, k)| k.to_string()).collect();
+        self.begin(out, "OutputsByStates", &[nq, nv, nu, n, count]);
+        let _ = writeln!(
+            out,
+            "        #[inline]\nfn outputs_by_states({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
+            self.parameters
+        );
+        self.write_each(out, |first, f| {
+            format!(
+                "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, [{}]));",
+                call(f, BY_PARAMETERS),
+                which.join(", "),
+            )
+        });
+    }
+}
+
+/// A call of an output, or of its derivatives.
+fn call(f: &Function, suffix: &str) -> String {
+    let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+    format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
 fn rows(f: &Function) -> usize {

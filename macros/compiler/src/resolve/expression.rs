@@ -214,23 +214,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     fn call(&self, function: &Name, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
         let text = function.text.as_str();
         if let Some((_, f)) = Function::ALL.iter().find(|(name, _)| *name == text) {
-            let [argument] = arguments else {
-                return wrong_count(function, 1, cx);
-            };
-            let turns = matches!(f, Function::Sin | Function::Cos | Function::Tan);
-            if turns && !check_angle(argument, cx) {
-                return None;
-            }
-            let s = self.scalar(argument, cx)?.call(*f);
-            if let crate::expr::Node::Call(f, inner) = s.node()
-                && let Some(number) = self.graph.expr(inner).value()
-            {
-                let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
-                cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()))
-                    .help(DOMAIN);
-                return None;
-            }
-            return Some(Value::Scalar(s));
+            return self.elementary(*f, function, arguments, cx);
         }
         if let Some(k) = self.tables.iter().position(|table| table.name.text == text) {
             return self.lookup(k, function, arguments, cx);
@@ -249,39 +233,8 @@ impl<'a, 'g> Scope<'a, 'g> {
             "pow" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.pow(b))),
             "min" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Min, b))),
             "max" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Max, b))),
-            "dot" | "cross" | "project" => {
-                let [a, b] = arguments else {
-                    return wrong_count(function, 2, cx);
-                };
-                let (axes, v) = self.common_axes(&[a, b], cx)?;
-                let (a, b) = (v[0], v[1]);
-                Some(match text {
-                    "dot" => Value::Scalar(a.dot(b)),
-                    "cross" => Value::Vector(vec![(axes, a.cross(b))]),
-                    _ => Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]),
-                })
-            }
-            "norm" | "unit" => {
-                let [a] = arguments else {
-                    return wrong_count(function, 1, cx);
-                };
-                let help = if text == "norm" {
-                    "the size of a scalar is `abs(a)`"
-                } else {
-                    "a scalar has no direction"
-                };
-                let vector = self.vector_or(a, help, cx)?;
-                let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
-                if text == "norm" {
-                    return Some(Value::Scalar(v[0].length()));
-                }
-                if v[0].is_zero() {
-                    cx.error(a.place.clone(), "the zero vector has no direction")
-                        .help("a direction is a vector of some length");
-                    return None;
-                }
-                Some(Value::Vector(vec![(axes, unit(v[0]))]))
-            }
+            "dot" | "cross" | "project" => self.vector_product(function, arguments, cx),
+            "norm" | "unit" => self.size_or_direction(function, arguments, cx),
             "angle" => self.angle(function, arguments, cx),
             "r" | "v" | "a" | "omega" | "alpha" => self.slash(function, arguments, cx),
             "reaction_force" | "reaction_torque" => self.reaction(function, arguments, cx),
@@ -305,21 +258,97 @@ impl<'a, 'g> Scope<'a, 'g> {
             _ if OF_HEIGHT.contains(&text) => self.air(function, arguments, cx),
             _ if ANGLES.contains(&text) => self.flight_angle(function, arguments, cx),
             _ => {
-                let own = self.tables.iter().map(|table| table.name.text.as_str());
-                let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).chain(own);
-                let known: Vec<&str> = known.collect();
-                let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
-                let greek = words::spelt_otherwise(text, &known);
-                match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
-                    (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
-                    (_, true) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
-                    _ => words::point(error, words::FUNCTIONS, text, &known),
-                }
-                if error.is_bare() {
-                    error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
-                }
+                self.report_function(function, cx);
                 None
             }
+        }
+    }
+
+    /// An elementary function of a number or an angle.
+    fn elementary(
+        &self,
+        f: Function,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let [argument] = arguments else {
+            return wrong_count(function, 1, cx);
+        };
+        let turns = matches!(f, Function::Sin | Function::Cos | Function::Tan);
+        if turns && !check_angle(argument, cx) {
+            return None;
+        }
+        let s = self.scalar(argument, cx)?.call(f);
+        if let crate::expr::Node::Call(f, inner) = s.node()
+            && let Some(number) = self.graph.expr(inner).value()
+        {
+            let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
+            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name())).help(DOMAIN);
+            return None;
+        }
+        Some(Value::Scalar(s))
+    }
+
+    /// `dot(a, b)`, `cross(a, b)`, `project(a, b)`.
+    fn vector_product(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let [a, b] = arguments else {
+            return wrong_count(function, 2, cx);
+        };
+        let (axes, v) = self.common_axes(&[a, b], cx)?;
+        let (a, b) = (v[0], v[1]);
+        Some(match function.text.as_str() {
+            "dot" => Value::Scalar(a.dot(b)),
+            "cross" => Value::Vector(vec![(axes, a.cross(b))]),
+            _ => Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]),
+        })
+    }
+
+    /// `norm(a)`, `unit(a)`.
+    fn size_or_direction(
+        &self,
+        function: &Name,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let [a] = arguments else {
+            return wrong_count(function, 1, cx);
+        };
+        let is_size = function.text == "norm";
+        let help = if is_size { "the size of a scalar is `abs(a)`" } else { "a scalar has no direction" };
+        let vector = self.vector_or(a, help, cx)?;
+        let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
+        if is_size {
+            return Some(Value::Scalar(v[0].length()));
+        }
+        if v[0].is_zero() {
+            cx.error(a.place.clone(), "the zero vector has no direction")
+                .help("a direction is a vector of some length");
+            return None;
+        }
+        Some(Value::Vector(vec![(axes, unit(v[0]))]))
+    }
+
+    /// Says that a function is not known, and which is meant.
+    fn report_function(&self, function: &Name, cx: &mut Diagnostics) {
+        let text = function.text.as_str();
+        let own = self.tables.iter().map(|table| table.name.text.as_str());
+        let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).chain(own);
+        let known: Vec<&str> = known.collect();
+        let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
+        let greek = words::spelt_otherwise(text, &known);
+        match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
+            (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
+            (_, true) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
+            _ => words::point(error, words::FUNCTIONS, text, &known),
+        }
+        if error.is_bare() {
+            error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
         }
     }
 }

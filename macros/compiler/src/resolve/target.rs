@@ -5,7 +5,7 @@ use super::scope::Placed;
 use super::terms::Stretch;
 use crate::diag::{Diagnostics, Place, one_of};
 use crate::mechanism::Coordinate;
-use crate::syntax::{Expr, ExprKind, GROUND};
+use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
 /// What an element acts on.
 pub enum Target<'g> {
@@ -39,77 +39,8 @@ impl<'g> Builder<'_, 'g> {
     /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
     pub fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
-            ExprKind::Name(name) => {
-                if self.description.coordinates.iter().any(|c| c.name.text == *name) {
-                    let kinematics = self.scope.kinematics.borrow();
-                    let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
-                    return found.map(|(_, c, _)| Target::Coordinate(*c, None));
-                }
-                if let Some(joint) = self.joint_coordinates(name) {
-                    return match joint.as_slice() {
-                        [(_, c, angle)] => Some(Target::Coordinate(*c, Some(*angle))),
-                        _ => {
-                            let own: Vec<&str> = joint.iter().map(|(n, ..)| n.as_str()).collect();
-                            let list: Vec<String> = own.iter().map(|c| format!("`on = {c}`")).collect();
-                            if list.is_empty() {
-                                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
-                                    .help("a force or a torque can act on a body that it joins, with a direction");
-                            } else {
-                                cx.error(
-                                    on.place.clone(),
-                                    format!("`{name}` has {} coordinates", list.len()),
-                                )
-                                .help(format!("write {}", one_of(&list)));
-                            }
-                            None
-                        }
-                    };
-                }
-                if let Some(c) = self.free_coordinate(name) {
-                    return Some(Target::Coordinate(c, None));
-                }
-                if self.scope.definitions.iter().any(|definition| definition.name.text == *name) {
-                    return self.expression_stretch(on, cx).map(Target::Expression);
-                }
-                if !self.placeable.contains(name) {
-                    self.report_target(name, &on.place, cx);
-                    return None;
-                }
-                self.scope.place(on, cx).map(Target::Point)
-            }
-            ExprKind::Field(inner, member) => {
-                let ExprKind::Name(joint) = &inner.kind else {
-                    cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
-                    return None;
-                };
-                let Some(coordinates) = self.joint_coordinates(joint) else {
-                    if self.jointed_index(joint).is_some() {
-                        cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
-                            .help(format!("write `on = {joint}` and give a direction, or name a joint"));
-                        return None;
-                    }
-                    if self.scope.is_news(joint, cx) {
-                        let known = self.joint_names();
-                        let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
-                        error.suggest(joint, known.iter().map(String::as_str));
-                        if error.is_bare() {
-                            error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
-                        }
-                    }
-                    return None;
-                };
-                let full = format!("{joint}.{}", member.text);
-                if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
-                    return Some(Target::Coordinate(*c, Some(*angle)));
-                }
-                let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
-                cx.error(
-                    member.place.clone(),
-                    format!("`{joint}` has no coordinate `{}` to act on", member.text),
-                )
-                .suggest(&full, own);
-                None
-            }
+            ExprKind::Name(name) => self.named_target(on, name, cx),
+            ExprKind::Field(joint, coordinate) => self.coordinate_of_joint(on, joint, coordinate, cx),
             ExprKind::Method(inner, method, arguments) if method.text == "at" && arguments.len() == 1 => {
                 let ExprKind::Name(name) = &inner.kind else {
                     cx.error(on.place.clone(), "expected a body");
@@ -130,6 +61,78 @@ impl<'g> Builder<'_, 'g> {
                 None
             }
         }
+    }
+
+    /// A coordinate of its own, a joint with one coordinate, a definition, or a place.
+    fn named_target(&self, on: &Expr, name: &str, cx: &mut Diagnostics) -> Option<Target<'g>> {
+        if self.description.coordinates.iter().any(|c| c.name.text == name) {
+            let kinematics = self.scope.kinematics.borrow();
+            let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
+            return found.map(|(_, c, _)| Target::Coordinate(*c, None));
+        }
+        if let Some(joint) = self.joint_coordinates(name) {
+            if let [(_, c, angle)] = joint.as_slice() {
+                return Some(Target::Coordinate(*c, Some(*angle)));
+            }
+            let list: Vec<String> = joint.iter().map(|(n, ..)| format!("`on = {n}`")).collect();
+            if list.is_empty() {
+                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
+                    .help("a force or a torque can act on a body that it joins, with a direction");
+            } else {
+                cx.error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
+                    .help(format!("write {}", one_of(&list)));
+            }
+            return None;
+        }
+        if let Some(c) = self.free_coordinate(name) {
+            return Some(Target::Coordinate(c, None));
+        }
+        if self.scope.definitions.iter().any(|definition| definition.name.text == name) {
+            return self.expression_stretch(on, cx).map(Target::Expression);
+        }
+        if !self.placeable.iter().any(|known| known == name) {
+            self.report_target(name, &on.place, cx);
+            return None;
+        }
+        self.scope.place(on, cx).map(Target::Point)
+    }
+
+    /// `joint.coordinate`.
+    fn coordinate_of_joint(
+        &self,
+        on: &Expr,
+        inner: &Expr,
+        member: &Name,
+        cx: &mut Diagnostics,
+    ) -> Option<Target<'g>> {
+        let ExprKind::Name(joint) = &inner.kind else {
+            cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
+            return None;
+        };
+        let Some(coordinates) = self.joint_coordinates(joint) else {
+            if self.jointed_index(joint).is_some() {
+                cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
+                    .help(format!("write `on = {joint}` and give a direction, or name a joint"));
+                return None;
+            }
+            if self.scope.is_news(joint, cx) {
+                let known = self.joint_names();
+                let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
+                error.suggest(joint, known.iter().map(String::as_str));
+                if error.is_bare() {
+                    error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
+                }
+            }
+            return None;
+        };
+        let full = format!("{joint}.{}", member.text);
+        if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
+            return Some(Target::Coordinate(*c, Some(*angle)));
+        }
+        let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
+        cx.error(member.place.clone(), format!("`{joint}` has no coordinate `{}` to act on", member.text))
+            .suggest(&full, own);
+        None
     }
 
     /// A coordinate of its own, by name.

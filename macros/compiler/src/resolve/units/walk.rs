@@ -148,12 +148,30 @@ impl<'a> Inference<'a> {
         }
     }
 
+    /// The value of a function: tables first, then what the language knows, then elementary functions.
     fn call(&mut self, function: &'a Name, arguments: &'a [Expr]) -> Value {
         let text = function.text.as_str();
         if let Some(unknown) = self.tables.get(text).cloned() {
             return self.lookup(&unknown, arguments);
         }
-        match (text, arguments) {
+        let known = self
+            .arithmetic(text, arguments)
+            .or_else(|| self.vector_algebra(text, arguments))
+            .or_else(|| self.matrix_algebra(text, arguments))
+            .or_else(|| self.calculus(text, arguments))
+            .or_else(|| self.motion(text, arguments))
+            .or_else(|| self.masses(text, arguments))
+            .or_else(|| self.flight(text, arguments));
+        match (known, arguments) {
+            (Some(value), _) => value,
+            (None, [a]) => self.elementary(text, a),
+            (None, _) => Value::Unknown,
+        }
+    }
+
+    /// Functions of numbers.
+    fn arithmetic(&mut self, text: &'a str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
             ("abs", [a]) => self.value(a),
             ("signum", [a]) => {
                 self.value(a);
@@ -174,6 +192,13 @@ impl<'a> Inference<'a> {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
                 _ => Value::formula(f64::NAN),
             },
+            _ => return None,
+        })
+    }
+
+    /// Products, sizes and directions of vectors.
+    fn vector_algebra(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
             ("dot" | "cross", _) => {
                 let factors: Vec<_> = arguments.iter().map(|a| (false, self.value(a))).collect();
                 self.multiply(&factors)
@@ -194,36 +219,13 @@ impl<'a> Inference<'a> {
                 arguments.iter().for_each(|a| drop(self.value(a)));
                 Value::quantity(PLAIN)
             }
-            // Of a vector, as seen from a frame, whose name has no dimension.
-            ("rate", [Expr { kind: ExprKind::Binary(BinaryOp::Div, of, frame, _), .. }])
-                if self.is_frame(frame) =>
-            {
-                match self.value(of) {
-                    Value::Quantity { dimension, named } => match dimension.over(&TIME) {
-                        Some(dimension) => Value::Quantity { dimension, named },
-                        None => Value::Unknown,
-                    },
-                    Value::Direction => Value::quantity(RATE),
-                    other => other,
-                }
-            }
-            ("rate", [a]) => match self.value(a) {
-                Value::Quantity { dimension, named } => match dimension.over(&TIME) {
-                    Some(dimension) => Value::Quantity { dimension, named },
-                    None => Value::Unknown,
-                },
-                other => other,
-            },
-            ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
-            ("momentum" | "angular_momentum" | "kinetic_energy", [a]) => {
-                self.slash("r", a);
-                Value::quantity(match text {
-                    "momentum" => MOMENTUM,
-                    "angular_momentum" => ANGULAR_MOMENTUM,
-                    _ => ENERGY,
-                })
-            }
-            ("power", _) => Value::quantity(POWER),
+            _ => return None,
+        })
+    }
+
+    /// Matrices and what is made of them.
+    fn matrix_algebra(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
             ("skew" | "transpose" | "trace", [a]) => self.value(a),
             ("outer", [a, b]) => {
                 let factors = [(false, self.value(a)), (false, self.value(b))];
@@ -234,10 +236,36 @@ impl<'a> Inference<'a> {
                 Value::quantity(PLAIN)
             }
             ("rotation", _) | ("identity", _) => Value::quantity(PLAIN),
-            ("inertia", [of]) => {
-                self.slash("r", of);
-                Value::quantity(INERTIA)
+            _ => return None,
+        })
+    }
+
+    /// Derivatives by time, by length and along curves.
+    fn calculus(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
+            // Of a vector, as seen from a frame, whose name has no dimension.
+            ("rate", [Expr { kind: ExprKind::Binary(BinaryOp::Div, of, frame, _), .. }])
+                if self.is_frame(frame) =>
+            {
+                match self.value(of) {
+                    Value::Direction => Value::quantity(RATE),
+                    other => quotient(other, &TIME),
+                }
             }
+            ("rate", [a]) => quotient(self.value(a), &TIME),
+            ("curvature" | "torsion", [curve, _]) => self.value(curve).power(Some(Ratio::integer(-1))),
+            ("gradient", [Expr { kind: ExprKind::Binary(_, field, ..), .. }]) => match self.value(field) {
+                value @ Value::Quantity { .. } => quotient(value, &LENGTH),
+                _ => Value::Unknown,
+            },
+            _ => return None,
+        })
+    }
+
+    /// Places, velocities and accelerations, and what is measured between places.
+    fn motion(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
+            ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
             (
                 "center_of_mass" | "instant_center" | "acceleration_center" | "screw_axis" | "screw_pitch",
                 [of],
@@ -248,20 +276,34 @@ impl<'a> Inference<'a> {
             }
             ("cable", [of, surface]) => {
                 self.slash("r", of);
-                let ExprKind::Method(home, _, arguments) = &surface.kind else { return Value::Unknown };
-                self.point(home);
+                let ExprKind::Method(base, _, arguments) = &surface.kind else {
+                    return Some(Value::Unknown);
+                };
+                self.point(base);
                 let radius =
                     arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
                 Value::Quantity { dimension: LENGTH, named: radius.is_some_and(|radius| radius.is_named()) }
             }
-            ("curvature" | "torsion", [curve, _]) => self.value(curve).power(Some(Ratio::integer(-1))),
-            ("gradient", [Expr { kind: ExprKind::Binary(_, field, ..), .. }]) => match self.value(field) {
-                Value::Quantity { dimension, named } => match dimension.over(&LENGTH) {
-                    Some(dimension) => Value::Quantity { dimension, named },
-                    None => Value::Unknown,
-                },
-                _ => Value::Unknown,
-            },
+            _ => return None,
+        })
+    }
+
+    /// Momenta, energies, inertias and forces.
+    fn masses(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
+            ("momentum" | "angular_momentum" | "kinetic_energy", [a]) => {
+                self.slash("r", a);
+                Value::quantity(match text {
+                    "momentum" => MOMENTUM,
+                    "angular_momentum" => ANGULAR_MOMENTUM,
+                    _ => ENERGY,
+                })
+            }
+            ("power", _) => Value::quantity(POWER),
+            ("inertia", [of]) => {
+                self.slash("r", of);
+                Value::quantity(INERTIA)
+            }
             ("moment_of_inertia", [of, directions @ ..]) => {
                 self.slash("r", of);
                 let directions: Vec<Value> = directions.iter().map(|a| self.value(a)).collect();
@@ -273,6 +315,13 @@ impl<'a> Inference<'a> {
             }
             ("reaction_force" | "contact_force", _) => Value::quantity(FORCE),
             ("reaction_torque", _) => Value::quantity(ENERGY),
+            _ => return None,
+        })
+    }
+
+    /// The atmosphere, and angles of flight.
+    fn flight(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
+        Some(match (text, arguments) {
             ("density" | "pressure" | "temperature" | "speed_of_sound", [height]) => {
                 self.expect(height, &LENGTH, "m", Reason::Argument);
                 match text {
@@ -294,9 +343,8 @@ impl<'a> Inference<'a> {
                 arguments.iter().filter(|a| a.name().is_none()).for_each(|a| drop(self.value(a)));
                 Value::quantity(PLAIN)
             }
-            (_, [a]) => self.elementary(text, a),
-            _ => Value::Unknown,
-        }
+            _ => return None,
+        })
     }
 
     /// True for the name of a body or a frame, which is no quantity.
@@ -376,5 +424,16 @@ impl<'a> Inference<'a> {
                 self.expect(argument, &LENGTH, "m", Reason::Place);
             }
         }
+    }
+}
+
+/// A quantity divided by one of this dimension; anything else as it is.
+fn quotient(value: Value, by: &Dimension) -> Value {
+    match value {
+        Value::Quantity { dimension, named } => match dimension.over(by) {
+            Some(dimension) => Value::Quantity { dimension, named },
+            None => Value::Unknown,
+        },
+        other => other,
     }
 }
