@@ -42,6 +42,9 @@ pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 pub use solve::{independent_solution, least_solution, regular_solution};
 pub use stabilized::{Stabilized, stabilized};
 
+/// A share of the velocity by which a projection changes it where it leads to another branch.
+const TURN: f64 = 0.01;
+
 /// Newton steps of a projection; a state that has drifted needs one or two.
 const MOST_STEPS: usize = 20;
 
@@ -299,7 +302,11 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
         let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
-        if near(size, &v) {
+        // Beside a branch, near a singular position, the constraints have other directions than on it.
+        let left = self.constraint_residuals(t, q);
+        let is_on = near(largest(&left)?.1, q);
+        let jacobian = self.constraint_jacobian(t, q);
+        if near(size, &v) || (is_on && size <= careful::turned(&left) * farthest(&jacobian) * reach(&v)) {
             return Ok(v);
         }
         let constraint = Self::CONSTRAINTS.get(worst).copied().unwrap_or_default();
@@ -328,6 +335,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 
     /// Both: configuration first.
     ///
+    /// Where constraints have two branches that cross, a state within rounding of the crossing, which fulfils the rates of both
+    /// alike, keeps its velocity: it tells the branch that the state is on, when the configuration no longer does.
+    ///
     /// # Errors
     ///
     /// Those of the two.
@@ -338,8 +348,15 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         let q = self.project_configuration(t, q)?;
-        let v = self.project_velocity(t, &q, v)?;
-        Ok((q, v))
+        let found = self.project_velocity(t, &q, v)?;
+        let speed = largest(v)?.1;
+        if largest(&(found - v))?.1 > speed * constant(TURN) {
+            let rate = largest(&self.constraint_rates(t, &q, v))?.1;
+            if open(rate, v) && self.is_nearly_singular(t, &q, &SVector::zeros()) {
+                return Ok((q, *v));
+            }
+        }
+        Ok((q, found))
     }
 }
 
@@ -378,6 +395,18 @@ fn known<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
 /// Whether what is left of constraints can be borne: half of the digits where they lose rank.
 fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= epsilon::<T>().sqrt() * reach(x)
+}
+
+/// Whether the rate of a constraint is so small that its direction may be that of either of two branches which cross.
+fn open<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
+    rate <= epsilon::<T>().sqrt().sqrt() * v.iter().fold(T::zero(), |most, v| most.max(v.abs()))
+}
+
+/// The farthest that a velocity of one moves what a constraint holds, at least one.
+fn farthest<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
+    jacobian
+        .column_iter()
+        .fold(T::one(), |most, column| column.iter().fold(most, |most, j| most.max(j.abs())))
 }
 
 fn off<T: Real, const NC: usize>(names: [&'static str; NC], worst: usize, size: T) -> ConstraintError {

@@ -78,8 +78,8 @@ fn zone<T: Real>() -> T {
 }
 
 /// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a singular position
-/// is not chased unless it is more than what rounding of the place makes of it: the change of velocity that takes it away
-/// would be large there.
+/// is not chased unless it is more than what rounding of the place makes of it, nor more than the place itself is off its
+/// branch: the change of velocity that takes it away would be large there.
 #[cold]
 #[inline(never)]
 pub fn careful_response<
@@ -108,10 +108,16 @@ where
         return found;
     }
     let gap = bias.iter().fold(T::zero(), |most, b| most.max(b.abs()));
+    let left = mechanism.constraint_residuals(t, q);
+    // Whether it is the place itself that is brought onto the constraints, not a velocity.
+    let apart = (0..NH).fold(T::zero(), |most, k| most.max((at(&left.data.0[0], k) - at(bias, k)).abs()));
+    let is_place = size(&left) > T::zero() && apart <= size(&left) * constant(0.5);
     // With places known to ε, a row of size σ is known as the direction of a branch to ε / σ².
     let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
     let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
-    let least = if gap > root { root } else { root.max(known / gap) };
+    let turned = if is_place && gap > root { T::zero() } else { turned(&left) };
+    let rounded = if is_place || gap > root { T::zero() } else { known / gap };
+    let least = root.max(rounded).max(turned);
     let weak = if least < zone() { Weak::Down(least) } else { Weak::Dropped };
     let correction = System { force: [T::zero(); NV], ..both }.solve(structure, zone(), weak).0;
     if force.iter().all(|f| *f == T::zero()) {
@@ -119,8 +125,15 @@ where
     }
     // Pushes are answered by all rows that tell a direction.
     let answer = System { bias: [T::zero(); NC], ..both };
-    let answer = answer.solve(structure, zone(), Weak::Down(known.sqrt())).0;
+    let answer = answer.solve(structure, zone(), Weak::Down(known.sqrt().max(turned))).0;
     (answer.0 + correction.0, answer.1 + correction.1)
+}
+
+/// The size that rows must have near a singular position so that their directions are known, with so much `left` of the
+/// constraints: where that is `r`, the place is off its branch by `r` / σ, and directions, which turn by one over the way σ to
+/// the other branch, by `r` / σ².
+pub(super) fn turned<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
+    (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
 }
 
 /// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as they differ from

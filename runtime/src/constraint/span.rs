@@ -189,7 +189,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
                 let (length, share) = column.left(self.rank);
-                if length > best.1 && share > least {
+                // Among columns that are as long up to rounding, the first: which it is must not depend on rounding.
+                if length > best.1 * constant(1.01) && share > least {
                     best = (Some(k), length);
                 }
             }

@@ -1,0 +1,138 @@
+//! The branches of a linkage that has flat positions, by its lengths, and motions on them.
+
+use linkwork::prelude::*;
+
+/// A number with its first and second derivative.
+#[derive(Clone, Copy)]
+pub struct Jet(pub [f64; 3]);
+
+impl Jet {
+    /// A function of it with these derivatives.
+    fn map(self, f: [f64; 3]) -> Jet {
+        let [_, d, dd] = self.0;
+        Jet([f[0], f[1] * d, f[2] * d * d + f[1] * dd])
+    }
+
+    fn sin(self) -> Jet {
+        let (s, c) = self.0[0].sin_cos();
+        self.map([s, c, -s])
+    }
+
+    fn cos(self) -> Jet {
+        let (s, c) = self.0[0].sin_cos();
+        self.map([c, -s, -c])
+    }
+
+    fn times(self, o: Jet) -> Jet {
+        let ([a, b, c], [d, e, f]) = (self.0, o.0);
+        Jet([a * d, b * d + a * e, c * d + 2.0 * b * e + a * f])
+    }
+
+    fn plus(self, o: Jet) -> Jet {
+        Jet(core::array::from_fn(|k| self.0[k] + o.0[k]))
+    }
+
+    fn scaled(self, by: f64) -> Jet {
+        Jet(self.0.map(|x| x * by))
+    }
+
+    fn add(self, x: f64) -> Jet {
+        self.plus(Jet([x, 0.0, 0.0]))
+    }
+
+    fn root(self) -> Jet {
+        let x = self.0[0].sqrt();
+        self.map([x, 0.5 / x, -0.25 / (x * x * x)])
+    }
+
+    fn inverse(self) -> Jet {
+        let x = 1.0 / self.0[0];
+        self.map([x, -x * x, 2.0 * x * x * x])
+    }
+
+    fn atan2(y: Jet, x: Jet) -> Jet {
+        // The derivative is (x y' − y x') / (x² + y²), in jets of one order less.
+        let ([y0, y1, y2], [x0, x1, x2]) = (y.0, x.0);
+        let square = x0 * x0 + y0 * y0;
+        let first = (x0 * y1 - y0 * x1) / square;
+        let second = (x0 * y2 - y0 * x2) / square - first * 2.0 * (x0 * x1 + y0 * y1) / square;
+        Jet([y0.atan2(x0), first, second])
+    }
+}
+
+/// Angles of coupler, against the crank, and rocker of a four-bar linkage that is flat where its crank is at `π`
+/// (`l1 + base = l2 + l3`) or at zero (`±(l1 − base) = l2 − l3`), over the angle of the crank.
+///
+/// With the distance `D` between the crank's tip and the rocker's foot, the height of the triangle of coupler and rocker over
+/// it is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a square: `4 base l1 cos²(θ/2)` or
+/// `4 base l1 sin²(θ/2)`, and the branch goes on where its root changes sign.
+pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
+    let theta = Jet([theta, 1.0, 0.0]);
+    let half = theta.scaled(0.5);
+    // Lengths that nearly agree are subtracted first: their squares would leave few digits.
+    let (apart, versine) = (base - l1, half.sin().times(half.sin()).scaled(2.0));
+    let difference = if at_pi { l2 - l3 } else { apart.abs() };
+    // From the crank's tip to the rocker's foot.
+    let (dx, dy) = (versine.scaled(l1).add(apart), theta.sin().scaled(-l1));
+    let square = versine.scaled(2.0 * base * l1).add(apart * apart);
+    let width = 2.0 * (base * l1).sqrt();
+    let height = match at_pi {
+        true => half.cos().scaled(width).times(square.add(-difference * difference).root()),
+        false => half.sin().scaled(width).times(square.scaled(-1.0).add((l2 + l3) * (l2 + l3)).root()),
+    };
+    // Twice D times the triangle's foot and height.
+    let (along, across) = (square.add(difference * (l2 + l3)), height.scaled(side));
+    let over = square.scaled(2.0).inverse();
+    let tip = |a: Jet, b: Jet, c: Jet, d: Jet| a.times(b).plus(c.times(d)).times(over);
+    let (px, py) = (tip(along, dx, across.scaled(-1.0), dy), tip(along, dy, across, dx));
+    let coupler = Jet::atan2(py, px);
+    let rocker = Jet::atan2(py.plus(dy.scaled(-1.0)), px.plus(dx.scaled(-1.0)));
+    [theta, coupler.plus(theta.scaled(-1.0)), rocker]
+}
+
+/// A branch at a point: where it is, how all coordinates change with `N` of them, and second derivatives along the motion.
+pub struct Branch<const NV: usize, const N: usize> {
+    pub q: SVector<f64, NV>,
+    pub by: SMatrix<f64, NV, N>,
+    pub bend: SVector<f64, NV>,
+    pub rate: SVector<f64, N>,
+}
+
+impl<const NV: usize, const N: usize> Branch<NV, N> {
+    pub fn velocity(&self) -> SVector<f64, NV> {
+        self.by * self.rate
+    }
+
+    /// The acceleration on the branch by Lagrange's equations for its own coordinates, and what to expect of rounding.
+    pub fn acceleration<M>(&self, m: &M) -> (SVector<f64, NV>, f64)
+    where
+        M: Mechanism<NV, NV, 0, Scalar = f64>,
+    {
+        let (v, mass) = (self.velocity(), m.mass_matrix(&self.q));
+        let bias = m.bias_forces(&self.q, &v);
+        let own = self.by.transpose() * mass * self.by;
+        let force = bias + mass * self.bend;
+        let solve = |f: SVector<f64, N>| {
+            // One or two coordinates.
+            let mut x = SVector::<f64, N>::zeros();
+            if N == 1 {
+                x[0] = f[0] / own[(0, 0)];
+            } else {
+                let det = own[(0, 0)] * own[(1, 1)] - own[(0, 1)] * own[(1, 0)];
+                x[0] = (f[0] * own[(1, 1)] - f[1] * own[(0, 1)]) / det;
+                x[1] = (f[1] * own[(0, 0)] - f[0] * own[(1, 0)]) / det;
+            }
+            x
+        };
+        let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
+        // What single forces would do, by how much their bodies move, which is known to a part of 1e-11 m or rad, not better.
+        let moved = |k: usize| {
+            let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
+            (self.by * solve(by * bias[k])).amax()
+        };
+        let most = (0..NV).map(moved).fold(0.0, f64::max);
+        // Light bodies with stiff springs would do much if nothing held them: what holds them rounds as that does.
+        let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());
+        (a, most + free * 1e-3)
+    }
+}
