@@ -6,7 +6,9 @@
 use crate::jet::{
     C, Jet, Matrix, Vector, difference, dot, identity, product, real, rotation, scaled, still, sum, turned,
 };
-use crate::motion::{Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, turning, velocity};
+use crate::motion::{
+    Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, spin, turning, velocity,
+};
 use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
 use std::array::from_fn;
 
@@ -184,6 +186,7 @@ fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
                 tension(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].rate()
             }
             Element::Push(end, force) => -complex_dot(force.map(real), velocity(point(partial, end))),
+            Element::Twist(body, torque) => -complex_dot(torque.map(real), spin(&partial.poses[*body].r).0),
             Element::Follow(end, force) => {
                 let r = &now.poses[end.body.unwrap_or(0)].r;
                 let force: [C; 3] = from_fn(|i| (0..3).map(|j| r[i][j].0[0] * force[j]).sum());

@@ -48,6 +48,17 @@ fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
     }
 }
 
+/// Alike limbs whose masses and angles are not quite alike.
+#[test]
+fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
+    for seed in seeds(20) {
+        let noise = (seed % 2 == 0).then(|| 10.0_f64.powi(-16 + (seed % 14) as i32));
+        let limbs = 2 + seed as usize % 4;
+        let style = Style { limbs, decades: 6.0, noise, ..PLAIN };
+        programs::check(&spec(4_000_000 + seed, style), seed);
+    }
+}
+
 #[test]
 fn angles_with_noise_obey_kanes_equations() {
     for seed in seeds(30) {

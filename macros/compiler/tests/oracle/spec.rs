@@ -123,6 +123,8 @@ pub enum Element {
     Push(End, [f64; 3]),
     /// A force in the body's own axes at a point of a body.
     Follow(End, [f64; 3]),
+    /// A torque in ground axes on a body.
+    Twist(usize, [f64; 3]),
 }
 
 /// A mechanism.
@@ -243,7 +245,7 @@ impl Source {
         if is_fixed(bodies, one) {
             return None;
         }
-        Some(match self.below(6) {
+        Some(match self.below(7) {
             0 => Element::Push(self.end(Some(one)), self.vector(3.0)),
             1 => Element::Follow(self.end(Some(one)), self.vector(3.0)),
             2 => {
@@ -255,6 +257,7 @@ impl Source {
                 Element::On(law, one, self.below(coordinates.len()))
             }
             3 => Element::Between(self.law(), self.end(None), self.end(Some(one))),
+            4 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
             _ => {
                 let other = self.below(bodies.len());
                 // Bodies that are welded together have a distance that stays.
@@ -276,6 +279,12 @@ fn rigid(bodies: &[Body], body: usize) -> Option<usize> {
     }
 }
 
+/// Whether a joint between the ground and the body turns.
+fn turns(bodies: &[Body], body: usize) -> bool {
+    let own = !matches!(bodies[body].kind, Kind::Sleeve | Kind::Stage | Kind::Weld);
+    own || bodies[body].parent.is_some_and(|parent| turns(bodies, parent))
+}
+
 fn is_fixed(bodies: &[Body], body: usize) -> bool {
     rigid(bodies, body).is_none()
 }
@@ -286,8 +295,20 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|x| x / length)
 }
 
-/// Joints that limbs are made of.
-const LIMB_KINDS: [Kind; 6] = [Kind::Pin, Kind::Pin, Kind::Sleeve, Kind::Screw, Kind::Ball, Kind::Universal];
+/// Joints that limbs are made of, common ones more often.
+const LIMB_KINDS: [Kind; 11] = [
+    Kind::Pin,
+    Kind::Pin,
+    Kind::Pin,
+    Kind::Sleeve,
+    Kind::Screw,
+    Kind::Ball,
+    Kind::Universal,
+    Kind::Collar,
+    Kind::Slot,
+    Kind::Planar,
+    Kind::Stage,
+];
 
 /// The mechanism of a seed.
 pub fn spec(seed: u64, style: Style) -> Spec {
@@ -317,10 +338,11 @@ pub fn spec(seed: u64, style: Style) -> Spec {
 
 /// Limbs of one form on a trunk; how many elements there should be besides.
 fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
-    let trunk = match source.below(3) {
+    let trunk = match source.below(4) {
         0 => None,
         1 => Some(Kind::Free),
-        _ => Some(Kind::Pin),
+        2 => Some(Kind::Pin),
+        _ => Some(KINDS[source.below(KINDS.len())]),
     };
     if let Some(kind) = trunk {
         bodies.push(source.body(kind, None, style));

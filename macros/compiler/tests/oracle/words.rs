@@ -112,6 +112,10 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] element{k}: Force,",
             point(end)
         ),
+        Element::Twist(body, [x, y, z]) => writeln!(
+            out,
+            "#[acts(on = body{body}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] element{k}: Torque,"
+        ),
         Element::Follow(end, [x, y, z]) => {
             let b = name(end.body);
             writeln!(
